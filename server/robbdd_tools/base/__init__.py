@@ -1,0 +1,1 @@
+"""Documents, ranges, diagnostics and data files: what every layer shares and nothing more."""

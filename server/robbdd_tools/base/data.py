@@ -1,0 +1,20 @@
+"""Finds the data files (grammars, metamodels) in a checkout and in an installed wheel alike."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parent.parent
+
+
+def data_file(folder: str, name: str) -> Path:
+    """Return the path of ``name`` in the data folder ``grammar`` or ``metamodels``.
+
+    Raises ``FileNotFoundError`` when the installation lacks it.
+    """
+    installed = PACKAGE / "data" / folder / name
+    checkout = PACKAGE.parent.parent / folder / name
+    for candidate in (installed, checkout):
+        if candidate.is_file():
+            return candidate
+    raise FileNotFoundError(f"the installation of robbdd-tools lacks its file {folder}/{name}")

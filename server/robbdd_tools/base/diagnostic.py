@@ -1,0 +1,64 @@
+"""Diagnostics and the certain fixes that may come with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+from robbdd_tools.base.document import Span
+
+
+class Severity(IntEnum):
+    """How bad it is; the order is that of the Language Server Protocol."""
+
+    ERROR = 1
+    WARNING = 2
+    INFORMATION = 3
+    HINT = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Related:
+    """Another place that explains a diagnostic."""
+
+    uri: str
+    span: Span
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """Replace ``span`` of the document ``uri`` by ``text``."""
+
+    uri: str
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """A change that is known to mend a diagnostic."""
+
+    title: str
+    edits: tuple[Edit, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding about one document.
+
+    ``code`` is stable (``syntax``, ``unknown-name``, ``shacl-…``); ``message`` names the fix where there is one.
+    """
+
+    uri: str
+    span: Span
+    severity: Severity
+    code: str
+    message: str
+    related: tuple[Related, ...] = ()
+    fixes: tuple[Fix, ...] = ()
+
+
+def sort_key(diagnostic: Diagnostic) -> tuple[str, Span, int, str, str]:
+    """Order diagnostics by place, then severity, so that every output is the same for the same text."""
+    return (diagnostic.uri, diagnostic.span, diagnostic.severity, diagnostic.code, diagnostic.message)

@@ -1,0 +1,199 @@
+"""The types that a word of the language is described with.
+
+Plain data and protocols only: no simulator, no graph library and no numpy is imported here, so that an editor
+can load the whole catalog in a few milliseconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    FloatArray = NDArray[np.float64]
+
+Vector = tuple[float, float, float]
+"""Metres, x y z."""
+
+
+class Kind(StrEnum):
+    """What a slot of a phrase may stand for."""
+
+    OBJECT = "object"
+    WORKSPACE = "workspace"
+    AGENT = "agent"
+    OBJECT_SET = "object set"
+    WORKSPACE_SET = "workspace set"
+    ANY = "element"
+    NAME = "name"
+    VALUE = "value"
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """One argument of a phrase: its name there, what it may be, and the RDF property (CURIE) that carries it."""
+
+    name: str
+    kind: Kind
+    property: str
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """An axis-aligned box in the frame of the object that carries a workspace.
+
+    ``center`` and ``half`` (half edges) in metres. A bin's region is its inside; a table's the space above its top.
+    """
+
+    center: Vector
+    half: Vector
+
+
+class Evidence(Protocol):
+    """What an evaluator sees: the samples of one window, in order, and the scene they were taken in.
+
+    ``n`` samples; positions in metres in the world frame, orientations as unit quaternions (w, x, y, z).
+    A name the trace does not know raises ``KeyError``, which the monitor turns into *unknown*.
+    """
+
+    @property
+    def times(self) -> FloatArray:
+        """Simulated time of each sample, s, shape (n,)."""
+        ...
+
+    def position(self, name: str) -> FloatArray:
+        """Position of an object's reference point or an agent's tool centre point, shape (n, 3)."""
+        ...
+
+    def orientation(self, name: str) -> FloatArray:
+        """Orientation of an object or of an agent's tool, shape (n, 4)."""
+        ...
+
+    def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
+        """The regions that make up a workspace, each with the object whose frame it is given in."""
+        ...
+
+    def gripped(self, agent: str, name: str) -> FloatArray:
+        """1.0 where the agent's gripper holds the object by its gripping faces, else 0.0, shape (n,)."""
+        ...
+
+
+Arguments = Mapping[str, str | tuple[str, ...]]
+"""Slot name → name of the element (or names of the set's elements) that fills it."""
+
+Evaluator = Callable[[Evidence, Arguments], "FloatArray"]
+"""Signed margin of the predicate at each sample, SI units, positive where it holds, shape (n,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Predicate:
+    """A predicate of fluents.
+
+    ``phrase`` is the surface form, slots in ``<…>`` (a reference), ``$…`` (a bare name) or as words;
+    ``sentence`` the Gherkin form with ``{slot}`` placeholders. ``unit`` is the SI unit of the margin (``""`` when
+    the margin is ±1). ``evaluate`` is ``None`` for what this installation can state but not judge yet: such a
+    clause is *unknown*, never a pass.
+    """
+
+    name: str
+    phrase: str
+    rdf_type: str
+    slots: tuple[Slot, ...]
+    sentence: str
+    unit: str
+    doc: str
+    evaluate: Evaluator | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """A behaviour that an agent executes in ``When``.
+
+    ``events`` are the names of the events it emits, in order; the first and the last delimit its duration.
+    """
+
+    name: str
+    phrase: str
+    rdf_types: tuple[str, ...]
+    slots: tuple[Slot, ...]
+    sentence: str
+    events: tuple[str, ...]
+    doc: str
+
+
+class ShapeKind(StrEnum):
+    """Primitive collision shapes."""
+
+    BOX = "box"
+    SPHERE = "sphere"
+    CYLINDER = "cylinder"
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A primitive in the object's frame.
+
+    ``size`` in metres: half edges of a box; (radius, 0, 0) of a sphere; (radius, half length, 0) of a cylinder
+    along z. ``position`` is its centre.
+    """
+
+    kind: ShapeKind
+    size: Vector
+    position: Vector = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectModel:
+    """A thing of the simulated world.
+
+    Chosen for a scene object whose local name starts with one of ``prefixes``. ``mass`` in kg, ``friction`` the
+    sliding coefficient. A ``movable`` object is free; any other is fixed where it is placed unless ``free`` says
+    that it stands loose (a bin that can be pushed). ``rest_height`` is the height (m) of its origin above the
+    surface it stands on. ``region`` is the workspace it carries, if any. ``color`` is RGBA in [0, 1].
+    """
+
+    name: str
+    prefixes: tuple[str, ...]
+    shapes: tuple[Shape, ...]
+    mass: float
+    friction: float
+    free: bool
+    graspable: bool
+    rest_height: float
+    color: tuple[float, float, float, float]
+    doc: str
+    region: Region | None = None
+    places: tuple[Vector, ...] = ()
+    """Standard places (m; x, y on the surface below, z ignored for what stands on a table), one per copy."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotModel:
+    """A robot arm with its tool.
+
+    Chosen for a scene agent whose local name starts with one of ``prefixes``. ``mjcf`` is a file beside the
+    catalog file. ``home`` are the joint positions (rad) at the start; ``velocity_limits`` rad/s and
+    ``torque_limits`` N m per arm joint, as published. ``joints``, ``tool_site`` and ``gripper_actuator`` are names
+    inside the MJCF; ``gripper_open`` and ``gripper_closed`` its control values. ``pads`` are the geoms of the
+    gripping faces. ``source`` names the publications the numbers come from.
+    """
+
+    name: str
+    prefixes: tuple[str, ...]
+    mjcf: str
+    joints: tuple[str, ...]
+    home: tuple[float, ...]
+    velocity_limits: tuple[float, ...]
+    torque_limits: tuple[float, ...]
+    tool_site: str
+    gripper_actuator: str
+    gripper_open: float
+    gripper_closed: float
+    pads: tuple[str, ...]
+    doc: str
+    source: str

@@ -1,0 +1,1 @@
+"""Behaviours of agents, one per file."""

@@ -1,0 +1,1 @@
+"""Things of the simulated world, one per file."""

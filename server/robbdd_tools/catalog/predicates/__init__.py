@@ -1,0 +1,1 @@
+"""Predicates of fluents, one per file."""

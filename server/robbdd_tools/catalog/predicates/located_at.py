@@ -1,0 +1,34 @@
+"""An object is located at a workspace (paper, section on the experiment: position against 3D bounds)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
+from robbdd_tools.catalog.geometry import inside_margin
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+
+def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
+    """Distance (m) of the object's position to the nearest face of the workspace, positive inside, shape (n,).
+
+    A workspace made of several regions counts as their union.
+    """
+    return inside_margin(evidence, str(arguments["object"]), (str(arguments["workspace"]),))
+
+
+LOCATED_AT = Predicate(
+    name="located-at",
+    phrase="<object> is located at <workspace>",
+    rdf_type="bdd:LocatedAtPredicate",
+    slots=(
+        Slot("object", Kind.OBJECT, "bdd:ref-object"),
+        Slot("workspace", Kind.WORKSPACE, "bdd:ref-workspace"),
+    ),
+    sentence='"{object}" is located at "{workspace}"',
+    unit="m",
+    doc="The object's position lies inside the workspace: inside a bin, or above a table top.",
+    evaluate=margin,
+)

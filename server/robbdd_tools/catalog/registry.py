@@ -1,0 +1,103 @@
+"""Collects the words of the language: a scan of our own folders, then the entry points of other packages.
+
+A third-party package adds a word by an entry point of the group ``robbdd_tools.catalog`` that names a
+module-level ``Predicate``, ``Behaviour``, ``ObjectModel`` or ``RobotModel``.
+"""
+
+from __future__ import annotations
+
+import pkgutil
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
+from types import MappingProxyType
+from typing import TYPE_CHECKING, TypeVar
+
+from robbdd_tools.catalog.api import Behaviour, ObjectModel, Predicate, RobotModel
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    Word = Predicate | Behaviour | ObjectModel | RobotModel
+
+GROUP = "robbdd_tools.catalog"
+FOLDERS = ("predicates", "behaviours", "objects", "robots")
+Model = TypeVar("Model", ObjectModel, RobotModel)
+Entry = TypeVar("Entry", Predicate, Behaviour, ObjectModel, RobotModel)
+
+
+class DuplicateWord(Exception):
+    """Two catalog files claim the same name; the message names both."""
+
+
+@dataclass(frozen=True, slots=True)
+class Catalog:
+    """All registered words, by name, each mapping in alphabetical order."""
+
+    predicates: Mapping[str, Predicate]
+    behaviours: Mapping[str, Behaviour]
+    objects: Mapping[str, ObjectModel]
+    robots: Mapping[str, RobotModel]
+
+    def object_for(self, local_name: str) -> ObjectModel | None:
+        """Return the object model that a scene object of this name stands for (longest prefix wins)."""
+        return _by_prefix(self.objects, local_name)
+
+    def robot_for(self, local_name: str) -> RobotModel | None:
+        """Return the robot model that a scene agent of this name stands for (longest prefix wins)."""
+        return _by_prefix(self.robots, local_name)
+
+
+@cache
+def load_catalog() -> Catalog:
+    """Return the catalog of this installation; raises ``DuplicateWord`` when two files claim one name."""
+    return build_catalog([*_own_words(), *_foreign_words()])
+
+
+def build_catalog(words: Iterable[tuple[str, Word]]) -> Catalog:
+    """Index ``(origin, word)`` pairs by kind and name; raises ``DuplicateWord``."""
+    found: dict[tuple[type, str], tuple[str, Word]] = {}
+    for origin, word in words:
+        key = (type(word), word.name)
+        if key in found:
+            raise DuplicateWord(f"'{word.name}' is defined twice: in {found[key][0]} and in {origin}")
+        found[key] = (origin, word)
+    every = [word for _, word in found.values()]
+    return Catalog(
+        _named(every, Predicate),
+        _named(every, Behaviour),
+        _named(every, ObjectModel),
+        _named(every, RobotModel),
+    )
+
+
+def _named(words: list[Word], kind: type[Entry]) -> Mapping[str, Entry]:
+    chosen = {word.name: word for word in words if isinstance(word, kind)}
+    return MappingProxyType(dict(sorted(chosen.items())))
+
+
+def _own_words() -> Iterable[tuple[str, Word]]:
+    for folder in FOLDERS:
+        package = import_module(f"robbdd_tools.catalog.{folder}")
+        for info in pkgutil.iter_modules(package.__path__):
+            module = import_module(f"{package.__name__}.{info.name}")
+            for value in vars(module).values():
+                if isinstance(value, Predicate | Behaviour | ObjectModel | RobotModel):
+                    yield module.__name__, value
+
+
+def _foreign_words() -> Iterable[tuple[str, Word]]:
+    for entry in entry_points(group=GROUP):
+        yield entry.value, entry.load()
+
+
+def _by_prefix(models: Mapping[str, Model], local_name: str) -> Model | None:
+    name = local_name.lower()
+    matches = [
+        (len(prefix), model)
+        for model in models.values()
+        for prefix in model.prefixes
+        if name.startswith(prefix)
+    ]
+    return max(matches, key=lambda match: match[0])[1] if matches else None

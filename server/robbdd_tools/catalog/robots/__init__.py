@@ -1,0 +1,1 @@
+"""Robots, one per file."""

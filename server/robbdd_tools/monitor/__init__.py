@@ -1,0 +1,1 @@
+"""Traces, time windows, verdicts and robustness: numpy and the standard library, no simulator, no behave."""

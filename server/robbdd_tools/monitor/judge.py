@@ -1,0 +1,85 @@
+"""Judges a predicate under a time constraint on a trace: robustness is the smallest margin in the window."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.monitor.time import NoWindow, TimeConstraint, Window, window
+from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Arguments, FloatArray, Predicate, Region
+    from robbdd_tools.monitor.trace import Trace
+
+Regions = Mapping[str, Sequence[tuple[str, "Region"]]]
+"""Workspace → the regions that make it up, each with the object whose frame it is given in."""
+
+
+@dataclass(frozen=True)
+class WindowEvidence:
+    """The samples of one window, as ``catalog.api.Evidence`` wants them."""
+
+    trace: Trace
+    window: Window
+    workspaces: Regions
+
+    @property
+    def _rows(self) -> slice:
+        return slice(self.window.first, self.window.last + 1)
+
+    @property
+    def times(self) -> FloatArray:
+        """Sample times, s, shape (n,)."""
+        return self.trace.times[self._rows]
+
+    def position(self, name: str) -> FloatArray:
+        """Positions, m, world frame, shape (n, 3); raises ``KeyError``."""
+        return self.trace.positions[self._rows, self.trace.column(name)]
+
+    def orientation(self, name: str) -> FloatArray:
+        """Unit quaternions (w, x, y, z), shape (n, 4); raises ``KeyError``."""
+        return self.trace.orientations[self._rows, self.trace.column(name)]
+
+    def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
+        """Regions of a workspace; raises ``KeyError`` when the scene gives it none."""
+        return self.workspaces[workspace]
+
+    def gripped(self, agent: str, name: str) -> FloatArray:
+        """1.0 where ``agent`` grips ``name``, shape (n,); raises ``KeyError``."""
+        return self.trace.grips[agent][self._rows, self.trace.column(name)]
+
+
+def judge(
+    predicate: Predicate, arguments: Arguments, constraint: TimeConstraint, trace: Trace, regions: Regions
+) -> Verdict:
+    """Judge ``holds(predicate(arguments), constraint)``.
+
+    ρ = min over the window of the margin; *holds* when ρ ≥ 0, *violated* when ρ < 0, *unknown* when there is no
+    window, no evaluator or no record of an argument.
+    """
+    if predicate.evaluate is None:
+        return unknown(f"there is no evaluator for '{predicate.name}'")
+    selected = window(constraint, trace)
+    if isinstance(selected, NoWindow):
+        return unknown(selected.reason)
+    evidence = WindowEvidence(trace, selected, regions)
+    try:
+        margins = predicate.evaluate(evidence, arguments)
+    except KeyError as missing:
+        return unknown(f"the trace has no record of '{missing.args[0]}'")
+    return _verdict(margins, evidence.times, predicate.unit)
+
+
+def _verdict(margins: FloatArray, times: FloatArray, unit: str) -> Verdict:
+    if not np.all(np.isfinite(margins)):
+        return unknown("the margin is not a number at some sample")
+    worst = int(np.argmin(margins))
+    robustness = float(margins[worst])
+    if robustness >= 0:
+        return Verdict(Outcome.HOLDS, robustness, unit, float(times[worst]))
+    first = int(np.argmax(margins < 0))
+    return Verdict(Outcome.VIOLATED, robustness, unit, float(times[first]))

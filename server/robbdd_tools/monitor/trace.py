@@ -1,0 +1,86 @@
+"""Traces: stamped world states and events of one execution."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class EventStamp:
+    """An event's name (CURIE) and the simulated time (s) at which it occurred."""
+
+    name: str
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """World state at one instant: name → position (m, world frame), name → orientation (w, x, y, z)."""
+
+    time: float
+    positions: Mapping[str, tuple[float, float, float]]
+    orientations: Mapping[str, tuple[float, float, float, float]]
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """A finite sequence of samples and events.
+
+    ``names`` are the recorded bodies (objects by name, an agent's tool by the agent's name);
+    ``times`` (n,) s, increasing; ``positions`` (n, len(names), 3) m in the world frame; ``orientations``
+    (n, len(names), 4) unit quaternions (w, x, y, z); ``grips`` maps an agent to an (n, len(names)) array with 1
+    where its gripping faces hold that body. ``finished`` tells that nothing will be appended; ``remark`` is the
+    execution's own last word on what went wrong ("gripper lost env:cube1 at 3.42 s").
+    """
+
+    names: tuple[str, ...]
+    times: FloatArray
+    positions: FloatArray
+    orientations: FloatArray
+    grips: Mapping[str, FloatArray] = field(default_factory=dict[str, "FloatArray"])
+    events: tuple[EventStamp, ...] = ()
+    finished: bool = True
+    remark: str = ""
+
+    @property
+    def end(self) -> float:
+        """Time of the last sample, s; 0 without any."""
+        return float(self.times[-1]) if len(self.times) else 0.0
+
+    @cached_property
+    def _index(self) -> Mapping[str, int]:
+        return {name: index for index, name in enumerate(self.names)}
+
+    def column(self, name: str) -> int:
+        """Return the index of a body in ``names``; raises ``KeyError`` when the trace does not hold it."""
+        return self._index[name]
+
+    def event_time(self, name: str) -> float | None:
+        """Return when an event first occurred, or ``None``."""
+        return next((stamp.time for stamp in self.events if stamp.name == name), None)
+
+    def first_at_or_after(self, time: float) -> int:
+        """Return the index of the first sample in ``[time, ∞)``; ``len(times)`` when there is none."""
+        return int(np.searchsorted(self.times, time, side="left"))
+
+    def last_at_or_before(self, time: float) -> int:
+        """Return the index of the last sample in ``(-∞, time]``; -1 when there is none."""
+        return int(np.searchsorted(self.times, time, side="right")) - 1
+
+    def sample(self, index: int) -> Sample:
+        """Return one world state by itself."""
+        positions: list[list[float]] = self.positions[index].tolist()
+        orientations: list[list[float]] = self.orientations[index].tolist()
+        return Sample(
+            float(self.times[index]),
+            {name: (p[0], p[1], p[2]) for name, p in zip(self.names, positions, strict=True)},
+            {name: (q[0], q[1], q[2], q[3]) for name, q in zip(self.names, orientations, strict=True)},
+        )

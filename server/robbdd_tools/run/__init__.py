@@ -1,0 +1,1 @@
+"""Launching, cancelling and keeping runs; the agent process itself is never imported here."""

@@ -1,0 +1,188 @@
+"""What the parent and the agent process say to each other: a manifest in, one JSON object per line out.
+
+The only module that both sides share. Every message is a frozen dataclass; ``encode`` and ``decode`` are inverse.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+MANIFEST = "manifest.json"
+
+
+@dataclass(frozen=True, slots=True)
+class SceneSpec:
+    """What a scenario's world holds; all names are CURIEs as in the feature text.
+
+    ``workspaces`` maps a workspace to the objects that carry it; ``contains`` to the workspaces that lie within
+    (a bin's workspace within the table's).
+    """
+
+    objects: tuple[str, ...] = ()
+    agents: tuple[str, ...] = ()
+    workspaces: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    contains: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseSpec:
+    """One clause of one scenario: the feature line of its step, the IRI it judges, its place in the scenario."""
+
+    line: int
+    iri: str
+    name: str
+    role: str
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioSpec:
+    """One execution: a scenario of a feature, with its values and clauses in order.
+
+    ``events`` maps an event's CURIE to what emits it: ``scenario-start``, ``scenario-end`` or the name of an
+    event of the behaviour (``pick-start`` …); ``seed`` decides everything random in it.
+    """
+
+    feature: str
+    line: int
+    name: str
+    story: str
+    variant: str
+    variation: int
+    values: Mapping[str, Any]
+    seed: int
+    scene: SceneSpec
+    events: Mapping[str, str]
+    clauses: tuple[ClauseSpec, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """Everything the agent needs beside the feature files."""
+
+    model: str
+    seed: int
+    scenarios: tuple[ScenarioSpec, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunStarted:
+    """The agent is up; ``total`` scenarios follow."""
+
+    total: int
+    simulator: str
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioStarted:
+    """Scenario number ``index`` (from 0, in manifest order) begins."""
+
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseStarted:
+    """The clause on feature line ``line`` is waiting for its window to close."""
+
+    index: int
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseJudged:
+    """A clause has its verdict (``holds``, ``violated``, ``unknown``); see ``monitor.verdict.Verdict``."""
+
+    index: int
+    line: int
+    verdict: str
+    robustness: float | None
+    unit: str
+    at: float | None
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioFinished:
+    """All clauses of scenario ``index`` are judged; times in seconds (simulated, wall, wall inside mj_step)."""
+
+    index: int
+    simulated: float
+    wall: float
+    stepping: float
+
+
+@dataclass(frozen=True, slots=True)
+class LogLine:
+    """A line for the log: ``level`` is ``info``, ``warning`` or ``error``."""
+
+    level: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class RunFinished:
+    """The agent ends by itself; anything else at the end of the stream is a crash."""
+
+    ok: bool
+
+
+RunMessage = (
+    RunStarted | ScenarioStarted | ClauseStarted | ClauseJudged | ScenarioFinished | LogLine | RunFinished
+)
+_TYPES: dict[str, type[RunMessage]] = {
+    kind.__name__: kind
+    for kind in (
+        RunStarted,
+        ScenarioStarted,
+        ClauseStarted,
+        ClauseJudged,
+        ScenarioFinished,
+        LogLine,
+        RunFinished,
+    )
+}
+
+
+def encode(message: RunMessage) -> str:
+    """Return a message as one line of JSON, without the line end."""
+    return json.dumps({"type": type(message).__name__, **asdict(message)}, ensure_ascii=False)
+
+
+def decode(line: str) -> RunMessage:
+    """Return the message of a line; raises ``ValueError`` for anything that is not one."""
+    try:
+        fields = json.loads(line)
+        return _TYPES[fields.pop("type")](**fields)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"not a run message: {line[:200]!r}") from error
+
+
+def write_manifest(folder: Path, manifest: Manifest) -> None:
+    """Write the manifest into a run folder."""
+    text = json.dumps(asdict(manifest), indent=1, ensure_ascii=False)
+    (folder / MANIFEST).write_text(text + "\n", encoding="utf-8")
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """Read the manifest of a run folder; raises ``OSError`` or ``ValueError``."""
+    data = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    return Manifest(data["model"], data["seed"], tuple(_scenario(entry) for entry in data["scenarios"]))
+
+
+def _scenario(entry: dict[str, Any]) -> ScenarioSpec:
+    scene = entry.pop("scene")
+    clauses = entry.pop("clauses")
+    return ScenarioSpec(
+        scene=SceneSpec(
+            tuple(scene["objects"]),
+            tuple(scene["agents"]),
+            {name: tuple(objects) for name, objects in scene["workspaces"].items()},
+            {name: tuple(inner) for name, inner in scene["contains"].items()},
+        ),
+        clauses=tuple(ClauseSpec(**clause) for clause in clauses),
+        **entry,
+    )
