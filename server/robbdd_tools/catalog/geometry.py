@@ -46,4 +46,5 @@ def _signed_distance(outside: FloatArray) -> FloatArray:
     import numpy as np
 
     beyond = np.linalg.norm(np.maximum(outside, 0.0), axis=1)
-    return np.where(beyond > 0.0, -beyond, -outside.max(axis=1))
+    inside: FloatArray = -outside.max(axis=1)
+    return np.where(beyond > 0.0, -beyond, inside)

@@ -95,9 +95,6 @@ def _foreign_words() -> Iterable[tuple[str, Word]]:
 def _by_prefix(models: Mapping[str, Model], local_name: str) -> Model | None:
     name = local_name.lower()
     matches = [
-        (len(prefix), model)
-        for model in models.values()
-        for prefix in model.prefixes
-        if name.startswith(prefix)
+        (len(prefix), model) for model in models.values() for prefix in model.prefixes if name.startswith(prefix)
     ]
     return max(matches, key=lambda match: match[0])[1] if matches else None

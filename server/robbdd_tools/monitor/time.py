@@ -77,9 +77,7 @@ def _before(trace: Trace, event: str, horizon: float | None) -> Window | NoWindo
         return _missing(trace, event)
     last = trace.last_at_or_before(time + TOLERANCE)
     if horizon is None:
-        return (
-            Window(last, last) if last >= 0 else NoWindow(f"no sample was taken before event {event}", False)
-        )
+        return Window(last, last) if last >= 0 else NoWindow(f"no sample was taken before event {event}", False)
     if time - horizon < -TOLERANCE:
         return NoWindow(
             f"event {event} occurred at {time:.2f} s, less than {horizon:g} s after the execution began",

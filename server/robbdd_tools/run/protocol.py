@@ -19,13 +19,14 @@ class SceneSpec:
     """What a scenario's world holds; all names are CURIEs as in the feature text.
 
     ``workspaces`` maps a workspace to the objects that carry it; ``contains`` to the workspaces that lie within
-    (a bin's workspace within the table's).
+    (a bin's workspace within the table's); ``places`` an object to the workspace where the Given clauses want it.
     """
 
     objects: tuple[str, ...] = ()
     agents: tuple[str, ...] = ()
     workspaces: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     contains: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    places: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,9 +131,7 @@ class RunFinished:
     ok: bool
 
 
-RunMessage = (
-    RunStarted | ScenarioStarted | ClauseStarted | ClauseJudged | ScenarioFinished | LogLine | RunFinished
-)
+RunMessage = RunStarted | ScenarioStarted | ClauseStarted | ClauseJudged | ScenarioFinished | LogLine | RunFinished
 _TYPES: dict[str, type[RunMessage]] = {
     kind.__name__: kind
     for kind in (
@@ -182,6 +181,7 @@ def _scenario(entry: dict[str, Any]) -> ScenarioSpec:
             tuple(scene["agents"]),
             {name: tuple(objects) for name, objects in scene["workspaces"].items()},
             {name: tuple(inner) for name, inner in scene["contains"].items()},
+            dict(scene["places"]),
         ),
         clauses=tuple(ClauseSpec(**clause) for clause in clauses),
         **entry,
