@@ -1,0 +1,207 @@
+"""Acceptance criteria as plain data, read from a graph: what Gherkin and runs are made from.
+
+Nothing here knows RDF or source text; a model that was never written in RobBDD looks the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from robbdd_tools.monitor.time import TimeConstraint
+
+
+class Iri(str):
+    """An IRI, as opposed to a string that a user wrote."""
+
+    __slots__ = ()
+
+
+Value = Iri | str | int | float
+"""An element, a string or a number."""
+
+Cell = Value | tuple[Value, ...]
+"""What one variable gets in one scenario: a value, or a set of values in written order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fluent:
+    """A predicate under a time constraint, whose events are IRIs.
+
+    ``predicate`` is the catalog name; ``arguments`` maps its slots to a variable (or element) or a bare name.
+    """
+
+    iri: Iri
+    role: str
+    predicate: str
+    arguments: Mapping[str, Iri | str]
+    time: TimeConstraint
+
+
+@dataclass(frozen=True, slots=True)
+class TextFluent:
+    """A fluent whose predicate is a text with ``{name}`` placeholders."""
+
+    iri: Iri
+    role: str
+    template: str
+    arguments: Mapping[str, Iri]
+    time: TimeConstraint
+
+
+@dataclass(frozen=True, slots=True)
+class TextClause:
+    """Free text under a time constraint."""
+
+    iri: Iri
+    role: str
+    text: str
+    time: TimeConstraint
+
+
+@dataclass(frozen=True, slots=True)
+class Junction:
+    """``operator`` is ``and``, ``or`` or ``not``."""
+
+    iri: Iri
+    role: str
+    operator: str
+    operands: tuple[Clause, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EventClause:
+    """``When: event <e> occurs``."""
+
+    iri: Iri
+    event: Iri
+
+
+@dataclass(frozen=True, slots=True)
+class BehaviourClause:
+    """The behaviour in ``When``: ``behaviour`` is the catalog name, ``start``/``end`` the events of its duration."""
+
+    iri: Iri
+    behaviour: str
+    arguments: Mapping[str, Iri | str]
+    start: Iri
+    end: Iri
+
+
+@dataclass(frozen=True, slots=True)
+class ForAll:
+    """The body repeated for each element of a set (a set variable or a constant set)."""
+
+    iri: Iri
+    variable: Iri
+    in_set: Iri
+    clauses: tuple[Clause, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Exists:
+    """Some element of a set satisfies the clauses."""
+
+    iri: Iri
+    role: str
+    variable: Iri
+    in_set: Iri
+    clauses: tuple[Clause, ...]
+
+
+Clause = Fluent | TextFluent | TextClause | Junction | EventClause | BehaviourClause | ForAll | Exists
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """Sets chosen from a set: ``kind`` is ``combinations`` or ``permutations``."""
+
+    kind: str
+    source: tuple[Value, ...]
+    length: int
+    repeated: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """Cartesian product: one entry of ``choices`` per variable, the last varying fastest."""
+
+    variables: tuple[Iri, ...]
+    choices: tuple[tuple[Cell, ...] | Selection, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """One scenario per row; every row is as long as ``variables``."""
+
+    variables: tuple[Iri, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SceneModel:
+    """Members of a variant's scene in written order.
+
+    ``carriers`` maps a workspace to the objects that carry it, ``contains`` to the workspaces inside it.
+    """
+
+    objects: tuple[Iri, ...]
+    workspaces: tuple[Iri, ...]
+    agents: tuple[Iri, ...]
+    carriers: Mapping[Iri, tuple[Iri, ...]]
+    contains: Mapping[Iri, tuple[Iri, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """A scenario template: clauses in order; ``start`` and ``end`` delimit every execution."""
+
+    iri: Iri
+    clauses: tuple[Clause, ...]
+    start: Iri
+    end: Iri
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """A scenario variant: its template's clauses, then its own."""
+
+    iri: Iri
+    template: Template
+    clauses: tuple[Clause, ...]
+    scene: SceneModel
+    variation: Product | Table
+
+
+@dataclass(frozen=True, slots=True)
+class Story:
+    """A user story with its variants in written order."""
+
+    iri: Iri
+    role: str
+    feature: str
+    benefit: str
+    variants: tuple[Variant, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class AcceptanceModel:
+    """Everything a graph says about acceptance criteria.
+
+    ``kinds`` tells of every element its kind (``object``, ``workspace``, ``agent``); ``sets`` holds the constant
+    sets; ``prefixes`` maps prefix to namespace for writing CURIEs.
+    """
+
+    stories: tuple[Story, ...]
+    kinds: Mapping[Iri, str]
+    sets: Mapping[Iri, tuple[Value, ...]]
+    prefixes: Mapping[str, str]
+
+    def curie(self, iri: str) -> str:
+        """Shorten an IRI by the longest matching namespace; one that none matches is returned as it is."""
+        best = max(
+            ((namespace, prefix) for prefix, namespace in self.prefixes.items() if iri.startswith(namespace)),
+            key=lambda pair: len(pair[0]),
+            default=None,
+        )
+        return iri if best is None else f"{best[1]}:{iri[len(best[0]) :]}"

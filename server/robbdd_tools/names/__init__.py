@@ -1,0 +1,1 @@
+"""Symbols, scopes, imports and references across files; Project (mutable) and Snapshot (immutable)."""

@@ -1,0 +1,78 @@
+"""A declaration: what one chunk of text says, by itself (offsets count from the chunk's start)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.syntax.tree import DeclarationTree, Ref
+
+
+class SymbolKind(StrEnum):
+    """What a name stands for."""
+
+    NAMESPACE = "namespace"
+    EVENT = "event"
+    TASK = "task"
+    OBJECT = "object"
+    WORKSPACE = "workspace"
+    AGENT = "agent"
+    OBJECT_SET = "object set"
+    WORKSPACE_SET = "workspace set"
+    AGENT_SET = "agent set"
+    CONSTANT_SET = "constant set"
+    COMPOSITION = "composition"
+    SCENE = "scene"
+    TEMPLATE = "scenario template"
+    VARIABLE = "variable"
+    SET_VARIABLE = "set variable"
+    FLUENT = "fluent"
+    BEHAVIOUR = "behaviour"
+    STORY = "user story"
+    VARIANT = "scenario variant"
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A declared name.
+
+    ``path`` is the qualified name (``parts.bolt``), ``span`` that of the name itself, ``extent`` that of the whole
+    thing it names; ``namespace`` is the name given by the nearest enclosing ``(ns=…)``.
+    """
+
+    path: str
+    name: str
+    kind: SymbolKind
+    span: Span
+    extent: Span
+    namespace: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A use of a name. ``scopes`` are the enclosing declarations' paths, innermost first."""
+
+    ref: Ref
+    scopes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SyntaxFault:
+    """A place where the text does not follow the grammar, with what would have been accepted there."""
+
+    span: Span
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration:
+    """One chunk: its tree (``None`` when broken), names, references and faults; a function of its text only."""
+
+    text: str
+    tree: DeclarationTree | None
+    symbols: tuple[Symbol, ...]
+    references: tuple[Reference, ...]
+    faults: tuple[SyntaxFault, ...]
