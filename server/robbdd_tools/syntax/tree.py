@@ -398,15 +398,5 @@ class Story(Node):
 
 
 DeclarationTree = (
-    Import
-    | Namespace
-    | ElementSet
-    | SimilarSet
-    | Composition
-    | Scene
-    | Event
-    | Task
-    | ConstantSet
-    | Template
-    | Story
+    Import | Namespace | ElementSet | SimilarSet | Composition | Scene | Event | Task | ConstantSet | Template | Story
 )

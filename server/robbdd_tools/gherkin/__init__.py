@@ -1,0 +1,1 @@
+"""Graph to Gherkin: variations expanded, sentences from the catalog, text by Jinja templates."""

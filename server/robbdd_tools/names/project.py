@@ -1,0 +1,213 @@
+"""The set of open files: a mutable Project that hands out immutable Snapshots."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity, sort_key
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.base.files import Unreadable, read_text, uri_to_path
+from robbdd_tools.names.analysis import Definition, FileAnalysis, ImportLink, PlacedDeclaration
+from robbdd_tools.names.index import FileIndex, index_file, language_of
+from robbdd_tools.names.resolve import Scope, resolve
+
+Source = FileIndex | Unreadable
+
+
+@dataclass
+class Project:
+    """Open documents over files on disk; every change makes the next snapshot a new revision."""
+
+    revision: int = 0
+    _open: dict[str, FileIndex] = field(default_factory=dict[str, FileIndex])
+    _disk: dict[str, Source] = field(default_factory=dict[str, Source])
+    _analyses: dict[str, tuple[Scope, FileAnalysis]] = field(default_factory=dict[str, tuple[Scope, FileAnalysis]])
+
+    def open(self, uri: str, version: int, text: str) -> None:
+        """Set the text of a document that an editor holds (also on every change)."""
+        self._open[uri] = index_file(Document(uri, version, text))
+        self.revision += 1
+
+    def close(self, uri: str) -> None:
+        """Fall back to the file on disk."""
+        self._open.pop(uri, None)
+        self.refresh(uri)
+
+    def refresh(self, uri: str) -> None:
+        """Forget what was read of a file, because it may have changed on disk."""
+        self._disk.pop(uri, None)
+        self.revision += 1
+
+    def load(self, uri: str) -> Source:
+        """Return a file, from the editor where it is open there, else from disk; kept until ``refresh``."""
+        if uri in self._open:
+            return self._open[uri]
+        if uri not in self._disk:
+            self._disk[uri] = _read(uri)
+        return self._disk[uri]
+
+    def snapshot(self) -> Snapshot:
+        """Return the present state of all files and of everything that they import."""
+        sources: dict[str, Source] = {}
+        waiting = [*self._open, *self._disk]
+        while waiting:
+            uri = waiting.pop()
+            if uri not in sources:
+                sources[uri] = source = self.load(uri)
+                if isinstance(source, FileIndex):
+                    waiting += [imported.uri for imported in source.imports]
+        return Snapshot(self.revision, sources, self._analyses)
+
+
+def _read(uri: str) -> Source:
+    path = uri_to_path(uri)
+    if path is None:
+        return Unreadable("file-missing", f"'{uri}' is not open and is no file")
+    text = read_text(path)
+    return text if isinstance(text, Unreadable) else index_file(Document(uri, 0, text))
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """One revision of all files. Analyses are made when first asked for; asking never changes the answer."""
+
+    revision: int
+    sources: Mapping[str, Source]
+    _analyses: dict[str, tuple[Scope, FileAnalysis]]
+
+    @cached_property
+    def _scopes(self) -> dict[str, Scope]:
+        return {}
+
+    def file(self, uri: str) -> FileAnalysis | None:
+        """Return what is known of a file; ``None`` when it is not in the project or cannot be read."""
+        if not isinstance(self.sources.get(uri), FileIndex):
+            return None
+        scope = self.scope(uri)
+        kept = self._analyses.get(uri)
+        if kept is not None and kept[0] == scope:
+            return kept[1]
+        analysis = self._analyse(scope)
+        self._analyses[uri] = (scope, analysis)
+        return analysis
+
+    def unreadable(self, uri: str) -> Unreadable | None:
+        """Return why a file has no text, ``None`` when it has."""
+        source = self.sources.get(uri)
+        return source if isinstance(source, Unreadable) else None
+
+    def scope(self, uri: str) -> Scope:
+        """Return the files whose names a readable file can use, breadth first along its imports."""
+        if uri not in self._scopes:
+            self._scopes[uri] = self._reach(uri)
+        return self._scopes[uri]
+
+    def closure(self, uri: str) -> tuple[FileAnalysis, ...]:
+        """Return the analyses of a file and of all it imports, itself first, nearest imports first."""
+        found = (self.file(index.document.uri) for index in self.scope(uri).files)
+        return tuple(analysis for analysis in found if analysis is not None)
+
+    def importers(self, uri: str) -> tuple[str, ...]:
+        """Return the files that import a file, directly or not, in alphabetical order."""
+        readable = (name for name, source in self.sources.items() if isinstance(source, FileIndex) and name != uri)
+        return tuple(sorted(name for name in readable if self._reaches(name, uri)))
+
+    def _reaches(self, start: str, uri: str) -> bool:
+        scope = self.scope(start)
+        return uri in scope.unread or any(index.document.uri == uri for index in scope.files)
+
+    def _reach(self, uri: str) -> Scope:
+        order: list[FileIndex] = []
+        unread: list[str] = []
+        waiting, seen = [uri], {uri}
+        for current in waiting:
+            source = self.sources.get(current)
+            if isinstance(source, FileIndex):
+                order.append(source)
+                fresh = [link.uri for link in source.imports if link.uri not in seen]
+                waiting += dict.fromkeys(fresh)
+                seen.update(fresh)
+            else:
+                unread.append(current)
+        return Scope(tuple(order), tuple(unread))
+
+    def _analyse(self, scope: Scope) -> FileAnalysis:
+        index = scope.files[0]
+        diagnostics = [*_syntax(index), *_repeated(scope, index)]
+        placed: list[PlacedDeclaration] = []
+        for entry in index.declarations:
+            targets, problems = resolve(scope, entry)
+            placed.append(PlacedDeclaration(entry.declaration, entry.offset, targets))
+            diagnostics += problems
+        definitions = {path: scope.define(index, declared) for path, declared in index.declared.items()}
+        imports = tuple(
+            ImportLink(link.span, link.uri, self._import_problem(index, link.uri)) for link in index.imports
+        )
+        diagnostics += [
+            Diagnostic(index.document.uri, link.span, Severity.ERROR, "import", link.problem)
+            for link in imports
+            if link.problem is not None
+        ]
+        diagnostics += self._broken_imports(index, imports)
+        diagnostics.sort(key=sort_key)
+        return FileAnalysis(index.document, tuple(placed), imports, definitions, tuple(diagnostics))
+
+    def _import_problem(self, index: FileIndex, uri: str) -> str | None:
+        if uri == index.document.uri:
+            return "the file imports itself: remove this import"
+        if not language_of(uri):
+            return "only '.bdd' and '.scene' files can be imported here"
+        source = self.sources.get(uri)
+        return source.reason if isinstance(source, Unreadable) else None
+
+    def _broken_imports(self, index: FileIndex, imports: tuple[ImportLink, ...]) -> list[Diagnostic]:
+        """Report on each import line what is wrong in the files behind it, with their own places."""
+        found: list[Diagnostic] = []
+        for link in imports:
+            if link.problem is not None:
+                continue
+            faults = [fault for fault in self._faults_behind(link.uri) if fault.uri != index.document.uri]
+            if faults:
+                name = link.uri.rsplit("/", 1)[-1]
+                message = f"'{name}' has {_errors(len(faults))}, the first: {faults[0].message}"
+                found.append(
+                    Diagnostic(index.document.uri, link.span, Severity.ERROR, "broken-import", message, tuple(faults))
+                )
+        return found
+
+    def _faults_behind(self, uri: str) -> list[Related]:
+        """Syntax errors and unreadable imports of a file and all it imports."""
+        faults: list[Related] = []
+        for index in self.scope(uri).files:
+            faults += [Related(error.uri, error.span, error.message) for error in _syntax(index)]
+            for link in index.imports:
+                problem = self._import_problem(index, link.uri)
+                if problem is not None:
+                    faults.append(Related(index.document.uri, link.span, problem))
+        return faults
+
+
+def _errors(count: int) -> str:
+    return "an error" if count == 1 else f"{count} errors"
+
+
+def _syntax(index: FileIndex) -> list[Diagnostic]:
+    uri = index.document.uri
+    return [
+        Diagnostic(uri, fault.span.shifted(placed.offset), Severity.ERROR, "syntax", fault.message)
+        for placed in index.declarations
+        for fault in placed.declaration.faults
+    ]
+
+
+def _repeated(scope: Scope, index: FileIndex) -> list[Diagnostic]:
+    found: list[Diagnostic] = []
+    for declared in index.repeated:
+        first: Definition = scope.define(index, index.declared[declared.symbol.path])
+        span: Span = declared.symbol.span.shifted(declared.offset)
+        message = f"'{declared.symbol.path}' is already declared: give one of the two another name"
+        related = (Related(first.uri, first.span, "the first declaration"),)
+        found.append(Diagnostic(first.uri, span, Severity.ERROR, "duplicate-name", message, related))
+    return found

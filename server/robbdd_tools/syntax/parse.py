@@ -1,0 +1,82 @@
+"""Chunk text to ``Declaration``: the one place where a chunk is parsed, cached by its text."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from robbdd_tools.base.document import Span
+from robbdd_tools.syntax.convert import convert
+from robbdd_tools.syntax.declaration import Declaration, SyntaxFault
+from robbdd_tools.syntax.symbols import references, salvage, symbols
+from robbdd_tools.syntax.textx import Expectation, Rejected, parse_chunk
+
+CACHED_CHUNKS = 20_000
+LANGUAGES = ("bdd", "scene")
+
+_RULE_WORDS = {
+    "NameText": "a name",
+    "TextLiteral": "a string in quotes",
+    "NumberLiteral": "a number",
+    "TableRule": "the rule '|---|'",
+    "NamespacePath": "the name of a namespace",
+    "AnySetPath": "the name of a set",
+}
+_STARTS = frozenset({"import", "ns"})
+
+
+@lru_cache(maxsize=CACHED_CHUNKS)
+def parse_declaration(language: str, text: str) -> Declaration:
+    """Parse one chunk. User text never raises: a broken chunk comes back with its faults and salvaged names."""
+    parsed = parse_chunk(language, text)
+    if isinstance(parsed, Rejected):
+        return Declaration(text, None, salvage(text), (), (_rejected(text, parsed),))
+    root = convert(parsed.declaration, text)
+    faults = () if parsed.trailing is None else (_trailing(text, parsed.trailing),)
+    return Declaration(text, root, symbols(root), references(root), faults)
+
+
+def expected_words(expectation: Expectation) -> list[str]:
+    """Say what could stand at a place, in words: keywords in quotes first, then names, strings and numbers."""
+    literals = [f"'{literal}'" for literal in sorted(expectation.literals)]
+    rules = sorted({_RULE_WORDS.get(rule, _path_words(rule)) for rule in expectation.rules - {"TrailingText", "EOF"}})
+    return literals + rules
+
+
+def _path_words(rule: str) -> str:
+    words = "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in rule.removesuffix("Path"))
+    return f"the name of a{'n' if words.lstrip()[:1] in 'aeiou' else ''}{words}"
+
+
+def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
+    span = _token(text, rejected.offset)
+    found = text[span.start : span.end]
+    if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
+        return SyntaxFault(span, f"'{found}' does not begin a declaration")
+    words = expected_words(rejected.expected)
+    expected = " or ".join(words) if len(words) < 3 else ", ".join(words[:-1]) + " or " + words[-1]
+    if not found:
+        return SyntaxFault(_last_token(text), f"the declaration ends too early: expected {expected}")
+    return SyntaxFault(span, f"unexpected '{found}': expected {expected}")
+
+
+def _trailing(text: str, offset: int) -> SyntaxFault:
+    token = _token(text, offset)
+    return SyntaxFault(token, f"unexpected '{text[token.start : token.end]}' after the end of the declaration")
+
+
+def _token(text: str, offset: int) -> Span:
+    """Return the span of the word or sign at ``offset``."""
+    end = offset
+    while end < len(text) and (text[end].isalnum() or text[end] in "_-"):
+        end += 1
+    if end == offset and offset < len(text):
+        end = offset + 1
+    return Span(offset, end)
+
+
+def _last_token(text: str) -> Span:
+    end = len(text.rstrip())
+    start = end
+    while start > 0 and not text[start - 1].isspace():
+        start -= 1
+    return Span(start, end)

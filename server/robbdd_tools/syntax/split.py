@@ -1,0 +1,84 @@
+"""Splits a text into chunks, one per top-level declaration, without parsing it.
+
+A declaration starts where its opening words stand outside all braces, or at the beginning of a line wherever that
+line is: a missing closing brace then costs one declaration, not the rest of the file.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+_NAME = r"[^\W\d][\w\-]*"
+_SHARED_STARTERS = (r"import\s*[\"']", rf"ns\s+{_NAME}\s*=")
+_STARTERS = {
+    "scene": (
+        *_SHARED_STARTERS,
+        r"similar\s+(?:obj|ws|agn)\s+set\b",
+        r"(?:obj|ws|agn)\s+set\s*\(",
+        r"comp\s*\(",
+        r"scene\s*\(",
+    ),
+    "bdd": (
+        *_SHARED_STARTERS,
+        rf"(?:Event|Task)(?:\s*\(|\s+{_NAME})",
+        r"const\s+set\b",
+        r"Scenario\s+Template\b",
+        r"User\s+Story\b",
+    ),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """A piece of text from one declaration's first word up to the next declaration, at its offset."""
+
+    offset: int
+    text: str
+
+
+def split(language: str, text: str) -> tuple[Chunk, ...]:
+    """Return the chunks of a text in order; text before the first declaration that is not blank is one too."""
+    starts = list(_starts(language, text))
+    first = starts[0] if starts else len(text)
+    lead = len(text) - len(_LEAD.sub("", text, count=1))
+    if lead < first:
+        starts.insert(0, lead)
+    ends = [*starts[1:], len(text)]
+    return tuple(Chunk(start, text[start:end]) for start, end in zip(starts, ends, strict=True))
+
+
+_LEAD = re.compile(r"\A(?:\s|\ufeff|//[^\n]*)+")
+
+
+@cache
+def _scanner(language: str) -> re.Pattern[str]:
+    """Comments, strings, braces and starters; everything else is passed over."""
+    starters = "|".join(_STARTERS[language])
+    string = r"\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?"
+    return re.compile(rf"//[^\n]*|(?P<start>(?<![\w\-.<])(?:{starters}))|{string}|(?P<open>[{{(])|(?P<close>[}})])")
+
+
+def _starts(language: str, text: str) -> Iterator[int]:
+    depth = 0
+    position = 0
+    scan = _scanner(language).search
+    while match := scan(text, position):
+        position = match.end()
+        if match["open"]:
+            depth += 1
+        elif match["close"]:
+            depth = max(0, depth - 1)
+        elif match["start"]:
+            begin = match.start()
+            # The starter may have swallowed an opening sign or quote: look at it again.
+            position = begin + len(match["start"].rstrip("(\"'"))
+            if depth == 0 or _starts_line(text, begin):
+                depth = 0
+                yield begin
+
+
+def _starts_line(text: str, offset: int) -> bool:
+    return not text[text.rfind("\n", 0, offset) + 1 : offset].strip()
