@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.steps import Step, StepWriter
 from robbdd_tools.gherkin.variations import Binding, bindings
-from robbdd_tools.graph.model import AcceptanceModel, Cell, Iri, Story, Variant
+from robbdd_tools.graph.model import AcceptanceModel, Cell, Clause, Iri, Story, Variant
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -81,14 +82,23 @@ def feature_file_name(model: AcceptanceModel, story: Story) -> str:
 
 
 def _scenario(writer: StepWriter, variant: Variant, number: int, binding: Binding) -> ScenarioText:
-    values = dict(binding)
-    steps = (*writer.steps(variant.template.clauses, values), *writer.steps(variant.clauses, values))
+    steps = tuple(writer.steps(_in_order(variant), dict(binding)))
     name = f"{writer.model.curie(variant.iri)} -- {number}"
-    return ScenarioText(name, variant, number, binding, _tables(writer.model, variant, binding), _in_order(steps))
+    return ScenarioText(name, variant, number, binding, _tables(writer.model, variant, binding), steps)
 
 
-def _in_order(steps: tuple[Step, ...]) -> tuple[Step, ...]:
-    return steps
+def _in_order(variant: Variant) -> tuple[Clause, ...]:
+    """Template's before the variant's in each role: what is given, what happens, what then holds."""
+    own = [(getattr(clause, "role", "when"), clause) for clause in variant.clauses]
+    template = variant.template.clauses
+    given = tuple(takewhile(lambda clause: getattr(clause, "role", "") == "given", template))
+    return (
+        *given,
+        *(clause for role, clause in own if role == "given"),
+        *(clause for role, clause in own if role == "when"),
+        *template[len(given) :],
+        *(clause for role, clause in own if role == "then"),
+    )
 
 
 def _tables(model: AcceptanceModel, variant: Variant, binding: Binding) -> tuple[SceneTable, ...]:

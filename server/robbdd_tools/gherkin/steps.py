@@ -93,8 +93,8 @@ class StepWriter:
                 inner = {**values, clause.variable: some}
                 return " and ".join(self.sentence(part, inner) for part in clause.clauses)
             case ForAll():
-                inner = {**values, clause.variable: self._elements(clause.in_set, values)}
-                return " and ".join(self.sentence(part, inner) for part in clause.clauses)
+                each = ({**values, clause.variable: element} for element in self._elements(clause.in_set, values))
+                return " and ".join(self.sentence(part, inner) for inner in each for part in clause.clauses)
             case EventClause():
                 return f'event "{self.model.curie(clause.event)}" occurs'
 
@@ -133,11 +133,6 @@ class StepWriter:
         if isinstance(value, AnyOf):
             return value.elements
         return value if isinstance(value, tuple) else (value,)
-
-
-def values_of(binding: Binding) -> dict[Iri, Filler]:
-    """Return a scenario's binding as the fillers of its sentences."""
-    return dict(binding)
 
 
 def _within(horizon: float | None) -> str:
