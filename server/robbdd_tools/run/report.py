@@ -1,0 +1,55 @@
+"""Verdicts in words: the same phrases on the command line and in editors."""
+
+from __future__ import annotations
+
+import re
+
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.protocol import ClauseJudged, ScenarioSpec
+
+SIGNS = {Outcome.HOLDS: "✔", Outcome.VIOLATED: "✗", Outcome.UNKNOWN: "?"}
+MINUS = "−"
+
+
+def plain_sentence(sentence: str) -> str:
+    """Return a step's sentence for reading: names without prefix and quotes, ``event`` left out."""
+    without_event = sentence.replace('event "', '"')
+    return re.sub(r'"([^"]*)"', lambda match: re.sub(r"'?[\w.-]+:([^,'\]]*)'?", r"\1", match[1]), without_event)
+
+
+def margin(robustness: float | None, unit: str) -> str:
+    """Return a signed margin: metres as millimetres, other units as they are, nothing where there is no unit."""
+    if robustness is None or not unit:
+        return ""
+    value, shown = (robustness * 1000.0, "mm") if unit == "m" else (robustness, unit)
+    digits = f"{abs(value):.0f}" if abs(value) >= 10 else f"{abs(value):.1f}"
+    return f"{MINUS if value < 0 else '+'}{digits} {shown}"
+
+
+def verdict_words(judged: ClauseJudged) -> str:
+    """Return sign and margin of a judged clause; when and why where it does not hold."""
+    outcome = Outcome(judged.verdict)
+    parts = [SIGNS[outcome]]
+    shown = margin(judged.robustness, judged.unit)
+    if shown:
+        parts.append(shown)
+    if outcome is Outcome.VIOLATED and judged.at is not None:
+        parts.append(f"at {judged.at:.2f} s")
+    if outcome is Outcome.UNKNOWN:
+        parts.append("unknown")
+    return " ".join(parts) + (f": {judged.reason}" if judged.reason and outcome is not Outcome.HOLDS else "")
+
+
+def values_words(spec: ScenarioSpec) -> str:
+    """Return a scenario's values: ``thing = cube0, goal = left_ws``."""
+    return ", ".join(f"{_variable(name)} = {_local(value)}" for name, value in spec.values.items())
+
+
+def _variable(name: str) -> str:
+    return name.rsplit(":", 1)[-1].removeprefix("var-")
+
+
+def _local(value: object) -> str:
+    if isinstance(value, list):
+        return "{" + ", ".join(_local(entry) for entry in value) + "}"  # pyright: ignore[reportUnknownVariableType]
+    return value.rsplit(":", 1)[-1] if isinstance(value, str) else str(value)

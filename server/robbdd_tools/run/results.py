@@ -1,0 +1,107 @@
+"""Collects the messages of a run into its results, and writes them as the documented JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.protocol import ClauseJudged, ClauseSpec, Manifest, RunFinished, RunMessage, ScenarioSpec
+from robbdd_tools.run.protocol import ScenarioFinished as Finished
+
+
+@dataclass(slots=True)
+class ScenarioResult:
+    """Verdicts of one scenario so far, by feature line."""
+
+    spec: ScenarioSpec
+    judged: dict[int, ClauseJudged] = field(default_factory=dict[int, ClauseJudged])
+    finished: Finished | None = None
+
+    @property
+    def verdict(self) -> Outcome:
+        """Violated if any clause is, else unknown if any is, else holds."""
+        outcomes = {self.judged[c.line].verdict if c.line in self.judged else "unknown" for c in self.spec.clauses}
+        if Outcome.VIOLATED in outcomes:
+            return Outcome.VIOLATED
+        return Outcome.UNKNOWN if Outcome.UNKNOWN in outcomes or not outcomes else Outcome.HOLDS
+
+
+@dataclass(slots=True)
+class RunResults:
+    """Everything known of a run; ``apply`` takes the messages in the order in which they come."""
+
+    manifest: Manifest
+    scenarios: list[ScenarioResult] = field(init=False)
+    complete: bool = False
+
+    def __post_init__(self) -> None:
+        self.scenarios = [ScenarioResult(spec) for spec in self.manifest.scenarios]
+
+    def apply(self, message: RunMessage) -> None:
+        """Keep what a message tells."""
+        match message:
+            case ClauseJudged():
+                self.scenarios[message.index].judged[message.line] = message
+            case Finished():
+                self.scenarios[message.index].finished = message
+            case RunFinished():
+                self.complete = True
+            case _:
+                pass
+
+    def close(self, reason: str) -> list[ClauseJudged]:
+        """Judge every clause that is still open *unknown* for ``reason``; returns these judgements."""
+        closing = [
+            ClauseJudged(index, clause.line, Outcome.UNKNOWN, None, "", None, reason)
+            for index, scenario in enumerate(self.scenarios)
+            for clause in scenario.spec.clauses
+            if clause.line not in scenario.judged
+        ]
+        for message in closing:
+            self.apply(message)
+        return closing
+
+    def count(self, outcome: Outcome) -> int:
+        """Return how many scenarios have a verdict."""
+        return sum(scenario.verdict is outcome for scenario in self.scenarios)
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the document of ``docs/schemas/run.schema.json``; unfinished scenarios are left out."""
+        return {
+            "seed": self.manifest.seed,
+            "model": self.manifest.model,
+            "complete": self.complete,
+            "scenarios": list(self._scenarios()),
+        }
+
+    def _scenarios(self) -> Iterable[dict[str, Any]]:
+        for scenario in self.scenarios:
+            if scenario.finished is None and not self.complete:
+                continue
+            spec = scenario.spec
+            yield {
+                "story": spec.story,
+                "variant": spec.variant,
+                "variation": spec.variation,
+                "name": spec.name,
+                "values": dict(spec.values),
+                "seed": spec.seed,
+                "verdict": str(scenario.verdict),
+                "clauses": [_clause(clause, scenario.judged.get(clause.line)) for clause in spec.clauses],
+            }
+
+
+def _clause(clause: ClauseSpec, judged: ClauseJudged | None) -> dict[str, Any]:
+    return {
+        "iri": clause.iri,
+        "name": clause.name,
+        "role": clause.role,
+        "sentence": clause.sentence,
+        "verdict": "unknown" if judged is None else judged.verdict,
+        "robustness": None if judged is None else judged.robustness,
+        "unit": "" if judged is None else judged.unit,
+        "at": None if judged is None else judged.at,
+        "reason": "the clause was never judged" if judged is None else judged.reason,
+    }
