@@ -1,0 +1,218 @@
+// Finds, starts, watches and stops the language server.
+import { createInterface } from "node:readline";
+import type { Readable } from "node:stream";
+import * as vscode from "vscode";
+import {
+  CloseAction,
+  ErrorAction,
+  ExecuteCommandRequest,
+  LanguageClient,
+  State,
+  TransportKind,
+} from "vscode-languageclient/node";
+import { openFeatures } from "./features";
+import { type Lookup, findServer } from "./lookup";
+import type { ServerState } from "./presentation";
+import { RestartBudget } from "./restarts";
+import { isRunNotification } from "./runs/messages";
+import type { RunMonitor } from "./runs/monitor";
+import { surroundings } from "./surroundings";
+
+export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
+const FILES = "**/*.{bdd,scene,scenex,bddx,ktree}";
+const STOP_TIMEOUT = 3000;
+
+export class Server implements vscode.Disposable {
+  private client: LanguageClient | undefined;
+  private lookup: Lookup | undefined;
+  /** Starts and stops one after the other, however fast they are asked for. */
+  private pending: Promise<void> = Promise.resolve();
+  private readonly files = vscode.workspace.createFileSystemWatcher(FILES);
+
+  constructor(
+    private readonly log: vscode.LogOutputChannel,
+    private readonly runs: RunMonitor,
+    private readonly onState: (state: ServerState) => void,
+  ) {}
+
+  /** Stop the server if there is one, look for it again and start it. */
+  restart(): Promise<void> {
+    return this.enqueue(async () => {
+      await this.shutDown();
+      const lookup = findServer(await surroundings(this.log));
+      this.lookup = lookup;
+      if (lookup.found) {
+        await this.start(lookup.command, lookup.origin);
+      } else {
+        this.reportMissing(lookup);
+      }
+    });
+  }
+
+  /** Restart only if the search would end elsewhere than the last time. */
+  async restartIfMoved(): Promise<void> {
+    const lookup = findServer(await surroundings(this.log));
+    if (JSON.stringify(lookup) !== JSON.stringify(this.lookup)) {
+      await this.restart();
+    }
+  }
+
+  stop(): Promise<void> {
+    return this.enqueue(() => this.shutDown());
+  }
+
+  /** Run a command of the server; undefined, after a message, when there is no server or it refuses. */
+  async execute(command: string, argument: object): Promise<unknown> {
+    const client = this.client;
+    if (client?.state !== State.Running) {
+      void vscode.window.showWarningMessage("The RobBDD language server is not running.");
+      return undefined;
+    }
+    try {
+      return await client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [argument] });
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      this.log.error(`${command}: ${reason}`);
+      void vscode.window.showErrorMessage(`RobBDD: ${reason}`);
+      return undefined;
+    }
+  }
+
+  dispose(): void {
+    this.files.dispose();
+    void this.stop();
+  }
+
+  private enqueue(task: () => Promise<void>): Promise<void> {
+    this.pending = this.pending.then(task).catch((error: unknown) => {
+      this.log.error(error instanceof Error ? error : String(error));
+    });
+    return this.pending;
+  }
+
+  private async start(command: string, origin: string): Promise<void> {
+    this.log.info(`Starting ${command} (from ${origin})`);
+    const client = this.createClient(command);
+    this.client = client;
+    try {
+      await client.start();
+    } catch (error) {
+      // The reason is in the log already, written by the client or by the server on its way out.
+      this.log.debug(String(error));
+      this.fail(client, `The RobBDD language server (${command}) could not be started. See the log.`);
+    }
+  }
+
+  private createClient(command: string): LanguageClient {
+    const budget = new RestartBudget();
+    let answered = false;
+    const client = new LanguageClient(
+      "robbdd",
+      "RobBDD",
+      { command, transport: TransportKind.stdio },
+      {
+        documentSelector: LANGUAGES.map((language) => ({ scheme: "file", language })),
+        outputChannel: this.log,
+        synchronize: { fileEvents: this.files },
+        initializationFailedHandler: () => false,
+        errorHandler: {
+          // A broken pipe is followed by the close of the connection, which is where the decision is made.
+          error: () => ({ action: ErrorAction.Continue, handled: true }),
+          closed: () => {
+            this.runs.interrupt();
+            // A server that never answered will not do so the next time either.
+            const again = answered && budget.crashed(Date.now());
+            if (!again) {
+              this.fail(client, `The RobBDD language server (${command}) ended unexpectedly. See the log.`);
+            }
+            return { action: again ? CloseAction.Restart : CloseAction.DoNotRestart, handled: true };
+          },
+        },
+        middleware: {
+          executeCommand: async (name, argumentsOf, next) => {
+            const result: unknown = await next(name, argumentsOf);
+            if (name === "robbdd.gherkin") {
+              await openFeatures(result);
+            }
+            return result;
+          },
+        },
+        // Python's logging writes everything to stderr; that alone does not make a line an error.
+        stdioOptions: { stdout: forwardLines, stderr: forwardLines },
+      },
+    );
+    client.onNotification("robbdd/runMessage", (notification: unknown) => {
+      if (isRunNotification(notification)) {
+        this.runs.accept(notification);
+      } else {
+        this.log.warn(`Not a run message of this version: ${JSON.stringify(notification)}`);
+      }
+    });
+    client.onDidChangeState(({ newState }) => {
+      if (newState === State.Starting) {
+        this.publish({ kind: "starting" });
+      } else if (newState === State.Running) {
+        answered = true;
+        this.publish({ kind: "ready", command });
+      }
+    });
+    return client;
+  }
+
+  private async shutDown(): Promise<void> {
+    const client = this.client;
+    this.client = undefined;
+    if (client?.needsStop() === true) {
+      await client.dispose(STOP_TIMEOUT);
+    }
+    this.runs.interrupt();
+    this.publish({ kind: "stopped" });
+  }
+
+  private publish(state: ServerState): void {
+    void vscode.commands.executeCommand("setContext", "robbdd.serverReady", state.kind === "ready");
+    this.onState(state);
+  }
+
+  /** Say once, for the client in use, that it is gone. */
+  private fail(client: LanguageClient, problem: string): void {
+    if (this.client !== client) {
+      return;
+    }
+    this.client = undefined;
+    this.publish({ kind: "failed", problem });
+    this.complain(problem, {
+      "Show Log": () => {
+        this.log.show();
+      },
+      Restart: () => void this.restart(),
+    });
+  }
+
+  private reportMissing(lookup: Lookup & { found: false }): void {
+    this.log.error(lookup.problem);
+    for (const path of lookup.tried) {
+      this.log.info(`tried ${path}`);
+    }
+    this.publish({ kind: "failed", problem: lookup.problem });
+    this.complain(lookup.problem, {
+      "Open Setting": () => void vscode.commands.executeCommand("workbench.action.openSettings", "robbdd.server.path"),
+      "Try Again": () => void this.restart(),
+    });
+  }
+
+  /** Show a problem with buttons. Nobody waits for the answer: a restart would wait for itself. */
+  private complain(problem: string, buttons: Record<string, () => void>): void {
+    void vscode.window.showErrorMessage(problem, ...Object.keys(buttons)).then((choice) => {
+      if (choice !== undefined) {
+        buttons[choice]?.();
+      }
+    });
+  }
+}
+
+function forwardLines(input: Readable, channel: vscode.LogOutputChannel): void {
+  createInterface({ input }).on("line", (line) => {
+    channel.info(line);
+  });
+}

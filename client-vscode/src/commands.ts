@@ -1,0 +1,56 @@
+// The commands of the palette. Those of code lenses (robbdd.run, …) are the server's own.
+import * as vscode from "vscode";
+import type { Server } from "./client";
+import { openFeatures } from "./features";
+import type { RunMonitor } from "./runs/monitor";
+
+export function registerCommands(
+  server: Server,
+  runs: RunMonitor,
+  log: vscode.LogOutputChannel,
+): vscode.Disposable[] {
+  const handlers: Record<string, (target?: unknown) => unknown> = {
+    "robbdd.runFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri })),
+    "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
+    "robbdd.generateGherkin": (target) =>
+      withModel(target, async (uri) => {
+        const result = await server.execute("robbdd.gherkin", { uri });
+        if (result !== undefined) {
+          await openFeatures(result);
+        }
+      }),
+    "robbdd.restartServer": () => server.restart(),
+    "robbdd.showLog": () => {
+      log.show();
+    },
+    "robbdd.showRuns": () => {
+      runs.show();
+    },
+    "robbdd.statusActions": () => chooseAction(),
+  };
+  return Object.entries(handlers).map(([name, handler]) => vscode.commands.registerCommand(name, handler));
+}
+
+/** Apply a task to the model that a menu names, or to the one in the active editor. */
+async function withModel(target: unknown, task: (uri: string) => Promise<unknown>): Promise<void> {
+  const document = vscode.window.activeTextEditor?.document;
+  const active = document?.languageId === "robbdd" ? document.uri : undefined;
+  const uri = target instanceof vscode.Uri ? target : active;
+  if (uri === undefined) {
+    void vscode.window.showInformationMessage("Open a .bdd file first: its scenarios are what this command is about.");
+    return;
+  }
+  await task(uri.toString());
+}
+
+async function chooseAction(): Promise<void> {
+  const actions = [
+    { label: "$(output) Show Log", command: "robbdd.showLog" },
+    { label: "$(debug-restart) Restart Language Server", command: "robbdd.restartServer" },
+    { label: "$(gear) Open Setting robbdd.server.path", command: "workbench.action.openSettings" },
+  ];
+  const choice = await vscode.window.showQuickPick(actions, { placeHolder: "RobBDD language server" });
+  if (choice !== undefined) {
+    await vscode.commands.executeCommand(choice.command, "robbdd.server.path");
+  }
+}

@@ -1,0 +1,47 @@
+// Entry point: creates the parts and connects them.
+import * as vscode from "vscode";
+import { Server } from "./client";
+import { registerCommands } from "./commands";
+import { onInterpreterChange } from "./python";
+import { RunMonitor } from "./runs/monitor";
+import { StatusItem } from "./status";
+
+let server: Server | undefined;
+
+export async function activate(context: vscode.ExtensionContext): Promise<void> {
+  const log = vscode.window.createOutputChannel("RobBDD", { log: true });
+  const status = new StatusItem();
+  const runs = new RunMonitor((progress, summary) => {
+    status.showRuns(progress, summary);
+  });
+  const started = new Server(log, runs, (state) => {
+    status.showServer(state);
+  });
+  server = started;
+  context.subscriptions.push(
+    log,
+    status,
+    runs,
+    ...registerCommands(started, runs, log),
+    vscode.workspace.onDidChangeConfiguration((change) => {
+      if (change.affectsConfiguration("robbdd.server")) {
+        void started.restart();
+      }
+    }),
+    vscode.workspace.onDidGrantWorkspaceTrust(() => {
+      void started.restartIfMoved();
+    }),
+    vscode.workspace.onDidChangeWorkspaceFolders(() => {
+      void started.restartIfMoved();
+    }),
+  );
+  await started.restart();
+  const interpreter = await onInterpreterChange(() => void started.restartIfMoved(), log);
+  if (interpreter !== undefined) {
+    context.subscriptions.push(interpreter);
+  }
+}
+
+export function deactivate(): Promise<void> | undefined {
+  return server?.stop();
+}

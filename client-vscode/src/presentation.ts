@@ -1,0 +1,56 @@
+// What the status item shows; kept apart from the editor's interface so that it can be tested as a function.
+
+export type ServerState =
+  | { readonly kind: "starting" }
+  | { readonly kind: "ready"; readonly command: string }
+  | { readonly kind: "stopped" }
+  | { readonly kind: "failed"; readonly problem: string };
+
+export interface RunProgress {
+  readonly finished: number;
+  readonly total: number;
+}
+
+export interface Presentation {
+  readonly text: string;
+  readonly tooltip: string;
+  readonly severity: "normal" | "error";
+  /** The command of a click. */
+  readonly command: "robbdd.showLog" | "robbdd.showRuns" | "robbdd.statusActions";
+}
+
+/**
+ * Say in one item how the server is and what it does.
+ *
+ * `runs` are the runs under way; `summary` is the last finished one's, empty when there was none.
+ */
+export function present(server: ServerState, runs: readonly RunProgress[], summary: string): Presentation {
+  switch (server.kind) {
+    case "starting":
+      return item("$(sync~spin) RobBDD", "The RobBDD language server is starting.", "robbdd.showLog");
+    case "stopped":
+      return item("$(circle-slash) RobBDD", "The RobBDD language server is stopped.", "robbdd.statusActions");
+    case "failed":
+      return { ...item("$(error) RobBDD", server.problem, "robbdd.statusActions"), severity: "error" };
+    case "ready":
+      return runs.length > 0 ? running(runs) : idle(server.command, summary);
+  }
+}
+
+function running(runs: readonly RunProgress[]): Presentation {
+  const finished = runs.reduce((sum, run) => sum + run.finished, 0);
+  const total = runs.reduce((sum, run) => sum + run.total, 0);
+  const text = `$(loading~spin) RobBDD ${finished}/${total}`;
+  return item(text, `Running: ${finished} of ${total} scenarios have ended.`, "robbdd.showRuns");
+}
+
+function idle(command: string, summary: string): Presentation {
+  const server = `The RobBDD language server is ready (${command}).`;
+  return summary === ""
+    ? item("$(check) RobBDD", server, "robbdd.showLog")
+    : item("$(check) RobBDD", `Last run: ${summary}\n\n${server}`, "robbdd.showRuns");
+}
+
+function item(text: string, tooltip: string, command: Presentation["command"]): Presentation {
+  return { text, tooltip, severity: "normal", command };
+}

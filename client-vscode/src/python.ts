@@ -1,0 +1,48 @@
+// The one place that talks to the Python extension, which may be absent.
+import * as vscode from "vscode";
+
+const PYTHON_EXTENSION = "ms-python.python";
+
+/** The part of the Python extension's public interface that is used here. */
+interface PythonApi {
+  readonly environments: {
+    getActiveEnvironmentPath(resource?: vscode.Uri): { readonly path: string };
+    resolveEnvironment(path: { readonly path: string }): Promise<
+      { readonly executable: { readonly uri: vscode.Uri | undefined } } | undefined
+    >;
+    readonly onDidChangeActiveEnvironmentPath: vscode.Event<unknown>;
+  };
+}
+
+/** The interpreter selected for a workspace folder; undefined without the Python extension or a selection. */
+export async function selectedInterpreter(
+  folder: vscode.Uri | undefined,
+  log: vscode.LogOutputChannel,
+): Promise<string | undefined> {
+  const api = await pythonApi(log);
+  if (api === undefined) {
+    return undefined;
+  }
+  const environment = await api.environments.resolveEnvironment(api.environments.getActiveEnvironmentPath(folder));
+  return environment?.executable.uri?.fsPath;
+}
+
+/** Call `listener` whenever another interpreter is selected. */
+export async function onInterpreterChange(
+  listener: () => void,
+  log: vscode.LogOutputChannel,
+): Promise<vscode.Disposable | undefined> {
+  return (await pythonApi(log))?.environments.onDidChangeActiveEnvironmentPath(listener);
+}
+
+async function pythonApi(log: vscode.LogOutputChannel): Promise<PythonApi | undefined> {
+  const extension = vscode.extensions.getExtension<Partial<PythonApi> | undefined>(PYTHON_EXTENSION);
+  try {
+    const api = await extension?.activate();
+    return api?.environments === undefined ? undefined : { environments: api.environments };
+  } catch (error) {
+    // Somebody else's extension that fails must not keep ours from looking further.
+    log.warn(`The Python extension could not be asked for its environment: ${String(error)}`);
+    return undefined;
+  }
+}

@@ -1,0 +1,111 @@
+// What the server says about a run, as it arrives in the notification `robbdd/runMessage`.
+
+export interface RunStarted {
+  readonly type: "RunStarted";
+  readonly total: number;
+  readonly simulator: string;
+}
+
+export interface ScenarioStarted {
+  readonly type: "ScenarioStarted";
+  /** Number of the scenario, from 0. */
+  readonly index: number;
+}
+
+export interface ClauseStarted {
+  readonly type: "ClauseStarted";
+  readonly index: number;
+  /** Line of the clause in the feature file. */
+  readonly line: number;
+}
+
+export interface ClauseJudged {
+  readonly type: "ClauseJudged";
+  readonly index: number;
+  readonly line: number;
+  readonly verdict: "holds" | "violated" | "unknown";
+  /** Signed margin in `unit`, positive when the clause holds. */
+  readonly robustness: number | null;
+  readonly unit: string;
+  /** Simulated time of the deciding instant, s. */
+  readonly at: number | null;
+  readonly reason: string;
+}
+
+export interface ScenarioFinished {
+  readonly type: "ScenarioFinished";
+  readonly index: number;
+  /** Seconds of simulated time. */
+  readonly simulated: number;
+  /** Seconds on the clock. */
+  readonly wall: number;
+  /** Seconds on the clock that physics took. */
+  readonly stepping: number;
+}
+
+export interface LogLine {
+  readonly type: "LogLine";
+  readonly level: string;
+  readonly text: string;
+}
+
+export interface RunFinished {
+  readonly type: "RunFinished";
+  readonly ok: boolean;
+}
+
+export type RunMessage =
+  | RunStarted
+  | ScenarioStarted
+  | ClauseStarted
+  | ClauseJudged
+  | ScenarioFinished
+  | LogLine
+  | RunFinished;
+
+export interface RunNotification {
+  readonly uri: string;
+  readonly message: RunMessage;
+}
+
+type Check = (value: unknown) => boolean;
+
+const isNumber: Check = (value) => typeof value === "number";
+const isText: Check = (value) => typeof value === "string";
+const isNumberOrNull: Check = (value) => value === null || typeof value === "number";
+const isVerdict: Check = (value) => value === "holds" || value === "violated" || value === "unknown";
+
+const FIELDS: Record<RunMessage["type"], Record<string, Check>> = {
+  RunStarted: { total: isNumber, simulator: isText },
+  ScenarioStarted: { index: isNumber },
+  ClauseStarted: { index: isNumber, line: isNumber },
+  ClauseJudged: {
+    index: isNumber,
+    line: isNumber,
+    verdict: isVerdict,
+    robustness: isNumberOrNull,
+    unit: isText,
+    at: isNumberOrNull,
+    reason: isText,
+  },
+  ScenarioFinished: { index: isNumber, simulated: isNumber, wall: isNumber, stepping: isNumber },
+  LogLine: { level: isText, text: isText },
+  RunFinished: { ok: (value) => typeof value === "boolean" },
+};
+
+/** Whether a notification is one this extension understands; a server of another version may say something else. */
+export function isRunNotification(value: unknown): value is RunNotification {
+  return isRecord(value) && isText(value["uri"]) && isRunMessage(value["message"]);
+}
+
+function isRunMessage(value: unknown): value is RunMessage {
+  if (!isRecord(value) || typeof value["type"] !== "string" || !Object.hasOwn(FIELDS, value["type"])) {
+    return false;
+  }
+  const fields = FIELDS[value["type"] as RunMessage["type"]];
+  return Object.entries(fields).every(([name, check]) => check(value[name]));
+}
+
+function isRecord(value: unknown): value is Record<string, unknown> {
+  return typeof value === "object" && value !== null;
+}

@@ -1,0 +1,120 @@
+// One run as text: messages in, lines for the output channel and a summary out.
+import type { ClauseJudged, RunMessage } from "./messages";
+
+const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
+
+type Outcome = "passed" | "failed" | "undecided";
+
+/** How many scenarios have ended so far, and how. */
+export interface Tally {
+  readonly total: number;
+  readonly passed: number;
+  readonly failed: number;
+  /** Scenarios with a clause that could not be judged, none being violated. */
+  readonly undecided: number;
+}
+
+/** Follows one run from its first message to its last. */
+export class RunReport {
+  private total = 0;
+  private ended = false;
+  private readonly verdicts = new Map<number, ClauseJudged["verdict"][]>();
+  private readonly outcomes = new Map<number, Outcome>();
+
+  constructor(private readonly name: string) {}
+
+  /** Whether the run has said its last word. */
+  get finished(): boolean {
+    return this.ended;
+  }
+
+  get tally(): Tally {
+    const count = (wanted: Outcome) => [...this.outcomes.values()].filter((outcome) => outcome === wanted).length;
+    return { total: this.total, passed: count("passed"), failed: count("failed"), undecided: count("undecided") };
+  }
+
+  /** Take in a message and return the lines that it adds to the report. */
+  add(message: RunMessage): string[] {
+    switch (message.type) {
+      case "RunStarted":
+        this.total = message.total;
+        return [`▶ ${this.name}: ${scenarios(message.total)}, ${message.simulator}`];
+      case "ScenarioStarted":
+        this.verdicts.set(message.index, []);
+        return [`  Scenario ${message.index + 1} of ${this.total}`];
+      case "ClauseStarted":
+        return [];
+      case "ClauseJudged":
+        this.verdicts.get(message.index)?.push(message.verdict);
+        return [`    ${describeClause(message)}`];
+      case "ScenarioFinished":
+        return [this.finishScenario(message.index, message.simulated, message.wall)];
+      case "LogLine":
+        return message.text.split(/\r?\n/).map((line) => `    ${message.level}: ${line}`);
+      case "RunFinished":
+        this.ended = true;
+        return [message.ok ? `■ ${this.summary()}` : `■ The run ended early. ${this.summary()}`, ""];
+    }
+  }
+
+  /** End a run whose server went away; a run that has ended already adds nothing. */
+  interrupt(reason: string): string[] {
+    if (this.ended) {
+      return [];
+    }
+    this.ended = true;
+    return [`■ ${reason} ${this.summary()}`, ""];
+  }
+
+  /** One line for the status item. */
+  summary(): string {
+    const { total, passed, failed, undecided } = this.tally;
+    const open = total - passed - failed - undecided;
+    const parts = [`${passed} of ${scenarios(total)} passed`];
+    if (failed > 0) {
+      parts.push(`${failed} failed`);
+    }
+    if (undecided > 0) {
+      parts.push(`${undecided} undecided`);
+    }
+    if (open > 0) {
+      parts.push(`${open} not finished`);
+    }
+    return `${this.name}: ${parts.join(", ")}.`;
+  }
+
+  private finishScenario(index: number, simulated: number, wall: number): string {
+    const outcome = decide(this.verdicts.get(index) ?? []);
+    this.outcomes.set(index, outcome);
+    return `    ${outcome} after ${seconds(simulated)} simulated, ${seconds(wall)} on the clock`;
+  }
+}
+
+/** A scenario passes when every clause holds; without any clause there is no evidence for that. */
+function decide(verdicts: readonly ClauseJudged["verdict"][]): Outcome {
+  if (verdicts.includes("violated")) {
+    return "failed";
+  }
+  return verdicts.length === 0 || verdicts.includes("unknown") ? "undecided" : "passed";
+}
+
+function describeClause(clause: ClauseJudged): string {
+  const margin = clause.robustness === null ? "" : ` by ${quantity(clause.robustness, clause.unit)}`;
+  const instant = clause.at === null ? "" : ` at ${seconds(clause.at)}`;
+  const reason = clause.reason === "" ? "" : `: ${clause.reason}`;
+  return `${SIGNS[clause.verdict]} feature line ${clause.line} ${clause.verdict}${margin}${instant}${reason}`;
+}
+
+function quantity(value: number, unit: string): string {
+  const sign = value < 0 ? "−" : "+";
+  const digits = Math.abs(value).toPrecision(3);
+  return unit === "" ? sign + digits : `${sign}${digits} ${unit}`;
+}
+
+function seconds(value: number): string {
+  return `${value.toFixed(2)} s`;
+}
+
+function scenarios(count: number): string {
+  return count === 1 ? "1 scenario" : `${count} scenarios`;
+}

@@ -1,0 +1,195 @@
+// The TextMate grammars of the five file kinds. The build writes them as JSON.
+import { COMMON, NAME, QUALIFIED, declaration, grammar, labels, phrases } from "./building.mjs";
+
+const DECLARE = "storage.type.declaration";
+const SECTION = "keyword.control.section";
+const WORD = "keyword.other";
+const PROPERTY = "support.type.property-name";
+const PHRASE = "support.function";
+
+const NUMBER = String.raw`(?<![\p{L}\p{N}_.])([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)`;
+
+const string = (quote, kind) => ({
+  name: `string.quoted.${kind}.robbdd`,
+  begin: quote,
+  end: quote,
+  patterns: [{ match: String.raw`\\.`, name: "constant.character.escape.robbdd" }],
+});
+
+const common = grammar("RobBDD common ground", "source.robbdd.common", [
+  { match: "//.*$", name: "comment.line.double-slash.robbdd" },
+  string('"', "double"),
+  string("'", "single"),
+  {
+    match: String.raw`(<)\s*((?:${NAME}\.)*)(${NAME})\s*(>)`,
+    name: "meta.reference.robbdd",
+    captures: {
+      1: { name: "punctuation.definition.reference.begin.robbdd" },
+      2: { name: "variable.other.object.robbdd" },
+      3: { name: "variable.other.property.robbdd" },
+      4: { name: "punctuation.definition.reference.end.robbdd" },
+    },
+  },
+  declaration("keyword.other.namespace", "entity.name.namespace", "ns"),
+  {
+    match: String.raw`(\()\s*(ns)\s*(=)\s*(${NAME})\s*(\))`,
+    captures: {
+      1: { name: "punctuation.section.parens.begin.robbdd" },
+      2: { name: "keyword.other.namespace.robbdd" },
+      3: { name: "keyword.operator.assignment.robbdd" },
+      4: { name: "entity.name.namespace.robbdd" },
+      5: { name: "punctuation.section.parens.end.robbdd" },
+    },
+  },
+  phrases("keyword.control.import", "import"),
+  { match: String.raw`${NUMBER}(?![\p{L}\p{N}_])`, captures: { 1: { name: "constant.numeric.robbdd" } } },
+]);
+
+const scene = grammar("RobBDD Scene", "source.robbdd.scene", [
+  COMMON,
+  declaration(DECLARE, "entity.name.type.set", "similar obj set", "similar agn set", "obj set", "ws set", "agn set"),
+  declaration(DECLARE, "entity.name.type.scene", "scene"),
+  declaration(DECLARE, "entity.name.type.composition", "comp"),
+  declaration(DECLARE, "variable.other.constant", "object", "workspace", "agent"),
+  labels(PROPERTY, "base name", "count"),
+  // What stays of a declaration that is still being typed, and links to sets and compositions.
+  phrases(DECLARE, "similar", "obj set", "ws set", "agn set", "ws comp", "comp", "scene", "obj", "ws", "agn"),
+  phrases(DECLARE, "object", "workspace", "agent"),
+  phrases(WORD, "of"),
+]);
+
+const predicates = phrases(
+  `${PHRASE}.predicate`,
+  "is located at",
+  "is held by",
+  "are sorted into",
+  "can reach",
+  "does not drop",
+  "does not collide",
+);
+
+const bdd = grammar("RobBDD", "source.robbdd", [
+  COMMON,
+  declaration(DECLARE, "entity.name.type.template", "Scenario Template"),
+  declaration(DECLARE, "entity.name.type.story", "User Story"),
+  declaration(DECLARE, "entity.name.type.variant", "Scenario Variant", "Scenario"),
+  declaration(DECLARE, "entity.name.type.behaviour", "Behaviour"),
+  declaration(DECLARE, "variable.other.constant", "Event", "Task", "const set"),
+  labels(SECTION, "Given", "When", "Then", "Scenarios", "variation"),
+  labels(PROPERTY, "duration", "task", "template", "scene"),
+  {
+    match: String.raw`(?<![\p{L}\p{N}_-])((?:set\s+)?var)\s+(${QUALIFIED})`,
+    captures: { 1: { name: "storage.type.variable.robbdd" }, 2: { name: "variable.parameter.robbdd" } },
+  },
+  {
+    match: String.raw`(?<![\p{L}\p{N}_-])(${NAME})\s*(:)\s*(holds)(?![\p{L}\p{N}_-])`,
+    captures: {
+      1: { name: "entity.name.function.fluent.robbdd" },
+      2: { name: "punctuation.separator.label.robbdd" },
+      3: { name: "keyword.other.holds.robbdd" },
+    },
+  },
+  predicates,
+  {
+    match: String.raw`(?<![\p{L}\p{N}_-])(has\s+config)\s+(${NAME})`,
+    captures: { 1: { name: `${PHRASE}.predicate.robbdd` }, 2: { name: "variable.parameter.robbdd" } },
+  },
+  { match: String.raw`(?<![\p{L}\p{N}_-])pred(?=\s*\()`, name: `${PHRASE}.predicate.robbdd` },
+  { match: String.raw`(?<![\p{L}\p{N}_-])${NAME}(?=\s*=)`, name: "variable.parameter.robbdd" },
+  phrases(`${PHRASE}.behaviour`, "picks", "places", "and places at", "and places it at"),
+  phrases(`${PHRASE}.event`, "occurs"),
+  { match: String.raw`(?<=>)\s*(at)(?![\p{L}\p{N}_-])`, captures: { 1: { name: `${PHRASE}.behaviour.robbdd` } } },
+  phrases(`${WORD}.time`, "seconds", "before", "after", "from", "until"),
+  phrases("keyword.control.quantifier", "for all", "exists in", "such that", "in"),
+  phrases("keyword.operator.logical", "and", "or", "not"),
+  phrases(`${WORD}.story`, "As A", "As An", "I Want", "So That"),
+  phrases(
+    `${WORD}.variation`,
+    "select",
+    "combinations from",
+    "repeated combinations from",
+    "permutations from",
+    "can be",
+    "obj set",
+    "ws set",
+    "agn set",
+    "set",
+    "obj",
+    "ws",
+    "agn",
+  ),
+  // What stays of a declaration that is still being typed.
+  phrases(DECLARE, "Scenario Template", "User Story", "Scenario Variant", "Scenario", "Behaviour", "const set"),
+  phrases(DECLARE, "Event", "Task"),
+  phrases("keyword.other.event", "event"),
+  { match: String.raw`\|(?:\s*-{3,}\s*\|)*`, name: "punctuation.separator.table.robbdd" },
+]);
+
+// A unit is one only behind a number, a vector or `unit:`; elsewhere `m` may well be a name.
+const UNIT = String.raw`(kg\*m\^2|rad/s|N\*m|mm|cm|m|rad|deg|kg|g|Hz|seconds)(?![\p{L}\p{N}_-])`;
+const units = [
+  {
+    match: `${NUMBER}\\s*${UNIT}`,
+    captures: { 1: { name: "constant.numeric.robbdd" }, 2: { name: "keyword.other.unit.robbdd" } },
+  },
+  { match: String.raw`\)\s*${UNIT}`, captures: { 1: { name: "keyword.other.unit.robbdd" } } },
+  {
+    match: String.raw`(?<![\p{L}\p{N}_-])(unit)\s*(:)\s*${UNIT}`,
+    captures: {
+      1: { name: `${PROPERTY}.robbdd` },
+      2: { name: "punctuation.separator.label.robbdd" },
+      3: { name: "keyword.other.unit.robbdd" },
+    },
+  },
+];
+
+const scenex = grammar("RobBDD Scene Instance", "source.robbdd.scenex", [
+  ...units,
+  COMMON,
+  declaration(DECLARE, "entity.name.type.instance", "scene inst"),
+  declaration(DECLARE, "entity.name.type.tree", "ktree inst", "ktree", "kgraph"),
+  declaration(DECLARE, "entity.name.type.distribution", "distrib"),
+  declaration(DECLARE, "entity.name.function.model", "model"),
+  declaration(DECLARE, "variable.other.constant", "body", "frame", "pose", "fixed", "revolute", "camera"),
+  declaration(DECLARE, "variable.other.constant", "force-torque", "imu"),
+  labels(
+    PROPERTY,
+    ...["dimension", "lower", "upper", "mean", "covariance", "std-dev", "scene", "wrt", "xyz", "orientation", "xyzw"],
+    ...["angles", "axes", "x", "y", "z", "root", "tip", "anchor", "parent", "child", "axis", "limits"],
+    ...["offset", "polarity", "rate", "module", "attr", "frame", "mass", "position", "velocity", "effort"],
+  ),
+  { match: String.raw`(?<![\p{L}\p{N}_-])(?:sys\s+path|ros\s+pkg|path)(?=\s*=)`, name: `${PROPERTY}.robbdd` },
+  phrases(`${WORD}.distribution`, "uniform-rotation", "uniform", "normal", "sample"),
+  phrases("constant.language", "mjcf", "urdf", "usd", "extrinsic", "intrinsic"),
+  phrases(`${WORD}.rotation`, "quat", "euler", "direction-cosine"),
+  phrases(DECLARE, "scene inst", "ktree inst", "ktree", "kgraph", "distrib", "model", "body", "joints", "frame"),
+  phrases(DECLARE, "pose", "inertia", "fixed", "revolute", "serial", "parallel", "camera", "force-torque", "imu"),
+  phrases(WORD, "actuation", "mimic", "offset", "limits", "polarity", "parent", "child", "as", "of", "to", "py"),
+  phrases(WORD, "map body", "map tree", "catalog", "obj set", "agn set", "ws set", "obj", "agn", "ws"),
+]);
+
+const bddx = grammar("RobBDD Execution", "source.robbdd.bddx", [
+  ...units,
+  COMMON,
+  declaration(DECLARE, "entity.name.type.execution", "Scenario Exec"),
+  declaration(DECLARE, "entity.name.function.behaviour", "bhv impl"),
+  declaration(DECLARE, "entity.name.function.policy", "obs policy"),
+  declaration(DECLARE, "entity.name.function.provider", "obs provider"),
+  declaration(DECLARE, "entity.name.function.observation", "observation"),
+  labels(
+    PROPERTY,
+    ...["bhv action", "ros topic", "type", "update-rate", "provider", "horizon", "observations", "evaluator"],
+    ...["less-than", "greater-than", "equals", "tolerance", "between", "max time offset", "trinary topic"],
+    ...["variant", "scene inst", "bhv", "policies", "repeat", "seed", "timeout", "noise", "latency", "module", "attr"],
+  ),
+  {
+    match: String.raw`(?<![\p{L}\p{N}_-])((?:set\s+)?var)(?![\p{L}\p{N}_-])`,
+    captures: { 1: { name: "storage.type.variable.robbdd" } },
+  },
+  phrases(`${PHRASE}.evaluator`, "linear distance", "angular distance"),
+  phrases(`${PHRASE}.provider`, "ros simulation entity state", "simulation ground truth"),
+  phrases(WORD, "observes", "for", "and", "py", "catalog", "obj", "ws", "agn"),
+  phrases(DECLARE, "Scenario Exec", "bhv impl", "obs policy", "obs provider", "observation"),
+]);
+
+export const grammars = { common, scene, bdd, scenex, bddx };

@@ -1,0 +1,217 @@
+import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { test } from "node:test";
+import { OnigScanner, OnigString, loadWASM } from "vscode-oniguruma";
+import { INITIAL, Registry, type IRawGrammar } from "vscode-textmate";
+
+// The tests run from client-vscode/, bundled below out/.
+const SYNTAXES = join(process.cwd(), "out", "syntaxes");
+const CATALOG = join(process.cwd(), "..", "server", "robbdd_tools", "catalog");
+
+const FILES: Record<string, string> = {
+  "source.robbdd.common": "common",
+  "source.robbdd": "bdd",
+  "source.robbdd.scene": "scene",
+  "source.robbdd.scenex": "scenex",
+  "source.robbdd.bddx": "bddx",
+};
+
+const wasm = readFileSync(createRequire(join(process.cwd(), "x.js")).resolve("vscode-oniguruma/release/onig.wasm"));
+const registry = new Registry({
+  onigLib: loadWASM(wasm).then(() => ({
+    createOnigScanner: (patterns) => new OnigScanner(patterns),
+    createOnigString: (text) => new OnigString(text),
+  })),
+  loadGrammar: (scope) => {
+    const text = readFileSync(join(SYNTAXES, `${FILES[scope] ?? scope}.tmLanguage.json`), "utf8");
+    return Promise.resolve(JSON.parse(text) as IRawGrammar);
+  },
+});
+
+/** Tokens of a text as `text → innermost scope`, without white space and without tokens that have no scope. */
+async function tokens(scope: string, text: string): Promise<string[]> {
+  const grammar = await registry.loadGrammar(scope);
+  assert.ok(grammar);
+  let stack = INITIAL;
+  const found: string[] = [];
+  for (const line of text.split("\n")) {
+    const result = grammar.tokenizeLine(line, stack);
+    stack = result.ruleStack;
+    for (const token of result.tokens) {
+      const inner = token.scopes.at(-1);
+      const part = line.slice(token.startIndex, token.endIndex).trim();
+      if (part !== "" && inner !== undefined && inner !== scope) {
+        found.push(`${part} → ${inner.replace(/\.robbdd$/, "")}`);
+      }
+    }
+  }
+  return found;
+}
+
+/** Fails unless every expected `text → scope` is among the tokens. */
+async function expectTokens(scope: string, text: string, ...expected: string[]): Promise<void> {
+  const found = await tokens(scope, text);
+  for (const token of expected) {
+    assert.ok(found.includes(token), `missing "${token}" among\n  ${found.join("\n  ")}`);
+  }
+}
+
+test("a reference is split into its qualifier and its name", async () => {
+  assert.deepEqual(await tokens("source.robbdd", "<places.tray_ws>"), [
+    "< → punctuation.definition.reference.begin",
+    "places. → variable.other.object",
+    "tray_ws → variable.other.property",
+    "> → punctuation.definition.reference.end",
+  ]);
+});
+
+test("a keyword inside a name with hyphens is no keyword", async () => {
+  const found = await tokens("source.robbdd", "Event (ns=t) evt-before-all");
+  assert.deepEqual(found.at(-1), "evt-before-all → variable.other.constant");
+});
+
+test("a comment swallows keywords and quotes", async () => {
+  assert.deepEqual(await tokens("source.robbdd", `// Then: "it's`), [`// Then: "it's → comment.line.double-slash`]);
+});
+
+test("an escaped quote does not end its string", async () => {
+  const found = await tokens("source.robbdd", String.raw`pred("a \"{r}\" b", r=<robot>)`);
+  assert.ok(found.includes(String.raw`\" → constant.character.escape`));
+  assert.ok(found.includes("r → variable.parameter"));
+  assert.ok(found.includes("robot → variable.other.property"));
+});
+
+test("declarations of a .bdd file name what they declare", async () => {
+  await expectTokens(
+    "source.robbdd",
+    [
+      "ns t = 'https://example.org/t/'",
+      "Task  (ns=t) fetch-task",
+      "Scenario Template (ns=t) fetch {",
+      "    duration: from <evt-start> until <evt-end>",
+      "    set var goals",
+      "User Story (ns=t) fetching {",
+      "Scenario bench-to-tray {",
+      "Scenario Variant old-form {",
+    ].join("\n"),
+    "ns → keyword.other.namespace",
+    "Task → storage.type.declaration",
+    "fetch-task → variable.other.constant",
+    "fetch → entity.name.type.template",
+    "duration → support.type.property-name",
+    "from → keyword.other.time",
+    "until → keyword.other.time",
+    "set var → storage.type.variable",
+    "goals → variable.parameter",
+    "fetching → entity.name.type.story",
+    "bench-to-tray → entity.name.type.variant",
+    "old-form → entity.name.type.variant",
+  );
+});
+
+test("clauses show their section, fluent, quantifier and time constraint", async () => {
+  await expectTokens(
+    "source.robbdd",
+    [
+      "Given:",
+      "    at-bench: holds(<part> is located at <bench>, [0.5 seconds] before <evt-start>)",
+      "When: event <evt-start> occurs",
+      "    <robot> picks <part> and places at <bench>",
+      "for all ( var x in <goals> ) {",
+      "Then: ( not moved: holds(<robot> does not collide <x>, from <a> until <b>) or <c> )",
+    ].join("\n"),
+    "Given → keyword.control.section",
+    "at-bench → entity.name.function.fluent",
+    "holds → keyword.other.holds",
+    "is located at → support.function.predicate",
+    "0.5 → constant.numeric",
+    "seconds → keyword.other.time",
+    "occurs → support.function.event",
+    "and places at → support.function.behaviour",
+    "for all → keyword.control.quantifier",
+    "not → keyword.operator.logical",
+    "or → keyword.operator.logical",
+  );
+});
+
+test("variations show their sets, tables and selections", async () => {
+  await expectTokens(
+    "source.robbdd",
+    ["variation:", "    set var <t.goals>: select 2 combinations from <targets>", "|---|---|", "| obj set <parts> | -3 |"].join(
+      "\n",
+    ),
+    "variation → keyword.control.section",
+    "select → keyword.other.variation",
+    "2 → constant.numeric",
+    "|---|---| → punctuation.separator.table",
+    "obj set → keyword.other.variation",
+    "-3 → constant.numeric",
+  );
+});
+
+test("a scene shows its sets and their members", async () => {
+  await expectTokens(
+    "source.robbdd.scene",
+    "similar obj set (ns=env) washers { base name: washer  count: 3 }\nobj set (ns=env) parts { object bolt }\nscene (ns=env) s { obj set <parts> }",
+    "similar obj set → storage.type.declaration",
+    "washers → entity.name.type.set",
+    "base name → support.type.property-name",
+    "3 → constant.numeric",
+    "bolt → variable.other.constant",
+    "s → entity.name.type.scene",
+    "obj set → storage.type.declaration",
+  );
+});
+
+test("a unit is one behind a number or a vector only", async () => {
+  await expectTokens(
+    "source.robbdd.scenex",
+    "xyz: (0, 1, 2) mm  mass: 1.5 kg\nmodel m as mjcf { sys path = 'a.xml' }",
+    "mm → keyword.other.unit",
+    "kg → keyword.other.unit",
+    "m → entity.name.function.model",
+    "mjcf → constant.language",
+    "sys path → support.type.property-name",
+  );
+});
+
+test("an execution shows its policies and limits", async () => {
+  await expectTokens(
+    "source.robbdd.bddx",
+    "obs policy (ns=x) at-bench for <fetch.at-bench> horizon: 2.0 seconds {\n evaluator: linear distance { less-than: 0.05 m }\nScenario Exec (ns=x) run { variant: <s.v> }",
+    "at-bench → entity.name.function.policy",
+    "seconds → keyword.other.unit",
+    "linear distance → support.function.evaluator",
+    "less-than → support.type.property-name",
+    "run → entity.name.type.execution",
+    "variant → support.type.property-name",
+  );
+});
+
+/** Phrases such as `<object> is located at <workspace>` of one folder of the catalog. */
+function phrasesOf(kind: "predicates" | "behaviours"): string[] {
+  const folder = join(CATALOG, kind);
+  const files = readdirSync(folder).filter((name) => name.endsWith(".py") && name !== "__init__.py");
+  return files.map((name) => {
+    const phrase = /^\s*phrase="([^"]+)"/m.exec(readFileSync(join(folder, name), "utf8"))?.[1];
+    assert.ok(phrase !== undefined, `${kind}/${name} states no phrase`);
+    return phrase;
+  });
+}
+
+for (const kind of ["predicates", "behaviours"] as const) {
+  const scope = kind === "predicates" ? "support.function.predicate" : "support.function.behaviour";
+  for (const phrase of phrasesOf(kind)) {
+    test(`the words of "${phrase}" are coloured as one of the ${kind}`, async () => {
+      const text = phrase.replaceAll("$name", "speed");
+      const found = await tokens("source.robbdd", text);
+      // What is neither a reference nor a name nor `= …` are the words of the phrase.
+      const words = phrase.split(/<[^>]*>|\$\w+|=/).map((part) => part.trim());
+      for (const word of words.filter((part) => part !== "")) {
+        assert.ok(found.includes(`${word} → ${scope}`), `missing "${word}" among\n  ${found.join("\n  ")}`);
+      }
+    });
+  }
+}

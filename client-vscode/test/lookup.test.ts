@@ -1,0 +1,107 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { type Surroundings, findServer } from "../src/lookup";
+
+/** A Linux machine with one folder open, where exactly the given programs exist. */
+function machine(programs: readonly string[], changes: Partial<Surroundings> = {}): Surroundings {
+  return {
+    setting: "",
+    trusted: true,
+    folders: ["/work/cell"],
+    python: undefined,
+    searchPath: "/usr/local/bin:/usr/bin",
+    home: "/home/ada",
+    platform: "linux",
+    isExecutable: (path) => programs.includes(path),
+    ...changes,
+  };
+}
+
+const EVERYWHERE = [
+  "/opt/robbdd-lsp",
+  "/envs/robots/bin/robbdd-lsp",
+  "/work/cell/.venv/bin/robbdd-lsp",
+  "/usr/bin/robbdd-lsp",
+];
+
+/** The command found, or the problem. */
+function outcome(around: Surroundings): string {
+  const lookup = findServer(around);
+  return lookup.found ? lookup.command : lookup.problem;
+}
+
+test("the setting wins over everything", () => {
+  const around = machine(EVERYWHERE, { setting: "/opt/robbdd-lsp", python: "/envs/robots/bin/python" });
+  assert.equal(outcome(around), "/opt/robbdd-lsp");
+});
+
+test("a setting that names nothing is a problem, not a reason to start another server", () => {
+  assert.match(outcome(machine(EVERYWHERE, { setting: "/opt/gone" })), /"\/opt\/gone", which is not a program/);
+});
+
+test("a relative setting is refused", () => {
+  assert.match(outcome(machine(EVERYWHERE, { setting: "bin/robbdd-lsp" })), /not an absolute path/);
+});
+
+test("the setting understands the home folder and the workspace folder", () => {
+  const programs = ["/home/ada/bin/robbdd-lsp", "/work/cell/tools/robbdd-lsp"];
+  assert.equal(outcome(machine(programs, { setting: "~/bin/robbdd-lsp" })), programs[0]);
+  assert.equal(outcome(machine(programs, { setting: "${workspaceFolder}/tools/robbdd-lsp" })), programs[1]);
+});
+
+test("the selected Python environment comes before .venv", () => {
+  assert.equal(outcome(machine(EVERYWHERE, { python: "/envs/robots/bin/python" })), "/envs/robots/bin/robbdd-lsp");
+});
+
+test("a selected environment without the server is passed over", () => {
+  assert.equal(outcome(machine(EVERYWHERE, { python: "/usr/local/bin/python" })), "/work/cell/.venv/bin/robbdd-lsp");
+});
+
+test(".venv comes before PATH, in the order of the folders", () => {
+  const programs = ["/b/.venv/bin/robbdd-lsp", "/usr/bin/robbdd-lsp"];
+  assert.equal(outcome(machine(programs, { folders: ["/a", "/b"] })), "/b/.venv/bin/robbdd-lsp");
+});
+
+test("PATH is searched in its order", () => {
+  assert.equal(outcome(machine(["/usr/bin/robbdd-lsp", "/usr/local/bin/robbdd-lsp"])), "/usr/local/bin/robbdd-lsp");
+});
+
+test("a relative entry of PATH is never used", () => {
+  assert.match(outcome(machine(["./robbdd-lsp", "robbdd-lsp"], { searchPath: ".::bin" })), /was not found/);
+});
+
+test("an untrusted workspace brings no server of its own", () => {
+  const around = machine(["/work/cell/.venv/bin/robbdd-lsp", "/envs/robots/bin/robbdd-lsp"], {
+    trusted: false,
+    python: "/envs/robots/bin/python",
+    searchPath: "/work/cell/.venv/bin:/usr/bin",
+  });
+  assert.match(outcome(around), /was not found.*not trusted/);
+});
+
+test("an untrusted workspace still gets the server on PATH", () => {
+  assert.equal(outcome(machine(EVERYWHERE, { trusted: false })), "/usr/bin/robbdd-lsp");
+});
+
+test("a missing server says how to install it and where it was looked for", () => {
+  const lookup = findServer(machine([], { python: "/envs/robots/bin/python" }));
+  assert.ok(!lookup.found);
+  assert.match(lookup.problem, /pip install robbdd-tools/);
+  assert.deepEqual(lookup.tried, [
+    "/envs/robots/bin/robbdd-lsp",
+    "/work/cell/.venv/bin/robbdd-lsp",
+    "/usr/local/bin/robbdd-lsp",
+    "/usr/bin/robbdd-lsp",
+  ]);
+});
+
+test("on Windows the programs lie in Scripts and end in .exe", () => {
+  const windows = (python: string, program: string) =>
+    outcome(
+      machine([program], { platform: "win32", python, folders: ["C:\\cell"], searchPath: "", home: "C:\\Users\\ada" }),
+    );
+  const program = "C:\\env\\Scripts\\robbdd-lsp.exe";
+  assert.equal(windows("C:\\env\\Scripts\\python.exe", program), program);
+  assert.equal(windows("C:\\env\\python.exe", program), program);
+  assert.equal(windows("C:\\other\\python.exe", "C:\\cell\\.venv\\Scripts\\robbdd-lsp.exe"), "C:\\cell\\.venv\\Scripts\\robbdd-lsp.exe");
+});

@@ -1,0 +1,46 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { type ServerState, present } from "../src/presentation";
+import { RestartBudget } from "../src/restarts";
+
+const READY: ServerState = { kind: "ready", command: "/usr/bin/robbdd-lsp" };
+
+test("a ready server says where it comes from", () => {
+  const { text, tooltip, severity } = present(READY, [], "");
+  assert.deepEqual([text, severity], ["$(check) RobBDD", "normal"]);
+  assert.match(tooltip, /\/usr\/bin\/robbdd-lsp/);
+});
+
+test("runs at the same time are counted together", () => {
+  const runs = [
+    { finished: 3, total: 14 },
+    { finished: 1, total: 2 },
+  ];
+  assert.equal(present(READY, runs, "").text, "$(loading~spin) RobBDD 4/16");
+});
+
+test("after a run its summary is shown and a click leads to the runs", () => {
+  const { tooltip, command } = present(READY, [], "fetch.bdd: 2 of 2 scenarios passed.");
+  assert.match(tooltip, /^Last run: fetch\.bdd: 2 of 2 scenarios passed\./);
+  assert.equal(command, "robbdd.showRuns");
+});
+
+test("a failed server shows its problem and offers what to do", () => {
+  const { tooltip, severity, command } = present({ kind: "failed", problem: "It is not there." }, [], "");
+  assert.deepEqual([tooltip, severity, command], ["It is not there.", "error", "robbdd.statusActions"]);
+});
+
+test("a server that is starting is not ready", () => {
+  assert.match(present({ kind: "starting" }, [], "").text, /sync~spin/);
+});
+
+test("a server may crash three times in three minutes, but not four", () => {
+  const budget = new RestartBudget();
+  assert.deepEqual([0, 1000, 2000, 3000].map((time) => budget.crashed(time)), [true, true, true, false]);
+});
+
+test("crashes of long ago are forgotten", () => {
+  const budget = new RestartBudget();
+  const minute = 60_000;
+  assert.deepEqual([0, 1, 2, 3, 4, 5].map((index) => budget.crashed(2 * minute * index)), Array(6).fill(true));
+});

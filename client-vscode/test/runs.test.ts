@@ -1,0 +1,137 @@
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { type RunMessage, isRunNotification } from "../src/runs/messages";
+import { RunReport } from "../src/runs/report";
+
+const judged = (index: number, verdict: "holds" | "violated" | "unknown", more: object = {}): RunMessage => ({
+  type: "ClauseJudged",
+  index,
+  line: 7,
+  verdict,
+  robustness: null,
+  unit: "",
+  at: null,
+  reason: "",
+  ...more,
+});
+const started = (index: number): RunMessage => ({ type: "ScenarioStarted", index });
+const finished = (index: number): RunMessage => ({
+  type: "ScenarioFinished",
+  index,
+  simulated: 9,
+  wall: 0.51,
+  stepping: 0.3,
+});
+const runStarted = (total: number): RunMessage => ({ type: "RunStarted", total, simulator: "mujoco 4.0.0" });
+
+function report(...messages: RunMessage[]): { lines: string[]; run: RunReport } {
+  const run = new RunReport("cell/fetch.bdd");
+  return { lines: messages.flatMap((message) => run.add(message)), run };
+}
+
+test("a run reads from its start to its summary", () => {
+  const { lines } = report(
+    runStarted(2),
+    started(0),
+    { type: "ClauseStarted", index: 0, line: 7 },
+    judged(0, "holds", { robustness: 0.03123, unit: "m", at: 4.5 }),
+    finished(0),
+    started(1),
+    judged(1, "violated", { robustness: -0.004, unit: "m", at: 3.2, reason: "the bin was pushed" }),
+    finished(1),
+    { type: "RunFinished", ok: true },
+  );
+  assert.deepEqual(lines, [
+    "▶ cell/fetch.bdd: 2 scenarios, mujoco 4.0.0",
+    "  Scenario 1 of 2",
+    "    ✔ feature line 7 holds by +0.0312 m at 4.50 s",
+    "    passed after 9.00 s simulated, 0.51 s on the clock",
+    "  Scenario 2 of 2",
+    "    ✗ feature line 7 violated by −0.00400 m at 3.20 s: the bin was pushed",
+    "    failed after 9.00 s simulated, 0.51 s on the clock",
+    "■ cell/fetch.bdd: 1 of 2 scenarios passed, 1 failed.",
+    "",
+  ]);
+});
+
+test("a scenario with an unknown clause is undecided, not passed", () => {
+  const { run } = report(runStarted(1), started(0), judged(0, "holds"), judged(0, "unknown"), finished(0));
+  assert.deepEqual(run.tally, { total: 1, passed: 0, failed: 0, undecided: 1 });
+});
+
+test("a violated clause outweighs an unknown one", () => {
+  const { run } = report(runStarted(1), started(0), judged(0, "unknown"), judged(0, "violated"), finished(0));
+  assert.deepEqual(run.tally, { total: 1, passed: 0, failed: 1, undecided: 0 });
+});
+
+test("a scenario without a judged clause is undecided", () => {
+  const { run } = report(runStarted(1), started(0), finished(0));
+  assert.equal(run.tally.undecided, 1);
+});
+
+test("clauses of scenarios that run at the same time are kept apart", () => {
+  const { run } = report(
+    runStarted(2),
+    started(0),
+    started(1),
+    judged(1, "violated"),
+    judged(0, "holds"),
+    finished(1),
+    finished(0),
+  );
+  assert.deepEqual(run.tally, { total: 2, passed: 1, failed: 1, undecided: 0 });
+});
+
+test("a run that ends early says so and counts what is open", () => {
+  const { lines, run } = report(runStarted(3), started(0), { type: "RunFinished", ok: false });
+  assert.ok(lines.includes("■ The run ended early. cell/fetch.bdd: 0 of 3 scenarios passed, 3 not finished."));
+  assert.ok(run.finished);
+});
+
+test("an interrupted run is finished, and only once", () => {
+  const { run } = report(runStarted(1));
+  assert.equal(run.interrupt("The language server stopped.").length, 2);
+  assert.deepEqual(run.interrupt("The language server stopped."), []);
+});
+
+test("a log text of several lines keeps its indentation on each", () => {
+  const { lines } = report({ type: "LogLine", level: "warning", text: "slow\ncontact" });
+  assert.deepEqual(lines, ["    warning: slow", "    warning: contact"]);
+});
+
+test("a notification of another shape is not taken for a run message", () => {
+  const uri = "file:///cell/fetch.bdd";
+  assert.ok(isRunNotification({ uri, message: started(0) }));
+  assert.ok(isRunNotification({ uri, message: { ...judged(0, "holds"), newer: "field" } }));
+  for (const wrong of [
+    undefined,
+    { uri },
+    { message: started(0) },
+    { uri, message: { type: "toString" } },
+    { uri, message: { type: "ScenarioStarted", index: "0" } },
+    { uri, message: { ...judged(0, "holds"), verdict: "perhaps" } },
+  ]) {
+    assert.ok(!isRunNotification(wrong), JSON.stringify(wrong));
+  }
+});
+
+test("the messages have the fields of the server's protocol", () => {
+  const protocol = readFileSync(join(process.cwd(), "..", "server", "robbdd_tools", "run", "protocol.py"), "utf8");
+  const samples: RunMessage[] = [
+    runStarted(1),
+    started(0),
+    { type: "ClauseStarted", index: 0, line: 1 },
+    judged(0, "holds"),
+    finished(0),
+    { type: "LogLine", level: "info", text: "" },
+    { type: "RunFinished", ok: true },
+  ];
+  for (const { type, ...fields } of samples) {
+    const body = new RegExp(String.raw`^class ${type}:\n((?: {4}.*\n|\n)+)`, "m").exec(protocol)?.[1];
+    assert.ok(body !== undefined, `${type} is not in the protocol`);
+    const declared = [...body.matchAll(/^ {4}(\w+): /gm)].map((match) => match[1]);
+    assert.deepEqual(Object.keys(fields).sort(), declared.sort(), type);
+  }
+});
