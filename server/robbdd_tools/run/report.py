@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import cast
 
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.protocol import ClauseJudged, ScenarioSpec
@@ -51,5 +52,5 @@ def _variable(name: str) -> str:
 
 def _local(value: object) -> str:
     if isinstance(value, list):
-        return "{" + ", ".join(_local(entry) for entry in value) + "}"  # pyright: ignore[reportUnknownVariableType]
+        return "{" + ", ".join(_local(entry) for entry in cast(list[object], value)) + "}"
     return value.rsplit(":", 1)[-1] if isinstance(value, str) else str(value)

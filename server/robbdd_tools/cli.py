@@ -1,0 +1,92 @@
+"""The command line: ``robbdd check | graph | gherkin | run``.
+
+Exit codes: 0 all well; 1 errors found (check) or a clause violated or unknown (run); 2 the command could not do its
+work; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from robbdd_tools import __version__
+
+OK, FINDINGS, FAILED, INTERRUPTED = 0, 1, 2, 130
+FORMATS = ("ttl", "json-ld", "nt", "xml")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code; a broken pipe and Ctrl-C end it quietly."""
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(encoding="utf-8", errors="replace")
+    options = _parser().parse_args(arguments)
+    command: Callable[[argparse.Namespace], int] = options.command
+    try:
+        return command(options)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        sys.stderr.close()
+        return FAILED
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser("robbdd", description="Acceptance tests of robots, from models to verdicts.")
+    parser.add_argument("--version", action="version", version=f"robbdd {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    check = commands.add_parser("check", help="report what is wrong in models")
+    check.add_argument("paths", nargs="+", metavar="FILE|DIR", type=Path)
+    check.add_argument("--json", action="store_true", help="one JSON object per diagnostic and line")
+    check.set_defaults(command=_check)
+
+    graph = commands.add_parser("graph", help="print the knowledge graph of a model and its imports")
+    graph.add_argument("path", metavar="FILE", type=Path)
+    graph.add_argument("--format", choices=FORMATS, default="ttl")
+    graph.set_defaults(command=_graph)
+
+    gherkin = commands.add_parser("gherkin", help="write one feature file per user story")
+    gherkin.add_argument("path", metavar="FILE", type=Path)
+    gherkin.add_argument("-o", "--output", metavar="DIR", type=Path, required=True)
+    gherkin.set_defaults(command=_gherkin)
+
+    run = commands.add_parser("run", help="execute the scenarios of a model in simulation and judge every clause")
+    run.add_argument("path", metavar="FILE", type=Path)
+    run.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario variant; may be repeated")
+    run.add_argument("--seed", type=int, default=None, help="decides everything random (default: 1)")
+    run.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
+    run.add_argument("-o", "--output", metavar="DIR", type=Path, help="keep features, manifest and log here")
+    run.set_defaults(command=_run)
+    return parser
+
+
+def _check(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.check import check
+
+    return check(options.paths, as_json=options.json)
+
+
+def _graph(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.export import print_graph
+
+    return print_graph(options.path, options.format)
+
+
+def _gherkin(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.export import write_gherkin
+
+    return write_gherkin(options.path, options.output)
+
+
+def _run(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.run import run
+
+    return run(options.path, options.seed, options.scenario, options.json, options.output)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

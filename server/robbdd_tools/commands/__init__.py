@@ -1,0 +1,1 @@
+"""The command line's commands, one file each: all that prints is here. Same layer as ``cli``."""

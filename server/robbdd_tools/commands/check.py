@@ -1,0 +1,48 @@
+"""``robbdd check``: every finding about models and what they import."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.cli import FAILED, FINDINGS, OK
+from robbdd_tools.commands.models import diagnostic_json, load, model_files, print_diagnostic
+from robbdd_tools.features.diagnostics import all_diagnostics
+from robbdd_tools.names.index import language_of
+
+
+def check(paths: Sequence[Path], as_json: bool) -> int:
+    """Print the findings about files and folders; returns the exit code."""
+    files = model_files(paths)
+    if not files:
+        print(f"robbdd: there is no .bdd or .scene file in {', '.join(map(str, paths))}", file=sys.stderr)
+        return FAILED
+    strangers = [path for path in files if path.exists() and not path.is_dir() and not language_of(path.name)]
+    if strangers:
+        print(f"robbdd: {strangers[0]} is not a model: its name must end in .bdd or .scene", file=sys.stderr)
+        return FAILED
+    snapshot, uris = load(files)
+    found: dict[Diagnostic, None] = {}
+    for uri in uris:
+        found |= dict.fromkeys(all_diagnostics(snapshot, uri))
+    for diagnostic in found:
+        if as_json:
+            print(diagnostic_json(snapshot, diagnostic))
+        else:
+            print_diagnostic(snapshot, diagnostic, sys.stdout)
+    errors = sum(diagnostic.severity is Severity.ERROR for diagnostic in found)
+    if not as_json:
+        print(_summary(len(files), errors, len(found) - errors))
+    if any(snapshot.unreadable(uri) for uri in uris):
+        return FAILED
+    return FINDINGS if errors else OK
+
+
+def _summary(files: int, errors: int, others: int) -> str:
+    return f"{_counted(files, 'file')}: {_counted(errors, 'error')}, {_counted(others, 'other remark')}"
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -1,0 +1,103 @@
+"""Loads the models that a command names, and prints what is wrong with them."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, TextIO
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.features.diagnostics import all_diagnostics
+from robbdd_tools.names.index import FileIndex
+from robbdd_tools.names.project import Project, Snapshot
+from robbdd_tools.syntax.parse import LANGUAGES
+
+
+def load(paths: Iterable[Path]) -> tuple[Snapshot, list[str]]:
+    """Load files into a fresh project; returns its snapshot and the URIs of the files."""
+    project = Project()
+    uris = [path_to_uri(path) for path in paths]
+    for uri in uris:
+        project.load(uri)
+    return project.snapshot(), uris
+
+
+def model_files(paths: Iterable[Path]) -> list[Path]:
+    """Replace each folder by the model files below it, in alphabetical order."""
+    files: dict[Path, None] = {}
+    for path in paths:
+        if path.is_dir():
+            found = sorted(file for file in path.rglob("*") if file.suffix[1:] in LANGUAGES and file.is_file())
+            files |= dict.fromkeys(found)
+        else:
+            files.setdefault(path)
+    return list(files)
+
+
+def sound_model(path: Path) -> Snapshot | None:
+    """Load one model for a command that needs it whole; prints its errors and returns ``None`` if it has any."""
+    snapshot, (uri,) = load([path])
+    errors = [found for found in all_diagnostics(snapshot, uri) if found.severity is Severity.ERROR]
+    for error in errors:
+        print_diagnostic(snapshot, error, sys.stderr)
+    return None if errors else snapshot
+
+
+def print_diagnostic(snapshot: Snapshot, diagnostic: Diagnostic, stream: TextIO) -> None:
+    """Print a diagnostic as ``file:line:column: severity: message [code]`` with its related places below."""
+    severity = diagnostic.severity.name.lower()
+    place = _place(snapshot, diagnostic.uri, diagnostic.span)
+    print(f"{place}: {severity}: {diagnostic.message} [{diagnostic.code}]", file=stream)
+    for related in diagnostic.related:
+        print(f"    {_place(snapshot, related.uri, related.span)}: {related.message}", file=stream)
+
+
+def diagnostic_json(snapshot: Snapshot, diagnostic: Diagnostic) -> str:
+    """Return a diagnostic as one line of the documented JSON."""
+    related = [
+        {"file": _shown(place.uri), "range": _range(snapshot, place.uri, place.span), "message": place.message}
+        for place in diagnostic.related
+    ]
+    document = {
+        "file": _shown(diagnostic.uri),
+        "range": _range(snapshot, diagnostic.uri, diagnostic.span),
+        "severity": diagnostic.severity.name.lower(),
+        "code": diagnostic.code,
+        "message": diagnostic.message,
+        "related": related,
+    }
+    return json.dumps(document, ensure_ascii=False)
+
+
+def _document(snapshot: Snapshot, uri: str) -> Document:
+    source = snapshot.sources.get(uri)
+    return source.document if isinstance(source, FileIndex) else Document(uri, 0, "")
+
+
+def _range(snapshot: Snapshot, uri: str, span: Span) -> dict[str, Any]:
+    document = _document(snapshot, uri)
+    start, end = document.position(span.start), document.position(span.end)
+    return {
+        "start": {"line": start.line + 1, "column": start.column + 1},
+        "end": {"line": end.line + 1, "column": end.column + 1},
+    }
+
+
+def _place(snapshot: Snapshot, uri: str, span: Span) -> str:
+    start = _document(snapshot, uri).position(span.start)
+    return f"{_shown(uri)}:{start.line + 1}:{start.column + 1}"
+
+
+def _shown(uri: str) -> str:
+    """Return a path relative to the working folder where it lies below it."""
+    path = uri_to_path(uri)
+    if path is None:
+        return uri
+    try:
+        return str(path.relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)

@@ -1,0 +1,105 @@
+"""The terminal's view of a run: a progress bar, the verdicts as they come, the summary."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.protocol import ClauseJudged, LogLine, RunMessage, RunStarted, ScenarioFinished
+from robbdd_tools.run.report import SIGNS, margin, plain_sentence, values_words
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from robbdd_tools.run.results import RunResults, ScenarioResult
+
+STYLES = {Outcome.HOLDS: "green", Outcome.VIOLATED: "bold red", Outcome.UNKNOWN: "yellow"}
+
+
+class Display:
+    """Prints a run. The bar is drawn on a terminal only; elsewhere each scenario is a few plain lines."""
+
+    def __init__(self, results: RunResults) -> None:
+        self._results = results
+        self._console = Console(highlight=False, soft_wrap=True)
+        self._progress = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            console=self._console,
+            transient=True,
+            disable=not self._console.is_terminal,
+        )
+        self._task = self._progress.add_task("starting", total=len(results.scenarios))
+
+    def __enter__(self) -> Display:
+        self._progress.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None):
+        self._progress.stop()
+
+    def show(self, message: RunMessage) -> None:
+        """Show what a message means to a reader, after the results have taken it."""
+        match message:
+            case RunStarted():
+                self._progress.update(self._task, description="running")
+            case ScenarioFinished():
+                self._scenario(self._results.scenarios[message.index])
+                self._progress.advance(self._task)
+            case LogLine(level, text) if level != "info":
+                self._console.print(Text(f"{level}: {text}", STYLES[Outcome.UNKNOWN]))
+            case _:
+                pass
+
+    def broken(self, reason: str) -> None:
+        """Say why the run did not come to its end, and show the scenarios that it left open."""
+        self._progress.stop()
+        self._console.print(Text(f"the run is incomplete: {reason}", STYLES[Outcome.VIOLATED]))
+
+    def summary(self) -> None:
+        """Print how many scenarios have which verdict."""
+        self._progress.stop()
+        finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
+        counts = [f"{self._results.count(outcome)} {_word(outcome)}" for outcome in Outcome]
+        simulated = sum(scenario.finished.simulated for scenario in finished if scenario.finished)
+        wall = sum(scenario.finished.wall for scenario in finished if scenario.finished)
+        total = len(self._results.scenarios)
+        self._console.print(
+            f"{total} scenario{'' if total == 1 else 's'}: {', '.join(counts)}"
+            f"  (seed {self._results.manifest.seed}; {simulated:.1f} s simulated in {wall:.1f} s)"
+        )
+
+    def _scenario(self, scenario: ScenarioResult) -> None:
+        spec = scenario.spec
+        outcome = scenario.verdict
+        self._console.print(Text(f"{spec.name}  {values_words(spec)}", STYLES[outcome]))
+        table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 1))
+        table.add_column(no_wrap=True)
+        table.add_column(overflow="fold")
+        table.add_column(justify="right", no_wrap=True)
+        for clause in spec.clauses:
+            judged = scenario.judged.get(clause.line)
+            if judged is not None:
+                table.add_row(*_clause_row(plain_sentence(clause.sentence), judged))
+        self._console.print(table)
+
+
+def _clause_row(sentence: str, judged: ClauseJudged) -> tuple[Text, Text, Text]:
+    outcome = Outcome(judged.verdict)
+    shown = margin(judged.robustness, judged.unit)
+    if outcome is Outcome.VIOLATED and judged.at is not None:
+        shown += f"  at {judged.at:.2f} s"
+    reason = f"\n{judged.reason}" if judged.reason and outcome is not Outcome.HOLDS else ""
+    style = STYLES[outcome]
+    return Text(f"  {SIGNS[outcome]}", style), Text(sentence + reason), Text(shown, style)
+
+
+def _word(outcome: Outcome) -> str:
+    return {Outcome.HOLDS: "hold", Outcome.VIOLATED: "violated", Outcome.UNKNOWN: "unknown"}[outcome]

@@ -1,0 +1,98 @@
+"""``robbdd run``: execute the scenarios of a model and print every clause's verdict with its margin."""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.cli import FAILED, FINDINGS, INTERRUPTED, OK
+from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.progress import Display
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.launch import Agent
+from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare
+from robbdd_tools.run.results import RunResults
+
+if TYPE_CHECKING:
+    from robbdd_tools.graph.model import AcceptanceModel, Iri
+
+
+def run(path: Path, seed: int | None, names: Sequence[str] | None, report: Path | None, output: Path | None) -> int:
+    """Run a model; returns the exit code. ``names`` selects scenario variants by name."""
+    model = _model(path)
+    if model is None:
+        return FAILED
+    variants = _variants(model, names)
+    if isinstance(variants, str):
+        print(f"robbdd: {variants}", file=sys.stderr)
+        return FAILED
+    request = RunRequest(model, str(path), DEFAULT_SEED if seed is None else seed, variants)
+    try:
+        with _folder(output) as folder:
+            results, interrupted = _execute(request, Path(folder))
+        if report is not None:
+            text = json.dumps(results.as_json(), indent=1, ensure_ascii=False)
+            report.write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        print(f"robbdd: {error.filename or output or report}: {error.strerror or error}", file=sys.stderr)
+        return FAILED
+    if interrupted:
+        return INTERRUPTED
+    return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS
+
+
+def _model(path: Path) -> AcceptanceModel | None:
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.read import read_model
+
+    snapshot = sound_model(path)
+    if snapshot is None:
+        return None
+    model = read_model(build_graph(snapshot, path_to_uri(path)).graph)
+    if not any(story.variants for story in model.stories):
+        print(f"{path}:1:1: error: the model has no scenario to run [no-scenario]", file=sys.stderr)
+        return None
+    return model
+
+
+def _variants(model: AcceptanceModel, names: Sequence[str] | None) -> frozenset[Iri] | str | None:
+    """Return the variants of some names; a sentence when a name is not among them."""
+    if not names:
+        return None
+    known = {model.curie(variant.iri).rsplit(":", 1)[-1]: variant.iri for s in model.stories for variant in s.variants}
+    missing = [name for name in names if name not in known]
+    if missing:
+        return f"there is no scenario '{missing[0]}'; the model has {', '.join(known)}"
+    return frozenset(known[name] for name in names)
+
+
+def _folder(output: Path | None) -> AbstractContextManager[str | Path]:
+    return tempfile.TemporaryDirectory(prefix="robbdd-") if output is None else nullcontext(output)
+
+
+def _execute(request: RunRequest, folder: Path) -> tuple[RunResults, bool]:
+    """Run the agent on a prepared folder; Ctrl-C ends it and keeps what is finished."""
+    results = RunResults(prepare(request, folder))
+    agent = Agent(folder)
+    interrupted = False
+    with Display(results) as display:
+        try:
+            for message in agent.messages():
+                results.apply(message)
+                display.show(message)
+        except KeyboardInterrupt:
+            interrupted = True
+        finally:
+            agent.cancel()
+        if not results.complete:
+            reason = "the run was interrupted" if interrupted else agent.ending()
+            results.close(reason)
+            display.broken(reason)
+        display.summary()
+    return results, interrupted

@@ -1,0 +1,43 @@
+"""All findings about a file: the fast ones of every keystroke, and the slow ones of the shapes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
+from robbdd_tools.base.document import Span
+from robbdd_tools.checks import run_checks
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.project import Snapshot
+
+
+def fast_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
+    """Return syntax, name and rule findings of one file; one finding at its start when it has no text."""
+    unreadable = snapshot.unreadable(uri)
+    if unreadable is not None:
+        return [Diagnostic(uri, Span(0, 0), Severity.ERROR, unreadable.code, unreadable.reason)]
+    analysis = snapshot.file(uri)
+    if analysis is None:
+        return []
+    return sorted([*analysis.diagnostics, *run_checks(analysis)], key=sort_key)
+
+
+def shape_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
+    """Return the SHACL findings on the graph of a file merged with its imports, each in the file it belongs to."""
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.validate import validate
+
+    if snapshot.file(uri) is None:
+        return []
+    return validate(build_graph(snapshot, uri))
+
+
+def all_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
+    """Return every finding about a file and about what it imports, in the order of files and places."""
+    found = dict.fromkeys(fast_diagnostics(snapshot, uri))
+    if snapshot.file(uri) is not None:
+        for analysis in snapshot.closure(uri)[1:]:
+            found |= dict.fromkeys(fast_diagnostics(snapshot, analysis.document.uri))
+        found |= dict.fromkeys(shape_diagnostics(snapshot, uri))
+    return sorted(found, key=lambda diagnostic: (diagnostic.uri != uri, sort_key(diagnostic)))
