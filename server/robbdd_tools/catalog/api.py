@@ -180,7 +180,8 @@ class RobotModel:
     catalog file. ``home`` are the joint positions (rad) at the start; ``velocity_limits`` rad/s and
     ``torque_limits`` N m per arm joint, as published. ``joints``, ``tool_site`` and ``gripper_actuator`` are names
     inside the MJCF; ``gripper_open`` and ``gripper_closed`` its control values. ``pads`` are the geoms of the
-    gripping faces. ``source`` names the publications the numbers come from.
+    gripping faces. ``mount`` is where the base of the first such robot stands (m, world frame) and ``stroke`` the
+    widest opening between the gripping faces (m). ``source`` names the publications the numbers come from.
     """
 
     name: str
@@ -195,5 +196,7 @@ class RobotModel:
     gripper_open: float
     gripper_closed: float
     pads: tuple[str, ...]
+    mount: Vector
+    stroke: float
     doc: str
     source: str

@@ -1,0 +1,100 @@
+"""Forward and inverse kinematics of one arm, on a model that holds nothing else."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.agent.engine import mujoco
+from robbdd_tools.agent.errors import BehaviourError
+from robbdd_tools.agent.world import load_robot
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray, RobotModel
+
+CLOSE = 5e-5
+"""Remaining pose error (m and rad) at which a solution is accepted."""
+ROUNDS = 60
+LEAST_DAMPING, DAMPING = 1e-6, 0.01
+"""Damping of the least squares: a floor, and a share of the squared pose error. It fades as the goal comes near,
+because damping lets the pull towards the posture leak into the pose."""
+POSTURE = 0.2
+"""Share of the way back to the home posture that a redundant arm goes in each round."""
+STRIDE = 0.3
+"""Largest change of a joint in one round, rad."""
+
+
+class Unreachable(BehaviourError):
+    """No joint positions within the limits put the tool there."""
+
+
+class Arm:
+    """An arm by itself; poses of its tool are in the frame of its base.
+
+    ``lower`` and ``upper`` (n,) are the joint limits, ``home`` (n,) the posture it prefers, all in rad.
+    """
+
+    def __init__(self, robot: RobotModel) -> None:
+        self._model: Any = load_robot(robot).compile()
+        self._data: Any = mujoco.MjData(self._model)
+        self._site = int(self._model.site(robot.tool_site).id)
+        joints = [self._model.joint(name) for name in robot.joints]
+        self._places = np.array([joint.qposadr[0] for joint in joints])
+        self._speeds = np.array([joint.dofadr[0] for joint in joints])
+        self.lower: FloatArray = np.array([joint.range[0] for joint in joints])
+        self.upper: FloatArray = np.array([joint.range[1] for joint in joints])
+        self.home: FloatArray = np.array(robot.home)
+        self._jacobian: FloatArray = np.zeros((6, self._model.nv))
+
+    def forward(self, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the tool's position (3,) m and rotation matrix (3, 3) for joint positions (n,) rad."""
+        self._data.qpos[self._places] = joints
+        mujoco.mj_kinematics(self._model, self._data)
+        position: FloatArray = self._data.site_xpos[self._site].copy()
+        return position, self._data.site_xmat[self._site].reshape(3, 3).copy()
+
+    def solve(self, seed: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:
+        """Return joint positions (n,) near ``seed`` that put the tool at a pose; raises ``Unreachable``.
+
+        Damped least squares; what a redundant arm is free in is drawn towards the home posture, with its first
+        joint turned towards the goal.
+        """
+        joints = np.clip(seed, self.lower, self.upper)
+        posture = self.home.copy()
+        posture[0] += np.arctan2(position[1], position[0])
+        error = np.inf
+        for _ in range(ROUNDS):
+            at, turned = self.forward(joints)
+            gap = np.concatenate([position - at, _rotation_between(turned, rotation)])
+            error = float(np.abs(gap).max())
+            if error < CLOSE:
+                return joints
+            joints = np.clip(joints + self._step(gap, posture - joints), self.lower, self.upper)
+        raise Unreachable(f"{1000 * error:.0f} mm short")
+
+    def _step(self, gap: FloatArray, homewards: FloatArray) -> FloatArray:
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_jacSite(self._model, self._data, self._jacobian[:3], self._jacobian[3:], self._site)
+        jacobian = self._jacobian[:, self._speeds]
+        square = jacobian @ jacobian.T
+        square.flat[::7] += LEAST_DAMPING + DAMPING * float(gap @ gap)
+        both = np.linalg.solve(square, np.column_stack([gap, jacobian @ homewards]))
+        step: FloatArray = jacobian.T @ (both[:, 0] - POSTURE * both[:, 1]) + POSTURE * homewards
+        return step / max(1.0, float(np.abs(step).max()) / STRIDE)
+
+
+@cache
+def arm_of(robot: RobotModel) -> Arm:
+    """Return the arm of a robot model; compiled once per process."""
+    return Arm(robot)
+
+
+def _rotation_between(start: FloatArray, goal: FloatArray) -> FloatArray:
+    """Rotation vector (3,) rad, world frame, that turns one small step from ``start`` towards ``goal``."""
+    turn: FloatArray = 0.5 * np.cross(start.T, goal.T).sum(axis=0)
+    # Beyond a quarter turn the cross products shrink again; keep the step's length there.
+    if np.trace(start.T @ goal) < 1.0:
+        turn = turn / max(float(np.linalg.norm(turn)), 1e-9)
+    return turn

@@ -1,0 +1,193 @@
+"""The controller that picks an object from above and places it at a workspace.
+
+It knows the object's pose when it begins and follows its plan from there, feeling only what its fingers hold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.agent.clearance import Clearance
+from robbdd_tools.agent.engine import TICK
+from robbdd_tools.agent.errors import BehaviourError
+from robbdd_tools.agent.grasp import Grasp, grasps
+from robbdd_tools.agent.kinematics import Unreachable, arm_of
+from robbdd_tools.agent.motion import ToolPose, frame_of, plan, present_pose, tool_pose
+from robbdd_tools.agent.target import Target, targets
+
+if TYPE_CHECKING:
+    from robbdd_tools.agent.simulation import Simulation
+    from robbdd_tools.catalog.api import FloatArray
+
+TRAVEL = 0.30
+"""Height in the world frame at which the tool travels, m (paper)."""
+CLOSING = 0.05
+"""Speed of one finger, m/s."""
+SQUEEZE = 10
+"""Ticks for which a grip must last before the arm moves."""
+PATIENCE = 60
+"""Ticks that the fingers may take beyond their way before the object counts as missed."""
+SLIPPED = 3
+"""Ticks in a row without grip that count as a loss."""
+RELEASE = 20
+"""Ticks that the open gripper waits before it leaves."""
+
+Step = Iterator[None]
+"""One control tick per item: the controls are set, the world may be stepped."""
+
+
+class PickPlace:
+    """Drives one robot of a simulation. Every generator sets the controls for one tick before each item.
+
+    ``emit`` is told the name of each event when it occurs.
+    """
+
+    def __init__(self, simulation: Simulation, agent: str, emit: Callable[[str], None]) -> None:
+        self._simulation = simulation
+        self._robot = simulation.robots[agent]
+        self._arm = arm_of(self._robot.model)
+        self._limits: FloatArray = np.array(self._robot.model.velocity_limits)
+        self._emit = emit
+        self._joints: FloatArray = self._arm.home.copy()
+        self._opening = self._robot.model.gripper_open
+        self._held: str | None = None
+        self._grasp: Grasp | None = None
+
+    def pick(self, name: str) -> Step:
+        """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``."""
+        self._emit("pick-start")
+        grasp, above, at = self._choose_grasp(name)
+        yield from self._open()
+        yield from self._move(above)
+        yield from self._move(at)
+        yield from self._close(name)
+        self._held, self._grasp = name, grasp
+        yield from self._move(self._at_travel(at))
+        self._emit("pick-end")
+
+    def place(self, name: str, workspace: str) -> Step:
+        """Carry the object that is held to a workspace and release it; raises ``BehaviourError``."""
+        if self._held != name or self._grasp is None:
+            raise BehaviourError(f"{self._robot.name} does not hold {name}")
+        self._emit("place-start")
+        down = self._choose_target(name, workspace, self._grasp)
+        yield from self._move(self._at_travel(down))
+        yield from self._move(down)
+        self._held = None
+        yield from self._open()
+        yield from self._wait(RELEASE)
+        yield from self._move(self._at_travel(down))
+        self._emit("place-end")
+
+    def pick_place(self, name: str, workspace: str) -> Step:
+        """Pick an object and place it at a workspace; raises ``BehaviourError``."""
+        yield from self.pick(name)
+        yield from self.place(name, workspace)
+
+    def withdraw(self) -> Step:
+        """Open the gripper and leave upwards, after something went wrong."""
+        self._held = None
+        yield from self._open()
+        try:
+            yield from self._move(self._at_travel(present_pose(self._arm, self._joints)))
+        except Unreachable:
+            return
+
+    def _choose_grasp(self, name: str) -> tuple[Grasp, ToolPose, ToolPose]:
+        """Return the grasp with the most room for the hand, the tool pose above it and that at it."""
+        simulation, robot = self._simulation, self._robot
+        if name not in simulation.world.cast.objects:
+            raise BehaviourError(f"there is no {name} in the scene")
+        model = simulation.world.cast.objects[name]
+        position, rotation = simulation.pose(name)
+        clearance = Clearance(simulation, robot, name)
+        best: tuple[tuple[float, float], Grasp, ToolPose, ToolPose] | None = None
+        for grasp in grasps(name, model, position, rotation, robot.model.stroke):
+            at = tool_pose(robot.base, grasp.position, grasp.closing)
+            above = self._at_travel(at)
+            try:
+                joints = self._arm.solve(self._arm.solve(self._arm.home, *frame_of(above)), *frame_of(at))
+            except Unreachable:
+                continue
+            rank = (round(clearance.depth(joints), 4), abs(at.turn))
+            if best is None or rank < best[0]:
+                best = (rank, grasp, above, at)
+        if best is None:
+            raise BehaviourError(f"{robot.name} cannot reach {name}")
+        return best[1:]
+
+    def _choose_target(self, name: str, workspace: str, grasp: Grasp) -> ToolPose:
+        """Return the lowest tool pose over the first target that the arm reaches without hitting anything."""
+        simulation, robot = self._simulation, self._robot
+        clearance = Clearance(simulation, robot, name)
+        for target in targets(simulation, robot, name, workspace):
+            pose = self._lower_onto(target, grasp, clearance)
+            if pose is not None:
+                return pose
+        raise BehaviourError(f"{robot.name} cannot reach a free place at {workspace}")
+
+    def _lower_onto(self, target: Target, grasp: Grasp, clearance: Clearance) -> ToolPose | None:
+        robot = self._robot
+        x, y, surface = target.position
+        top = TRAVEL
+        height = surface + grasp.below + target.gap
+        closing = target.closing if target.closing is not None else grasp.closing
+        while height <= top:
+            pose = tool_pose(robot.base, np.array([x, y, height]), closing)
+            try:
+                joints = self._arm.solve(self._arm.solve(self._joints, *frame_of(self._at_travel(pose))), *frame_of(pose))
+            except Unreachable:
+                return None
+            if clearance.depth(joints) == 0.0:
+                return pose
+            height += 0.02
+        return None
+
+    def _at_travel(self, pose: ToolPose) -> ToolPose:
+        height = max(TRAVEL - self._robot.base.position[2], pose.height)
+        return ToolPose(pose.radius, pose.bearing, height, pose.turn)
+
+    def _move(self, goal: ToolPose) -> Step:
+        motion = plan(self._arm, self._joints, goal, self._limits)
+        missing = 0
+        for joints, velocities in zip(motion.joints, motion.velocities, strict=True):
+            self._joints = joints
+            self._set(joints, velocities)
+            yield
+            missing = 0 if self._feels() else missing + 1
+            if missing == SLIPPED:
+                raise BehaviourError(f"gripper lost {self._held} at {self._simulation.time:.2f} s")
+
+    def _feels(self) -> bool:
+        return self._held is None or self._simulation.holds(self._robot.name, self._held)
+
+    def _close(self, name: str) -> Step:
+        held = 0
+        closed = self._robot.model.gripper_closed
+        for _ in range(int((self._opening - closed) / (CLOSING * TICK)) + PATIENCE):
+            self._opening = max(closed, self._opening - CLOSING * TICK)
+            self._set(self._joints, np.zeros_like(self._joints))
+            yield
+            held = held + 1 if self._simulation.holds(self._robot.name, name) else 0
+            if held == SQUEEZE:
+                self._opening = closed
+                yield from self._wait(SQUEEZE)
+                return
+        raise BehaviourError(f"gripper closed beside {name} at {self._simulation.time:.2f} s")
+
+    def _open(self) -> Step:
+        goal = self._robot.model.gripper_open
+        while self._opening < goal:
+            self._opening = min(goal, self._opening + CLOSING * TICK)
+            yield from self._wait(1)
+
+    def _wait(self, ticks: int) -> Step:
+        for _ in range(ticks):
+            self._set(self._joints, np.zeros_like(self._joints))
+            yield
+
+    def _set(self, joints: FloatArray, velocities: FloatArray) -> None:
+        self._simulation.command(self._robot, joints + self._robot.lead * velocities, self._opening)

@@ -1,0 +1,225 @@
+"""Where the things of a scene stand at the start: tables and bins by the catalog, what can be grasped at random."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import atan2, cos, hypot, pi, sin
+from typing import TYPE_CHECKING
+
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.scene import carriers
+from robbdd_tools.catalog.api import ObjectModel, ShapeKind, Vector
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from robbdd_tools.agent.scene import Cast
+    from robbdd_tools.run.protocol import SceneSpec
+
+TABLE_TOP = 0.10
+"""Height of table tops above the world's origin, m; the paper leaves it open, the world frame is its own."""
+NEAR, FAR, ASIDE = 0.25, 0.60, 0.40
+"""Where things lie before a robot, m from its base: ahead, and to either side (paper, *normal* range)."""
+BEARING = 2.6
+"""Largest angle to either side of straight ahead, rad, that an arm is asked to turn to."""
+FINGER_GAP = 0.04
+"""Room for a finger around what lies on a table, m."""
+HAND_GAP = 0.08
+"""Room for a hand beside a bin's wall, m."""
+TOUCHING = 0.002
+"""Room around things where there is no space for more, m."""
+BIN_SKEW = 0.2
+"""How far (rad) things in a bin are turned from its edges: a hand fits into a bin only along its length."""
+BIN_ROOM = 0.03
+"""Half edge (m) of the square in a bin's middle that a hand can work in."""
+TRIES = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Position (m, world frame) and rotation about the vertical (rad)."""
+
+    position: Vector
+    yaw: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Field:
+    """A rectangle to draw positions from: centre and half edges (m, world frame), height of what lies there (m).
+
+    ``skew`` bounds the rotation (rad), ``gap`` and ``wall_gap`` keep other objects and bins away (m); in a bin
+    there is no ``wall_gap``.
+    """
+
+    center: tuple[float, float]
+    half: tuple[float, float]
+    height: float
+    skew: float
+    gap: float
+    wall_gap: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Disc:
+    x: float
+    y: float
+    radius: float
+
+
+def footprint(model: ObjectModel) -> float:
+    """Return the radius (m) of the upright cylinder about the origin that holds the object."""
+    return max(_reach(model, index) for index in range(len(model.shapes)))
+
+
+def mounts(cast: Cast) -> dict[str, Pose]:
+    """Return where each agent's base stands; raises ``SceneError`` for more than two agents.
+
+    The first stands at its model's mount, the second across the table and faces it.
+    """
+    if len(cast.agents) > 2:
+        raise SceneError(f"there is room for two agents at the table, the scene has {len(cast.agents)}")
+    table = next(cast.objects[name] for name in cast.tables)
+    across = 2 * table.places[0][0]
+    poses: dict[str, Pose] = {}
+    for index, (name, robot) in enumerate(cast.agents.items()):
+        x, y, z = robot.mount
+        poses[name] = Pose((x, y, z)) if index == 0 else Pose((across - x, -y, z), pi)
+    return poses
+
+
+def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) -> dict[str, Pose]:
+    """Return the pose of every object's origin, for an agent that acts from ``base``.
+
+    Raises ``SceneError`` when the scene asks for a place that does not exist or for more than there is room for.
+    """
+    poses: dict[str, Pose] = {}
+    for name, (x, y, _) in _at_places(cast, cast.tables, "the room"):
+        poses[name] = Pose((x, y, TABLE_TOP))
+    for table, names in _stands_on(scene, cast).items():
+        left, ahead, top = poses[table].position
+        for name, (x, y, _) in _at_places(cast, names, table):
+            poses[name] = Pose((left + x, ahead + y, top + cast.objects[name].rest_height))
+    bins = [name for name in poses if cast.objects[name].free]
+    taken: list[_Disc] = []
+    for name, model in cast.objects.items():
+        if not model.graspable:
+            continue
+        walls = [(poses[other], cast.objects[other]) for other in bins]
+        pose = _draw(name, model, list(_fields(scene, cast, poses, base, name)), base, taken, walls, rng)
+        taken.append(_Disc(pose.position[0], pose.position[1], footprint(model)))
+        poses[name] = pose
+    return poses
+
+
+def field_before(base: Pose, table: Pose, model: ObjectModel) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """Return centre and half edges (m) of the part of a table that lies before a robot's base, ``None`` without."""
+    if model.region is None:
+        return None
+    side = 1.0 if table.position[0] >= base.position[0] else -1.0
+    near, far = sorted((base.position[0] + side * NEAR, base.position[0] + side * FAR))
+    x = _overlap(near, far, table.position[0], model.region.half[0])
+    y = _overlap(base.position[1] - ASIDE, base.position[1] + ASIDE, table.position[1], model.region.half[1])
+    if x is None or y is None:
+        return None
+    return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)
+
+
+def bearing(base: Pose, x: float, y: float) -> float:
+    """Return the direction (rad, in (-π, π]) of a point as seen from a robot's base, 0 straight ahead."""
+    angle = atan2(y - base.position[1], x - base.position[0]) - base.yaw
+    return atan2(sin(angle), cos(angle))
+
+
+def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple[str, Vector]]:
+    used: Counter[str] = Counter()
+    for name in names:
+        model = cast.objects[name]
+        if used[model.name] == len(model.places):
+            room = f"there is room for {len(model.places)} objects of the kind '{model.name}' on {where}"
+            raise SceneError(f"{room}; '{name}' has no place")
+        yield name, model.places[used[model.name]]
+        used[model.name] += 1
+
+
+def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:
+    """Map each table to what stands at a fixed place on it; the first table takes what the scene leaves open."""
+    chosen: dict[str, list[str]] = {table: [] for table in cast.tables}
+    homes: dict[str, str] = {}
+    for outer, inner in scene.contains.items():
+        for table in set(scene.workspaces.get(outer, ())) & set(cast.tables):
+            homes |= {name: table for part in inner for name in carriers(scene, part)}
+    for name, model in cast.objects.items():
+        if model.free and not model.graspable:
+            chosen[homes.get(name, cast.tables[0])].append(name)
+    return {table: tuple(names) for table, names in chosen.items()}
+
+
+def _fields(
+    scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose, name: str
+) -> Iterator[_Field]:
+    """The areas for an object, best first; raises ``SceneError`` when there is none."""
+    carrier = cast.tables[0]
+    if (workspace := scene.places.get(name)) is not None:
+        if workspace not in cast.regions:
+            raise SceneError(f"'{name}' is to be at '{workspace}', but nothing in the scene carries that workspace")
+        carrier = cast.regions[workspace][0][0]
+    model, pose = cast.objects[carrier], poses[carrier]
+    radius = footprint(cast.objects[name])
+    if model.region is None:
+        raise SceneError(f"'{name}' is to be at '{carrier}', which has no workspace")
+    x, y, z = pose.position
+    bottom = z + model.region.center[2] - model.region.half[2]
+    if model.free:
+        inner = (model.region.half[0] - radius, model.region.half[1] - radius)
+        yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None)
+        yield _Field((x, y), inner, bottom, pi, TOUCHING, None)
+        return
+    area = field_before(base, pose, model)
+    if area is None:
+        raise SceneError(f"no part of '{carrier}', where '{name}' is to be, lies within reach")
+    yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP)
+    yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING)
+
+
+def _draw(
+    name: str,
+    model: ObjectModel,
+    fields: list[_Field],
+    base: Pose,
+    taken: list[_Disc],
+    walls: list[tuple[Pose, ObjectModel]],
+    rng: np.random.Generator,
+) -> Pose:
+    radius = footprint(model)
+    for field in fields:
+        wall_gap = field.wall_gap
+        for _ in range(TRIES):
+            dx, dy, turn = rng.uniform(-1.0, 1.0, 3)
+            x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
+            clear = all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + field.gap for disc in taken)
+            apart = wall_gap is None or all(_apart(x, y, radius + wall_gap, pose, other) for pose, other in walls)
+            if clear and apart and abs(bearing(base, x, y)) <= BEARING:
+                return Pose((x, y, field.height + model.rest_height), turn * field.skew)
+    raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
+
+
+def _apart(x: float, y: float, distance: float, pose: Pose, model: ObjectModel) -> bool:
+    """Whether a point is at least ``distance`` (m) from a bin's walls."""
+    if model.region is None:
+        return True
+    dx = max(abs(x - pose.position[0]) - model.region.half[0], 0.0)
+    dy = max(abs(y - pose.position[1]) - model.region.half[1], 0.0)
+    return hypot(dx, dy) >= distance
+
+
+def _reach(model: ObjectModel, index: int) -> float:
+    shape = model.shapes[index]
+    corner = hypot(shape.size[0], shape.size[1]) if shape.kind is ShapeKind.BOX else shape.size[0]
+    return hypot(shape.position[0], shape.position[1]) + corner
+
+
+def _overlap(low: float, high: float, middle: float, half: float) -> tuple[float, float] | None:
+    start, end = max(low, middle - half), min(high, middle + half)
+    return (start, end) if start < end else None

@@ -1,0 +1,95 @@
+"""Which catalog model stands for which element of a scene, and where each workspace is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.catalog.registry import load_catalog
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel
+    from robbdd_tools.run.protocol import SceneSpec
+
+PEDESTAL = "pedestal"
+"""Name of the table that stands in for the one which a scene lacks."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cast:
+    """A scene with a model for every object and agent.
+
+    ``regions`` maps a workspace to the boxes that make it up, each with the object in whose frame it is given;
+    a workspace that nothing carries is absent.
+    """
+
+    objects: Mapping[str, ObjectModel]
+    agents: Mapping[str, RobotModel]
+    regions: Mapping[str, tuple[tuple[str, Region], ...]]
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """The fixed objects, which everything else stands on."""
+        return tuple(name for name, model in self.objects.items() if not model.free)
+
+
+def local_name(curie: str) -> str:
+    """Return what follows the last colon of a CURIE."""
+    return curie.rpartition(":")[2]
+
+
+def cast_scene(scene: SceneSpec) -> Cast:
+    """Choose the models of a scene; raises ``SceneError`` for a name that no model stands for."""
+    catalog = load_catalog()
+    objects: dict[str, ObjectModel] = {}
+    for name in scene.objects:
+        model = catalog.object_for(local_name(name))
+        if model is None:
+            raise SceneError(_no_model("object", name, (m.prefixes for m in catalog.objects.values())))
+        objects[name] = model
+    agents: dict[str, RobotModel] = {}
+    for name in scene.agents:
+        robot = catalog.robot_for(local_name(name))
+        if robot is None:
+            raise SceneError(_no_model("agent", name, (m.prefixes for m in catalog.robots.values())))
+        agents[name] = robot
+    if all(model.free for model in objects.values()):
+        objects[PEDESTAL] = catalog.objects["table"]
+    return Cast(objects, agents, _regions(scene, objects))
+
+
+def _no_model(kind: str, name: str, prefixes: Iterable[tuple[str, ...]]) -> str:
+    known = ", ".join(sorted(prefix for group in prefixes for prefix in group))
+    return f"there is no model for {kind} '{name}': its name would have to begin with one of {known}"
+
+
+def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, tuple[tuple[str, Region], ...]]:
+    regions: dict[str, tuple[tuple[str, Region], ...]] = {}
+    for workspace in {**scene.workspaces, **scene.contains}:
+        boxes: list[tuple[str, Region]] = []
+        for carrier in carriers(scene, workspace):
+            model = objects.get(carrier)
+            if model is None:
+                raise SceneError(f"workspace '{workspace}' is carried by '{carrier}', which is not in the scene")
+            if model.region is not None:
+                boxes.append((carrier, model.region))
+        if boxes:
+            regions[workspace] = tuple(boxes)
+    return regions
+
+
+def carriers(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
+    """Return the objects that make up a workspace: its own or, when it has none, those of what lies within it."""
+    return _carriers(scene, workspace, frozenset())
+
+
+def _carriers(scene: SceneSpec, workspace: str, seen: frozenset[str]) -> tuple[str, ...]:
+    own = scene.workspaces.get(workspace, ())
+    if own or workspace in seen:
+        return own
+    inner = scene.contains.get(workspace, ())
+    return tuple(name for part in inner for name in _carriers(scene, part, seen | {workspace}))

@@ -1,0 +1,193 @@
+"""Steps a world and records it: one sample per control tick."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.agent.engine import SUBSTEPS, TICK, mujoco
+from robbdd_tools.agent.errors import SimulationError
+from robbdd_tools.agent.recorder import Recorder
+
+if TYPE_CHECKING:
+    from robbdd_tools.agent.world import World
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.trace import EventStamp, Trace
+
+AT_REST = 2e-3
+"""Speed (m/s and rad/s) below which an object is at rest."""
+REST_TICKS = 6
+"""Ticks in a row that everything must be at rest."""
+SETTLE_TICKS = 190
+"""Ticks (about three seconds) after which a world counts as settled, come what may."""
+
+
+class Robot:
+    """One robot of a running simulation: its places in the engine's arrays.
+
+    ``joints`` (n,) indexes joint positions, ``speeds`` (n,) velocities, ``motors`` (n,) and ``gripper`` controls.
+    """
+
+    def __init__(self, world: World, name: str) -> None:
+        model, robot = world.model, world.cast.agents[name]
+        self.name = name
+        self.model = robot
+        self.base = world.bases[name]
+        joints = [model.joint(f"{name}/{joint}") for joint in robot.joints]
+        self.joints = np.array([joint.qposadr[0] for joint in joints])
+        self.speeds = np.array([joint.dofadr[0] for joint in joints])
+        driven = {int(model.actuator_trnid[motor, 0]): motor for motor in range(model.nu)}
+        self.motors = np.array([driven[joint.id] for joint in joints])
+        self.gripper = int(model.actuator(f"{name}/{robot.gripper_actuator}").id)
+        self.tool = int(model.site(f"{name}/{robot.tool_site}").id)
+        self.pads = tuple(int(model.geom(f"{name}/{pad}").id) for pad in robot.pads)
+        gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
+        self.lead: FloatArray = -bias / gain
+        """Seconds by which a joint's target must run ahead to make up for the servo's damping, shape (n,)."""
+
+
+class Simulation:
+    """A world in motion. Time counts from the end of ``settle``; sample 0 is the settled world.
+
+    ``stepping`` is the wall time (s) spent in the engine's step.
+    """
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self.model: Any = world.model
+        self.data: Any = mujoco.MjData(world.model)
+        self.stepping = 0.0
+        self.ticks = 0
+        self.robots = {name: Robot(world, name) for name in world.cast.agents}
+        self._free = [name for name, model in world.cast.objects.items() if model.free]
+        bodies = [self.model.body(name) for name in self._free]
+        addresses = np.array([body.jntadr[0] for body in bodies], dtype=int)
+        starts = self.model.jnt_qposadr[addresses].reshape(-1, 1)
+        self._places = starts + np.arange(3)
+        self._turns = starts + np.arange(3, 7)
+        self._speeds = self.model.jnt_dofadr[addresses].reshape(-1, 1) + np.arange(6)
+        names = (*world.cast.objects, *world.cast.agents)
+        self._column = {name: index for index, name in enumerate(names)}
+        self._rows = np.array([self._column[name] for name in self._free], dtype=int)
+        self._owner = self._owners()
+        self._positions: FloatArray = np.zeros((len(names), 3))
+        self._orientations: FloatArray = np.zeros((len(names), 4))
+        self._pads = {name: np.array(robot.pads) for name, robot in self.robots.items()}
+        self.grips: dict[str, FloatArray] = {name: np.zeros(len(names)) for name in self.robots}
+        self.recorder = Recorder(names, tuple(self.robots))
+        self._go_home()
+        for name in world.cast.tables:
+            body = self.data.body(name)
+            self._positions[self._column[name]] = body.xpos
+            self._orientations[self._column[name]] = body.xquat
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the last sample, s."""
+        return self.ticks * TICK
+
+    def settle(self) -> None:
+        """Step until nothing moves any more, then start the clock and take the first sample."""
+        quiet = 0
+        for _ in range(SETTLE_TICKS):
+            self._step()
+            speeds = self.data.qvel[self._speeds]
+            quiet = quiet + 1 if not speeds.size or np.abs(speeds).max() < AT_REST else 0
+            if quiet == REST_TICKS:
+                break
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget what was recorded and count time from now."""
+        self.ticks = 0
+        self.recorder.clear()
+        self.record()
+
+    def tick(self) -> None:
+        """Advance by one control tick under the present controls and record a sample.
+
+        Raises ``SimulationError`` when the state is no longer a number.
+        """
+        self._step()
+        self.ticks += 1
+        self.record()
+
+    def record(self) -> None:
+        """Take a sample of the world as it is."""
+        # Positions in the engine's data are those of one step ago until they are computed anew.
+        mujoco.mj_kinematics(self.model, self.data)
+        self._find_grips()
+        qpos = self.data.qpos
+        self._positions[self._rows] = qpos[self._places]
+        self._orientations[self._rows] = qpos[self._turns]
+        for robot in self.robots.values():
+            column = self._column[robot.name]
+            self._positions[column] = self.data.site_xpos[robot.tool]
+            mujoco.mju_mat2Quat(self._orientations[column], self.data.site_xmat[robot.tool])
+        self.recorder.append(self.time, self._positions, self._orientations, self.grips)
+
+    def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
+        """Return what was recorded so far, without copying it."""
+        return self.recorder.trace(events, finished, remark)
+
+    def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
+        """Return position (3,) m and rotation matrix (3, 3) of an object in the world frame; raises ``KeyError``."""
+        body = self.data.body(name)
+        return body.xpos.copy(), body.xmat.reshape(3, 3).copy()
+
+    def holds(self, agent: str, name: str) -> bool:
+        """Whether the agent's gripping faces all touch the object."""
+        return bool(self.grips[agent][self._column[name]])
+
+    def joint_positions(self, robot: Robot) -> FloatArray:
+        """Return the arm's joint positions, rad, shape (n,)."""
+        positions: FloatArray = self.data.qpos[robot.joints]
+        return positions
+
+    def command(self, robot: Robot, joints: FloatArray, opening: float) -> None:
+        """Set the targets of the arm's servos (rad, shape (n,)) and of the gripper."""
+        self.data.ctrl[robot.motors] = joints
+        self.data.ctrl[robot.gripper] = opening
+
+    def open_fingers(self, robot: Robot, data: Any) -> None:
+        """Put a robot's fingers into the open position in ``data``: the start, or a state that is only tried."""
+        for pad in robot.pads:
+            body = self.model.body(int(self.model.geom_bodyid[pad]))
+            for joint in range(body.jntadr[0], body.jntadr[0] + body.jntnum[0]):
+                data.qpos[self.model.jnt_qposadr[joint]] = robot.model.gripper_open
+
+    def _step(self) -> None:
+        began = perf_counter()
+        mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
+        self.stepping += perf_counter() - began
+        if not np.isfinite(self.data.qvel).all():
+            raise SimulationError(f"the simulation became unstable at {self.time:.2f} s")
+
+    def _go_home(self) -> None:
+        for robot in self.robots.values():
+            home = np.array(robot.model.home)
+            self.data.qpos[robot.joints] = home
+            self.open_fingers(robot, self.data)
+            self.command(robot, home, robot.model.gripper_open)
+        mujoco.mj_forward(self.model, self.data)
+
+    def _owners(self) -> FloatArray:
+        """Column of the object that each geom belongs to, -1 for any other geom, shape (ngeom,)."""
+        owner = np.full(self.model.ngeom, -1)
+        for name in self._free:
+            body = self.model.body(name)
+            owner[body.geomadr[0] : body.geomadr[0] + body.geomnum[0]] = self._column[name]
+        return owner
+
+    def _find_grips(self) -> None:
+        pairs = self.data.contact.geom
+        for name, pads in self._pads.items():
+            grip = self.grips[name]
+            grip[:] = 0.0
+            touched: list[set[int]] = []
+            for pad in pads:
+                rows = pairs[(pairs == pad).any(axis=1)]
+                touched.append(set(self._owner[rows].max(axis=1).tolist()) - {-1})
+            grip[list(set.intersection(*touched))] = 1.0
