@@ -1,0 +1,212 @@
+"""A file with what it uses of its imports becomes one graph.
+
+The file's own declarations are all stated; of the files it imports, those that it leads to. Nothing here raises on
+what a user wrote: a broken declaration, a name that leads nowhere or an IRI that is none states nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.clauses import ClauseWriter, add_time
+from robbdd_tools.graph.prefixes import bind_prefixes, prefix_for
+from robbdd_tools.graph.reach import Reached, doubtful, reach
+from robbdd_tools.graph.scenes import (
+    Memberships,
+    Scenes,
+    add_composition,
+    add_composition_contents,
+    add_element_set,
+    add_scene,
+    add_set,
+    add_similar_set,
+)
+from robbdd_tools.graph.sink import Frame, Sink, namespace_of
+from robbdd_tools.graph.source_map import Location, SourceMap
+from robbdd_tools.graph.stories import Known, add_story
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from rdflib import Graph, URIRef
+    from rdflib.term import Identifier
+
+    from robbdd_tools.names.project import Snapshot
+
+SCENARIO_PARTS = {"given": "bdd:Given", "when": "bdd:When", "then": "bdd:Then"}
+
+
+@dataclass(frozen=True, slots=True)
+class Clash:
+    """Two declarations whose names make one IRI: the later one, which the graph leaves out, and the first."""
+
+    iri: str
+    location: Location
+    first: Location
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltGraph:
+    """A graph with what is known of its origin.
+
+    ``names`` gives the qualified name that stands in the text for an IRI; ``doubtful`` the extents of declarations
+    that already have an error or build on one that has; ``doubtful_nodes`` what these declare.
+    """
+
+    graph: Graph
+    sources: SourceMap
+    names: Mapping[str, str]
+    clashes: tuple[Clash, ...]
+    doubtful: tuple[Location, ...]
+    doubtful_nodes: frozenset[str]
+
+
+def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
+    """Return the graph of a file of a snapshot (an empty one when the file cannot be read)."""
+    reached = reach(snapshot.closure(uri))
+    sink = Sink()
+    _add_foundations(sink, reached)
+    bind_prefixes(sink.graph, _add_prefixes(sink, reached))
+    uncertain = doubtful(reached)
+    return BuiltGraph(
+        sink.graph,
+        sink.sources.build(),
+        _names(reached),
+        tuple(Clash(str(node), location, first) for node, location, first in sink.clashes),
+        tuple(Location(entry.uri, entry.placed.span) for entry in uncertain),
+        frozenset(
+            definition.iri
+            for entry in uncertain
+            for definition in entry.file.definitions.values()
+            if definition.iri is not None and entry.holds(definition)
+        ),
+    )
+
+
+def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
+    """State all declarations: first what stands alone, then compositions, which nest, then stories."""
+    scenes = Scenes()
+    tasks: dict[URIRef, URIRef] = {}
+    placed = [(entry.tree, Frame(sink, entry.file, entry.placed)) for entry in reached]
+    for root, frame in placed:
+        if isinstance(root, tree.Template):
+            _add_template(frame, root, tasks)
+        elif root is not None:
+            _add_simple(frame, scenes, root)
+    for root, frame in placed:
+        if isinstance(root, tree.Composition):
+            add_composition_contents(frame, scenes, root)
+    known = Known(scenes, Memberships(sink), tasks)
+    stories = [(root, frame) for root, frame in placed if isinstance(root, tree.Story)]
+    for position, (story, frame) in enumerate(stories):
+        add_story(frame, known, story, position)
+
+
+def _add_simple(frame: Frame, scenes: Scenes, root: tree.DeclarationTree) -> None:
+    match root:
+        case tree.Event() | tree.Task():
+            node = frame.claimed(root.name.text, root.name)
+            if node is not None:
+                kind = "time:Event" if isinstance(root, tree.Event) else "task:Task"
+                frame.sink.add_types(node, [kind], frame.at(root.name))
+        case tree.ConstantSet():
+            _add_constant_set(frame, root)
+        case tree.ElementSet():
+            add_element_set(frame, scenes, root)
+        case tree.SimilarSet():
+            add_similar_set(frame, scenes, root)
+        case tree.Composition():
+            add_composition(frame, scenes, root)
+        case tree.Scene():
+            add_scene(frame, scenes, root)
+        case _:
+            pass
+
+
+def _add_constant_set(frame: Frame, declared: tree.ConstantSet) -> None:
+    node = frame.claimed(declared.name.text, declared.name)
+    if node is None:
+        return
+    elements: list[Identifier] = []
+    for value in declared.values:
+        target = frame.target(value) if isinstance(value, tree.Ref) else frame.sink.literal(value.value)
+        if target is not None:
+            frame.sink.mark(node, "bdd:elements", target, frame.at(value))
+            elements.append(target)
+    add_set(frame, node, declared.name, elements)
+
+
+def _add_template(frame: Frame, template: tree.Template, tasks: dict[URIRef, URIRef]) -> None:
+    node = frame.claimed(template.name.text, template.name)
+    if node is None:
+        return
+    sink, place = frame.sink, frame.at(template.name)
+    scenario, scene = sink.iri(f"{node}-scenario"), sink.iri(f"{node}-scene")
+    if scenario is None or scene is None:
+        return
+    sink.add_types(node, ["bdd:ScenarioTemplate"], place)
+    if template.duration is not None:
+        add_time(frame, node, template.duration)
+    sink.add(node, "bdd:of-scenario", scenario)
+    sink.add(node, "bdd:has-scene", scene)
+    sink.add_types(scene, ["bdd:Scene"], place)
+    _add_scenario(sink, scenario, place)
+    task = None if template.task is None else frame.target(template.task)
+    if template.task is not None and task is not None:
+        sink.add(scenario, "task:of-task", task, frame.at(template.task))
+        tasks[node] = task
+    _add_variables(frame, node, template)
+    writer = ClauseWriter(frame, namespace_of(node, template.name.text), template.name.text, scenario)
+    sink.add(node, "bdd:has-clause", sink.make_list(writer.body(template.body)))
+
+
+def _add_scenario(sink: Sink, scenario: URIRef, place: Location) -> None:
+    sink.add_types(scenario, ["bdd:Scenario"], place)
+    for role, kind in SCENARIO_PARTS.items():
+        part = sink.iri(f"{scenario}-{role}")
+        if part is not None:
+            sink.add(scenario, f"bdd:{role}", part)
+            sink.add_types(part, [kind], place)
+
+
+def _add_variables(frame: Frame, node: URIRef, template: tree.Template) -> None:
+    variables: list[URIRef] = []
+    for variable in template.variables:
+        declared = frame.node(f"{template.name.text}.{variable.name.text}")
+        if declared is not None:
+            types = ["bdd:ScenarioVariable", "bdd:Set"] if variable.is_set else ["bdd:ScenarioVariable"]
+            frame.sink.add_types(declared, types, frame.at(variable.name))
+            frame.sink.mark(node, "rbw:variables", declared, frame.at(variable.name))
+            variables.append(declared)
+    frame.sink.add(node, "rbw:variables", frame.sink.make_list(variables))
+
+
+def _add_prefixes(sink: Sink, reached: Iterable[Reached]) -> dict[str, str]:
+    """State the prefix of each namespace, so that names can be shortened however the graph is stored.
+
+    The file's own prefixes come first; a prefix that means something else already gets a number.
+    """
+    prefixes: dict[str, str] = {}
+    for root in _namespaces(reached):
+        namespace = sink.iri(root.iri.value)
+        if namespace is None or str(namespace) in prefixes.values():
+            continue
+        prefix = prefix_for(root.name.text, prefixes)
+        prefixes[prefix] = str(namespace)
+        sink.add(namespace, "rbw:prefix", sink.literal(prefix))
+    return prefixes
+
+
+def _namespaces(reached: Iterable[Reached]) -> Iterator[tree.Namespace]:
+    own_first = sorted(reached, key=lambda entry: not entry.own)
+    return (entry.tree for entry in own_first if isinstance(entry.tree, tree.Namespace))
+
+
+def _names(reached: Iterable[Reached]) -> dict[str, str]:
+    names: dict[str, str] = {}
+    for file in {entry.uri: entry.file for entry in reached}.values():
+        for path, definition in file.definitions.items():
+            if definition.iri is not None:
+                names.setdefault(definition.iri, path)
+    return names

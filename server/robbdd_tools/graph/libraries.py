@@ -1,0 +1,81 @@
+"""The only place where the loosely typed graph libraries are called; everything beyond it is fully typed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from typing import TYPE_CHECKING, Any, cast
+
+from robbdd_tools.base.data import data_file
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+Json = dict[str, Any]
+CONTEXT_FILE = "context.jsonld"
+
+
+class UnknownContext(Exception):
+    """A JSON-LD document names a context by a URL; the message says what to do. Nothing is ever fetched."""
+
+
+def compact(expanded: list[Json], context: Json) -> Json:
+    """Compact expanded JSON-LD with a context; raises ``UnknownContext`` when the context names another by URL."""
+    jsonld = _jsonld()
+    options = {"documentLoader": _no_network, "graph": True, "compactArrays": True}
+    return cast(Json, jsonld.compact(expanded, {"@context": context}, options))
+
+
+def quads(document: Any) -> str:
+    """Return a JSON-LD document as N-Quads; raises ``UnknownContext`` or ``ValueError``."""
+    jsonld = _jsonld()
+    try:
+        return cast(str, jsonld.to_rdf(document, {"documentLoader": _no_network, "format": "application/n-quads"}))
+    except jsonld.JsonLdError as error:
+        cause = _unknown_context(error)
+        if cause is not None:
+            raise cause from error
+        raise ValueError(str(error).partition("\n")[0]) from error
+
+
+def shacl_report(graph: Graph, shapes: Graph) -> Graph:
+    """Return the SHACL validation report of a graph, without inference; the graph is left as it is."""
+    import pyshacl
+
+    _, report, _ = pyshacl.validate(  # pyright: ignore[reportUnknownMemberType] -- pyshacl leaves **kwargs untyped
+        graph, shacl_graph=shapes, inference="none", inplace=True, allow_infos=False, allow_warnings=False
+    )
+    return cast("Graph", report)
+
+
+@cache
+def bundled_context() -> Json:
+    """Return our JSON-LD context."""
+    text = data_file("metamodels", CONTEXT_FILE).read_text(encoding="utf-8")
+    return cast(Json, json.loads(text)["@context"])
+
+
+def _jsonld() -> Any:
+    from pyld import jsonld  # pyright: ignore[reportMissingTypeStubs] -- pyld has no types
+
+    return jsonld
+
+
+def _no_network(url: str, _options: Mapping[str, Any]) -> Json:
+    if url.rpartition("/")[2] == CONTEXT_FILE:
+        return {
+            "contentType": "application/ld+json",
+            "contextUrl": None,
+            "documentUrl": url,
+            "document": {"@context": bundled_context()},
+        }
+    raise UnknownContext(f"the context '{url}' is not fetched: write the context into the document itself")
+
+
+def _unknown_context(error: BaseException | None) -> UnknownContext | None:
+    while error is not None:
+        if isinstance(error, UnknownContext):
+            return error
+        error = getattr(error, "cause", None) or error.__cause__
+    return None

@@ -1,0 +1,56 @@
+"""RDF lists of a graph as Python lists, read once and without recursion along their length."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+    from rdflib.term import Identifier
+
+
+class Lists:
+    """The well-formed lists of a graph: blank cells with one first and one rest each, nothing else said of them."""
+
+    def __init__(self, graph: Graph) -> None:
+        from rdflib import BNode
+        from rdflib.namespace import RDF
+
+        self._nil = RDF.nil
+        self._next: dict[Identifier, tuple[Identifier, Identifier]] = {}
+        uses: dict[Identifier, int] = {}
+        for cell, rest in graph.subject_objects(RDF.rest):
+            uses[rest] = uses.get(rest, 0) + 1
+            outgoing = list(graph.predicate_objects(cell))
+            first = [value for predicate, value in outgoing if predicate == RDF.first]
+            if isinstance(cell, BNode) and len(outgoing) == 2 and len(first) == 1:
+                self._next[cell] = (first[0], rest)
+        self._inner = {cell for cell in self._next if uses.get(cell)}
+        self._lists: dict[Identifier, tuple[Identifier, ...]] = {}
+        self._cells: set[Identifier] = set()
+        for head in self._next:
+            if head not in self._inner and self._is_used_once(graph, head):
+                self._read(head)
+
+    def items(self, head: Identifier) -> tuple[Identifier, ...] | None:
+        """Return the items of a list by its head; ``None`` for what is no list."""
+        return () if head == self._nil else self._lists.get(head)
+
+    def is_cell(self, node: Identifier) -> bool:
+        """Tell whether a node is only a link of a well-formed list."""
+        return node in self._cells
+
+    def _is_used_once(self, graph: Graph, head: Identifier) -> bool:
+        return sum(1 for _ in graph.subjects(None, head)) == 1
+
+    def _read(self, head: Identifier) -> None:
+        items: list[Identifier] = []
+        cells: list[Identifier] = []
+        cell = head
+        while cell in self._next and cell not in cells[-1:]:
+            cells.append(cell)
+            item, cell = self._next[cell]
+            items.append(item)
+        if cell == self._nil:
+            self._lists[head] = tuple(items)
+            self._cells.update(cells)

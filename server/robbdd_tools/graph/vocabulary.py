@@ -1,0 +1,53 @@
+"""The names of the graph: published namespaces and our own, all in one place.
+
+Code writes terms as CURIEs (``bdd:has-clause``) with the prefixes of ``PREFIXES``, whatever a user's file calls them.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+METAMODELS = "https://secorolab.github.io/metamodels/"
+WORKBENCH = "https://robbdd.org/metamodels/workbench#"
+"""What the published vocabulary lacks: groups of clauses, free text, events in When, narrative, written order."""
+SHAPES = "https://robbdd.org/metamodels/shapes#"
+"""Our SHACL shapes; the local name of a shape is the diagnostic code behind ``shacl-``."""
+
+PREFIXES = {
+    "bdd": f"{METAMODELS}acceptance-criteria/bdd#",
+    "time": f"{METAMODELS}time#",
+    "task": f"{METAMODELS}task#",
+    "bhv": f"{METAMODELS}behaviour#",
+    "env": f"{METAMODELS}environment#",
+    "agn": f"{METAMODELS}agent#",
+    "obs": f"{METAMODELS}observation#",
+    "exec": f"{METAMODELS}execution-context#",
+    "py": f"{METAMODELS}languages/python#",
+    "ros": "https://index.ros.org/p/",
+    "rbw": WORKBENCH,
+    "rdf": "http://www.w3.org/1999/02/22-rdf-syntax-ns#",
+    "xsd": "http://www.w3.org/2001/XMLSchema#",
+}
+
+TIME_TYPES = {
+    "before": "time:BeforeEventConstraint",
+    "after": "time:AfterEventConstraint",
+    "during": "time:DuringEventsConstraint",
+}
+ELEMENT_TYPES = {"object": "env:Object", "workspace": "env:Workspace", "agent": "agn:Agent"}
+"""Kind of an element → its class."""
+MEMBERSHIPS = {
+    "object": ("bdd:SceneHasObjects", "env:has-object", "-scene-has-obj"),
+    "workspace": ("bdd:SceneHasWorkspaces", "env:has-workspace", "-scene-has-ws"),
+    "agent": ("bdd:SceneHasAgents", "agn:has-agent", "-scene-has-agn"),
+}
+"""Kind of an element → class, property and IRI ending of the node that makes it a member of a scene."""
+JUNCTIONS = {"and": "rbw:Conjunction", "or": "rbw:Disjunction", "not": "rbw:Negation"}
+SELECTIONS = {"combinations": "bdd:Combination", "permutations": "bdd:Permutation"}
+
+
+@cache
+def expand(term: str) -> str:
+    """Return the IRI of a CURIE; an IRI in full is returned as it is. Raises ``KeyError`` for an unknown prefix."""
+    prefix, _, local = term.partition(":")
+    return term if local.startswith("//") else PREFIXES[prefix] + local
