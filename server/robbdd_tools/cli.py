@@ -12,8 +12,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from robbdd_tools import __version__
+from robbdd_tools.commands import FAILED, INTERRUPTED
 
-OK, FINDINGS, FAILED, INTERRUPTED = 0, 1, 2, 130
 FORMATS = ("ttl", "json-ld", "nt", "xml")
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
-from robbdd_tools.cli import FAILED, FINDINGS, OK
+from robbdd_tools.commands import FAILED, FINDINGS, OK
 from robbdd_tools.commands.models import diagnostic_json, load, model_files, print_diagnostic
 from robbdd_tools.features.diagnostics import all_diagnostics
 from robbdd_tools.names.index import language_of

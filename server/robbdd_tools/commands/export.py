@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.cli import FAILED, OK
+from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.cli import FAILED, FINDINGS, INTERRUPTED, OK
+from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.models import sound_model
 from robbdd_tools.commands.progress import Display
 from robbdd_tools.monitor.verdict import Outcome

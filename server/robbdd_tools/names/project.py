@@ -40,6 +40,20 @@ class Project:
         self._disk.pop(uri, None)
         self.revision += 1
 
+    def texts(self) -> dict[str, tuple[int, str]]:
+        """Return version and text of every open document."""
+        return {uri: (index.document.version, index.document.text) for uri, index in self._open.items()}
+
+    def replace(self, texts: Mapping[str, tuple[int, str]]) -> None:
+        """Make exactly these documents the open ones, and read every other file afresh."""
+        for uri in [uri for uri in self._open if uri not in texts]:
+            del self._open[uri]
+        for uri, (version, text) in texts.items():
+            known = self._open.get(uri)
+            if known is None or known.document.text != text:
+                self.open(uri, version, text)
+        self._disk.clear()
+
     def load(self, uri: str) -> Source:
         """Return a file, from the editor where it is open there, else from disk; kept until ``refresh``."""
         if uri in self._open:

@@ -68,7 +68,7 @@ class RunResults:
         return sum(scenario.verdict is outcome for scenario in self.scenarios)
 
     def as_json(self) -> dict[str, Any]:
-        """Return the document of ``docs/schemas/run.schema.json``; unfinished scenarios are left out."""
+        """Return the document of ``docs/schemas/run.schema.json``."""
         return {
             "seed": self.manifest.seed,
             "model": self.manifest.model,
@@ -78,8 +78,6 @@ class RunResults:
 
     def _scenarios(self) -> Iterable[dict[str, Any]]:
         for scenario in self.scenarios:
-            if scenario.finished is None and not self.complete:
-                continue
             spec = scenario.spec
             yield {
                 "story": spec.story,

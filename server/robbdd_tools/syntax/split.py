@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 
 _NAME = r"[^\W\d][\w\-]*"
 _SHARED_STARTERS = (r"import\s*[\"']", rf"ns\s+{_NAME}\s*=")
@@ -46,8 +47,7 @@ def split(language: str, text: str) -> tuple[Chunk, ...]:
     lead = len(text) - len(_LEAD.sub("", text, count=1))
     if lead < first:
         starts.insert(0, lead)
-    ends = [*starts[1:], len(text)]
-    return tuple(Chunk(start, text[start:end]) for start, end in zip(starts, ends, strict=True))
+    return tuple(Chunk(start, text[start:end]) for start, end in pairwise((*starts, len(text))))
 
 
 _LEAD = re.compile(r"\A(?:\s|\ufeff|//[^\n]*)+")

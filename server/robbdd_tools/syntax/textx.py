@@ -75,9 +75,15 @@ def _expectation(rules: Any) -> Expectation:
 
 
 @cache
-def _metamodel(language: str) -> Any:
+def grammar_text(language: str) -> str:
+    """Return the whole grammar of a file kind: its own rules, the shared ones, the phrases of the catalog."""
     grammars = [data_file("grammar", f"{name}.tx").read_text(encoding="utf-8") for name in (language, "base")]
     if language == "bdd":
         grammars.append(phrase_rules(load_catalog()))
+    return "\n".join(grammars)
+
+
+@cache
+def _metamodel(language: str) -> Any:
     textx: Any = import_module("textx")
-    return textx.metamodel_from_str("\n".join(grammars), autokwd=True, memoization=True)
+    return textx.metamodel_from_str(grammar_text(language), autokwd=True, memoization=True)

@@ -1,0 +1,62 @@
+"""What stands at a cursor: the chunk, the enclosing declarations, the half-typed word."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.document import Span
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
+
+_WORD = re.compile(r"[\w\-.]*\Z")
+_QUOTED = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?")
+_VARIANT = re.compile(r"(?<![\w\-.<])Scenario\s+(?!Template\b)([^\W\d][\w\-]*)\s*\{")
+
+
+@dataclass(frozen=True, slots=True)
+class Cursor:
+    """A place in a file.
+
+    ``before`` is the text of the chunk up to the word at the cursor, ``word`` the part of it that is typed already
+    and ``span`` its absolute place; ``scopes`` the paths of the enclosing declarations, innermost first;
+    ``quoted`` the opened comment or string, if the cursor is inside one.
+    """
+
+    placed: PlacedDeclaration | None
+    before: str
+    word: str
+    span: Span
+    scopes: tuple[str, ...]
+    quoted: str | None
+
+
+def cursor_at(analysis: FileAnalysis, offset: int) -> Cursor:
+    """Describe the place ``offset`` (absolute) of a file."""
+    placed = next((entry for entry in reversed(analysis.declarations) if entry.offset <= offset), None)
+    start = 0 if placed is None else placed.offset
+    text = analysis.document.text[start:offset]
+    match = _WORD.search(text)
+    word = match[0] if match else ""
+    before = text[: len(text) - len(word)]
+    return Cursor(placed, before, word, Span(offset - len(word), offset), _scopes(placed, before), _quoted(text))
+
+
+def _scopes(placed: PlacedDeclaration | None, before: str) -> tuple[str, ...]:
+    symbols = placed.declaration.symbols if placed else ()
+    if not symbols:
+        return ()
+    outer = symbols[0].path
+    variants = _VARIANT.findall(before)
+    return (f"{outer}.{variants[-1]}", outer) if variants else (outer,)
+
+
+def _quoted(text: str) -> str | None:
+    """Return the comment or string that is still open at the end of ``text``."""
+    piece = next((match[0] for match in _QUOTED.finditer(text) if match.end() == len(text)), "")
+    if not piece:
+        return None
+    closed = not piece.startswith("//") and len(piece) > 1 and piece.endswith(piece[0])
+    return None if closed else piece

@@ -1,0 +1,1 @@
+"""The language server: converts, publishes, schedules; knows nothing of the language itself."""

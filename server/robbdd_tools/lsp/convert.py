@@ -1,0 +1,110 @@
+"""Between our data and the protocol's: the only place that knows the client's units (UTF-8, UTF-16, UTF-32)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from lsprotocol import types
+
+from robbdd_tools.base.diagnostic import Diagnostic
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.features.completion import Completion
+from robbdd_tools.names.index import FileIndex
+from robbdd_tools.names.project import Snapshot
+from robbdd_tools.syntax.declaration import SymbolKind
+
+SOURCE = "robbdd"
+_KINDS = types.CompletionItemKind
+_COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
+    "keyword": _KINDS.Keyword,
+    "file": _KINDS.File,
+    SymbolKind.EVENT: _KINDS.Event,
+    SymbolKind.VARIABLE: _KINDS.Variable,
+    SymbolKind.SET_VARIABLE: _KINDS.Variable,
+    SymbolKind.TEMPLATE: _KINDS.Class,
+    SymbolKind.SCENE: _KINDS.Module,
+    SymbolKind.NAMESPACE: _KINDS.Module,
+    SymbolKind.TASK: _KINDS.Constant,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Converter:
+    """Conversions for one client; ``encoding`` is the one agreed at initialisation."""
+
+    encoding: types.PositionEncodingKind | str = types.PositionEncodingKind.Utf16
+
+    def offset(self, document: Document, position: types.Position) -> int:
+        """Return the code-point offset of a client position; beyond a line's end is its end."""
+        if position.line >= len(document.line_starts):
+            return len(document.text)
+        line = document.line_text(position.line)
+        units = 0
+        for column, letter in enumerate(line):
+            if units >= position.character:
+                return document.line_starts[position.line] + column
+            units += self._units(letter)
+        return document.line_starts[position.line] + len(line)
+
+    def position(self, document: Document, offset: int) -> types.Position:
+        """Return the client position of a code-point offset."""
+        place = document.position(offset)
+        line = document.line_text(place.line)[: place.column]
+        return types.Position(line=place.line, character=sum(map(self._units, line)))
+
+    def range(self, document: Document, span: Span) -> types.Range:
+        """Return the client range of a span."""
+        return types.Range(start=self.position(document, span.start), end=self.position(document, span.end))
+
+    def span(self, document: Document, range: types.Range) -> Span:
+        """Return the span of a client range."""
+        return Span(self.offset(document, range.start), self.offset(document, range.end))
+
+    def location(self, snapshot: Snapshot, uri: str, span: Span) -> types.Location:
+        """Return a place in any file of a snapshot."""
+        return types.Location(uri=uri, range=self.range(document_of(snapshot, uri), span))
+
+    def diagnostic(self, snapshot: Snapshot, diagnostic: Diagnostic) -> types.Diagnostic:
+        """Return a diagnostic for the client."""
+        document = document_of(snapshot, diagnostic.uri)
+        related = [
+            types.DiagnosticRelatedInformation(
+                location=self.location(snapshot, place.uri, place.span), message=place.message
+            )
+            for place in diagnostic.related
+        ]
+        return types.Diagnostic(
+            range=self.range(document, diagnostic.span),
+            message=diagnostic.message,
+            severity=types.DiagnosticSeverity(diagnostic.severity),
+            code=diagnostic.code,
+            source=SOURCE,
+            related_information=related or None,
+        )
+
+    def completion(self, document: Document, completion: Completion) -> types.CompletionItem:
+        """Return a completion for the client; matching goes by what it replaces."""
+        edit = types.TextEdit(range=self.range(document, completion.span), new_text=completion.text)
+        return types.CompletionItem(
+            label=completion.label,
+            kind=_COMPLETION_KINDS.get(completion.kind, _KINDS.Value),
+            detail=completion.detail or None,
+            filter_text=completion.text,
+            text_edit=edit,
+        )
+
+    def _units(self, letter: str) -> int:
+        match self.encoding:
+            case types.PositionEncodingKind.Utf32:
+                return 1
+            case types.PositionEncodingKind.Utf8:
+                return len(letter.encode("utf-8", "surrogatepass"))
+            case _:
+                return 2 if ord(letter) > 0xFFFF else 1
+
+
+def document_of(snapshot: Snapshot, uri: str) -> Document:
+    """Return the document of a file; an empty one for a file without text, so that places in it are its start."""
+    source = snapshot.sources.get(uri)
+    return source.document if isinstance(source, FileIndex) else Document(uri, 0, "")

@@ -1,0 +1,210 @@
+"""The protocol's methods, each a few lines between conversion and a feature."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from lsprotocol import types
+
+from robbdd_tools.features.clause_results import clause_hints
+from robbdd_tools.features.completion import complete
+from robbdd_tools.features.definition import definition
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.hover import hover
+from robbdd_tools.features.scenarios import RunnableScenario, runnable_scenarios
+from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
+from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.names.project import Snapshot
+
+RUN, GHERKIN, CANCEL = "robbdd.run", "robbdd.gherkin", "robbdd.cancel"
+
+
+def create_server() -> RobbddServer:
+    """Return a server with all its methods registered."""
+    server = RobbddServer()
+    _register_documents(server)
+    _register_reading(server)
+    _register_actions(server)
+    _register_commands(server)
+    return server
+
+
+def _register_documents(server: RobbddServer) -> None:
+    @server.feature(types.INITIALIZED)
+    async def initialized(ls: RobbddServer, _: types.InitializedParams) -> None:
+        ls.convert = Converter(ls.workspace.position_encoding or types.PositionEncodingKind.Utf16)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
+    async def did_open(ls: RobbddServer, params: types.DidOpenTextDocumentParams) -> None:
+        document = params.text_document
+        await ls.text_changed(document.uri, document.version, document.text)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
+    async def did_change(ls: RobbddServer, params: types.DidChangeTextDocumentParams) -> None:
+        document = params.text_document
+        text = ls.workspace.get_text_document(document.uri).source
+        await ls.text_changed(document.uri, document.version, text)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
+    async def did_close(ls: RobbddServer, params: types.DidCloseTextDocumentParams) -> None:
+        await ls.text_closed(params.text_document.uri)
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    async def did_change_watched(ls: RobbddServer, params: types.DidChangeWatchedFilesParams) -> None:
+        await ls.files_changed([change.uri for change in params.changes])
+
+    @server.feature(types.SHUTDOWN)
+    def shutdown(ls: RobbddServer, _: None) -> None:
+        ls.stop()
+
+
+def _register_reading(server: RobbddServer) -> None:
+    options = types.CompletionOptions(trigger_characters=["<", ".", '"', " "])
+
+    @server.feature(types.TEXT_DOCUMENT_COMPLETION, options)
+    async def completion(ls: RobbddServer, params: types.CompletionParams) -> list[types.CompletionItem]:
+        def find(snapshot: Snapshot) -> list[types.CompletionItem]:
+            document = document_of(snapshot, params.text_document.uri)
+            offset = ls.convert.offset(document, params.position)
+            return [ls.convert.completion(document, entry) for entry in complete(snapshot, document.uri, offset)]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    async def go_to_definition(ls: RobbddServer, params: types.DefinitionParams) -> types.Location | None:
+        def find(snapshot: Snapshot) -> types.Location | None:
+            document = document_of(snapshot, params.text_document.uri)
+            found = definition(snapshot, document.uri, ls.convert.offset(document, params.position))
+            return None if found is None else ls.convert.location(snapshot, *found)
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_HOVER)
+    async def show_hover(ls: RobbddServer, params: types.HoverParams) -> types.Hover | None:
+        def find(snapshot: Snapshot) -> types.Hover | None:
+            document = document_of(snapshot, params.text_document.uri)
+            found = hover(snapshot, document.uri, ls.convert.offset(document, params.position))
+            if found is None:
+                return None
+            contents = types.MarkupContent(kind=types.MarkupKind.Markdown, value=found.markdown)
+            return types.Hover(contents=contents, range=ls.convert.range(document, found.span))
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
+    async def inlay_hint(ls: RobbddServer, params: types.InlayHintParams) -> list[types.InlayHint]:
+        def find(snapshot: Snapshot) -> list[types.InlayHint]:
+            document = document_of(snapshot, params.text_document.uri)
+            wanted = ls.convert.span(document, params.range)
+            return [
+                types.InlayHint(
+                    position=ls.convert.position(document, hint.span.end),
+                    label=hint.label,
+                    tooltip="\n".join(hint.lines),
+                    padding_left=True,
+                )
+                for hint in clause_hints(snapshot, document.uri, ls.judged)
+                if wanted.contains(hint.span.end)
+            ]
+
+        return await ls.analyse(find)
+
+
+def _register_actions(server: RobbddServer) -> None:
+    kinds = [types.CodeActionKind.QuickFix, types.CodeActionKind.Source]
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=kinds))
+    async def code_action(ls: RobbddServer, params: types.CodeActionParams) -> list[types.CodeAction]:
+        def find(snapshot: Snapshot) -> list[types.CodeAction]:
+            uri = params.text_document.uri
+            only = params.context.only
+            actions: list[types.CodeAction] = []
+            if _asked(only, types.CodeActionKind.QuickFix):
+                actions += _quick_fixes(ls, snapshot, params)
+            if _asked(only, types.CodeActionKind.Source):
+                span = ls.convert.span(document_of(snapshot, uri), params.range)
+                actions += [
+                    _source_action(command)
+                    for scenario in runnable_scenarios(snapshot, uri)
+                    if scenario.extent.start <= span.end and span.start <= scenario.extent.end
+                    for command in [_run_command(uri, scenario)]
+                ]
+                if runnable_scenarios(snapshot, uri):
+                    actions.append(_source_action(_gherkin_command(uri)))
+            return actions
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
+    async def code_lens(ls: RobbddServer, params: types.CodeLensParams) -> list[types.CodeLens]:
+        def find(snapshot: Snapshot) -> list[types.CodeLens]:
+            document = document_of(snapshot, params.text_document.uri)
+            return [
+                types.CodeLens(range=ls.convert.range(document, scenario.span), command=command)
+                for scenario in runnable_scenarios(snapshot, document.uri)
+                for command in (_run_command(document.uri, scenario), _gherkin_command(document.uri))
+            ]
+
+        return await ls.analyse(find)
+
+
+def _register_commands(server: RobbddServer) -> None:
+    @server.command(RUN)
+    async def run(ls: RobbddServer, target: dict[str, Any]) -> None:
+        await start_run(ls, str(target["uri"]), target.get("variant"))
+
+    @server.command(GHERKIN)
+    async def gherkin(ls: RobbddServer, target: dict[str, Any]) -> dict[str, list[str]]:
+        return {"files": await generate_gherkin(ls, str(target["uri"]))}
+
+    @server.command(CANCEL)
+    def cancel(ls: RobbddServer, _: dict[str, Any] | None = None) -> None:
+        cancel_run(ls)
+
+    @server.feature(types.WINDOW_WORK_DONE_PROGRESS_CANCEL)
+    def cancel_progress(ls: RobbddServer, params: types.WorkDoneProgressCancelParams) -> None:
+        if ls.run is not None and ls.run.token == params.token:
+            cancel_run(ls)
+
+
+def _asked(only: Sequence[types.CodeActionKind | str] | None, kind: types.CodeActionKind) -> bool:
+    return not only or any(kind == wanted or kind.startswith(f"{wanted}.") for wanted in only)
+
+
+def _quick_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionParams) -> list[types.CodeAction]:
+    uri = params.text_document.uri
+    span = ls.convert.span(document_of(snapshot, uri), params.range)
+    found: list[types.CodeAction] = []
+    for diagnostic in fast_diagnostics(snapshot, uri):
+        if diagnostic.span.start > span.end or diagnostic.span.end < span.start:
+            continue
+        for position, fix in enumerate(diagnostic.fixes):
+            changes: dict[str, list[types.TextEdit]] = {}
+            for edit in fix.edits:
+                range = ls.convert.range(document_of(snapshot, edit.uri), edit.span)
+                changes.setdefault(edit.uri, []).append(types.TextEdit(range=range, new_text=edit.text))
+            found.append(
+                types.CodeAction(
+                    title=fix.title,
+                    kind=types.CodeActionKind.QuickFix,
+                    diagnostics=[ls.convert.diagnostic(snapshot, diagnostic)],
+                    edit=types.WorkspaceEdit(changes=changes),
+                    is_preferred=position == 0,
+                )
+            )
+    return found
+
+
+def _source_action(command: types.Command) -> types.CodeAction:
+    return types.CodeAction(title=command.title, kind=types.CodeActionKind.Source, command=command)
+
+
+def _run_command(uri: str, scenario: RunnableScenario) -> types.Command:
+    target = {"uri": uri, "variant": scenario.iri}
+    return types.Command(title=f"Run scenario {scenario.name}", command=RUN, arguments=[target])
+
+
+def _gherkin_command(uri: str) -> types.Command:
+    return types.Command(title="Generate Gherkin", command=GHERKIN, arguments=[{"uri": uri}])

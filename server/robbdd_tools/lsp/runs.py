@@ -1,0 +1,173 @@
+"""Runs and Gherkin from the editor: progress, cancelling, results as they come."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import shutil
+import tempfile
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lsprotocol import types
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.features.clause_results import ClauseResult, JudgedClause, clause_text
+from robbdd_tools.features.diagnostics import all_diagnostics
+from robbdd_tools.graph.model import AcceptanceModel, Iri
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.names.project import Snapshot
+from robbdd_tools.run.launch import Agent
+from robbdd_tools.run.prepare import RunRequest, prepare, write_features
+from robbdd_tools.run.protocol import ClauseJudged, RunMessage, ScenarioFinished
+from robbdd_tools.run.report import values_words, verdict_words
+from robbdd_tools.run.results import RunResults
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.server import RobbddServer
+
+RUN_MESSAGE = "robbdd/runMessage"
+_LOG = logging.getLogger(__name__)
+_BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
+
+
+@dataclass
+class ActiveRun:
+    """A run in progress: the files that its clauses may stand in, and the results so far by clause IRI."""
+
+    uri: str
+    token: str
+    uris: tuple[str, ...]
+    results: RunResults
+    agent: Agent
+    found: dict[str, list[ClauseResult]] = field(default_factory=dict[str, list[ClauseResult]])
+    texts: dict[str, str] = field(default_factory=dict[str, str])
+
+    def cancel(self) -> None:
+        """Stop the agent; the loop that reads its messages then ends by itself."""
+        self.agent.cancel()
+
+
+class ModelError(Exception):
+    """The model cannot be run as it is; the message says why, for the user."""
+
+
+async def generate_gherkin(ls: RobbddServer, uri: str) -> list[str]:
+    """Write the features of a model beside it, in ``features/``, and return their URIs."""
+    path = uri_to_path(uri)
+    if path is None:
+        _tell(ls, "save the model first: its features are written beside it")
+        return []
+    try:
+        model = await ls.analyse(lambda snapshot: _sound_model(snapshot, uri))
+        written = await asyncio.to_thread(write_features, model, path.parent / "features")
+    except (ModelError, OSError) as error:
+        _tell(ls, str(error))
+        return []
+    return [path_to_uri(file) for file in written]
+
+
+async def start_run(ls: RobbddServer, uri: str, variant: str | None) -> None:
+    """Run a model's scenarios (one variant's where given) to their end, showing results as they come."""
+    if ls.run is not None:
+        _tell(ls, "a run is going on: cancel it first")
+        return
+    folder = Path(tempfile.mkdtemp(prefix="robbdd-"))
+    try:
+        model = await ls.analyse(lambda snapshot: _sound_model(snapshot, uri))
+        request = RunRequest(model, uri, variants=None if variant is None else {Iri(variant)})
+        manifest = await asyncio.to_thread(prepare, request, folder)
+        agent = await asyncio.to_thread(Agent, folder)
+        uris = await ls.analyse(lambda snapshot: tuple(file.document.uri for file in snapshot.scope(uri).files))
+        ls.run = ActiveRun(uri, f"robbdd-run-{folder.name}", uris, RunResults(manifest), agent)
+        await _follow(ls, ls.run)
+    except (ModelError, OSError) as error:
+        _tell(ls, str(error))
+    finally:
+        ls.run = None
+        await asyncio.to_thread(shutil.rmtree, folder, True)
+
+
+def cancel_run(ls: RobbddServer) -> None:
+    """Cancel the run in progress, if any."""
+    if ls.run is not None:
+        run = ls.run
+        asyncio.get_running_loop().run_in_executor(None, run.cancel)
+
+
+async def _follow(ls: RobbddServer, run: ActiveRun) -> None:
+    """Hand every message of the agent on, keep its results, and report progress."""
+    await _begin_progress(ls, run)
+    messages = run.agent.messages()
+    while (message := await asyncio.to_thread(next, messages, None)) is not None:
+        await _take(ls, run, message)
+    if not run.results.complete:
+        for judged in run.results.close(run.agent.ending()):
+            await _take(ls, run, judged)
+    holding = run.results.count(Outcome.HOLDS)
+    summary = f"{holding} of {len(run.results.scenarios)} scenarios hold"
+    ls.work_done_progress.end(run.token, types.WorkDoneProgressEnd(message=summary))
+    await ls.publish_results(run.uris)
+
+
+async def _take(ls: RobbddServer, run: ActiveRun, message: RunMessage) -> None:
+    run.results.apply(message)
+    ls.protocol.notify(RUN_MESSAGE, _for_client(run, message))
+    if isinstance(message, ClauseJudged):
+        await _judged(ls, run, message)
+    elif isinstance(message, ScenarioFinished):
+        done = sum(scenario.finished is not None for scenario in run.results.scenarios)
+        total = len(run.results.scenarios)
+        report = types.WorkDoneProgressReport(message=f"{done}/{total} scenarios", percentage=100 * done // total)
+        ls.work_done_progress.report(run.token, report)
+
+
+def _for_client(run: ActiveRun, message: RunMessage) -> dict[str, Any]:
+    return {"uri": run.uri, "message": {"type": type(message).__name__, **asdict(message)}}
+
+
+async def _judged(ls: RobbddServer, run: ActiveRun, message: ClauseJudged) -> None:
+    """Put a judgement where its clause stands."""
+    spec = run.results.scenarios[message.index].spec
+    clause = next((entry for entry in spec.clauses if entry.line == message.line), None)
+    if clause is None:
+        return
+    outcome = Outcome(message.verdict)
+    rank = _BADNESS[outcome] + (message.robustness or 0.0)
+    label = verdict_words(message).partition(":")[0]
+    detail = f"{values_words(spec)}: {verdict_words(message)}"
+    run.found.setdefault(clause.iri, []).append(ClauseResult(outcome, label, detail, rank))
+    if clause.iri not in run.texts:
+        text = await ls.analyse(lambda snapshot: clause_text(snapshot, clause.iri, run.uris))
+        run.texts[clause.iri] = text or ""
+    ls.judged[clause.iri] = JudgedClause(run.texts[clause.iri], tuple(run.found[clause.iri]))
+    await ls.publish_results(run.uris)
+
+
+async def _begin_progress(ls: RobbddServer, run: ActiveRun) -> None:
+    window = ls.client_capabilities.window
+    if window is not None and window.work_done_progress:
+        # pygls leaves the type of the client's (empty) answer open.
+        await ls.work_done_progress.create_async(run.token)  # pyright: ignore[reportUnknownMemberType]
+    begin = types.WorkDoneProgressBegin(title="RobBDD run", cancellable=True, percentage=0)
+    ls.work_done_progress.begin(run.token, begin)
+
+
+def _sound_model(snapshot: Snapshot, uri: str) -> AcceptanceModel:
+    """Return the acceptance model of a file without errors; raises ``ModelError``."""
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.read import read_model
+
+    errors = [found for found in all_diagnostics(snapshot, uri) if found.severity is Severity.ERROR]
+    if errors:
+        raise ModelError(f"the model has errors, the first: {errors[0].message}")
+    model = read_model(build_graph(snapshot, uri).graph)
+    if not any(story.variants for story in model.stories):
+        raise ModelError("the model has no scenario to run")
+    return model
+
+
+def _tell(ls: RobbddServer, message: str) -> None:
+    ls.window_show_message(types.ShowMessageParams(type=types.MessageType.Error, message=message))

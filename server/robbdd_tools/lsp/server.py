@@ -1,0 +1,158 @@
+"""The server's state: the project behind one analysis thread, what is published, what runs."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from lsprotocol import types
+from pygls.lsp.server import LanguageServer
+
+from robbdd_tools import __version__
+from robbdd_tools.base.diagnostic import Diagnostic
+from robbdd_tools.features.clause_results import JudgedClause, clause_diagnostics
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.shapes import ShapeValidator
+from robbdd_tools.lsp.worker import Answer, Request
+from robbdd_tools.names.project import Project, Snapshot
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.runs import ActiveRun
+
+Result = TypeVar("Result")
+
+
+class RobbddServer(LanguageServer):
+    """One client's server.
+
+    All analysis happens in one thread, in the order of the messages, so that the event loop stays free and no
+    answer is older than the edits before it.
+    """
+
+    def __init__(self) -> None:
+        # pygls leaves the types of its own further arguments open.
+        super().__init__("robbdd-lsp", __version__)  # pyright: ignore[reportUnknownMemberType]
+        self.project = Project()
+        self.convert = Converter()
+        self.judged: dict[str, JudgedClause] = {}
+        self.run: ActiveRun | None = None
+        self._shapes: dict[str, tuple[Diagnostic, ...]] = {}
+        self._shaped_texts: dict[str, dict[str, str]] = {}
+        self._requested_texts: dict[str, dict[str, str]] = {}
+        self._analysis = ThreadPoolExecutor(1, thread_name_prefix="analysis")
+        self._validator = ShapeValidator(self._shapes_found)
+        self._opened: dict[str, None] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    async def analyse(self, work: Callable[[Snapshot], Result]) -> Result:
+        """Run ``work`` on the newest snapshot in the analysis thread."""
+        return await self._in_thread(lambda: work(self.project.snapshot()))
+
+    async def _in_thread(self, work: Callable[[], Result]) -> Result:
+        return await asyncio.get_running_loop().run_in_executor(self._analysis, work)
+
+    async def text_changed(self, uri: str, version: int, text: str) -> None:
+        """Take a new text of an open document and publish what it means."""
+        self._opened.setdefault(uri)
+        await self._in_thread(lambda: self.project.open(uri, version, text))
+        await self.publish(uri)
+
+    async def text_closed(self, uri: str) -> None:
+        """Go back to the file on disk and take its diagnostics from the editor."""
+        self._opened.pop(uri, None)
+        self._shapes.pop(uri, None)
+        self._validator.forget(uri)
+        await self._in_thread(lambda: self.project.close(uri))
+        self._send(uri, None, [])
+        await self.publish(uri)
+
+    async def files_changed(self, uris: Sequence[str]) -> None:
+        """Read files again that changed on disk, and publish what that means for the open ones."""
+
+        def forget() -> None:
+            for uri in uris:
+                self.project.refresh(uri)
+
+        await self._in_thread(forget)
+        for uri in list(self._opened):
+            await self.publish(uri)
+
+    async def publish(self, changed: str) -> None:
+        """Publish the fast diagnostics of a document and of the open ones that import it; order the slow ones."""
+
+        def affected(snapshot: Snapshot) -> list[str]:
+            importers = snapshot.importers(changed)
+            return [uri for uri in self._opened if uri == changed or uri in importers]
+
+        for uri in await self.analyse(affected):
+            await self._publish_one(uri)
+            request, self._requested_texts[uri] = await self.analyse(
+                lambda snapshot, uri=uri: self._order(snapshot, uri)
+            )
+            self._validator.request(request)
+
+    def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
+        """Return the request to validate a file, with the texts that its answer will be about."""
+        texts = {index.document.uri: index.document.text for index in snapshot.scope(uri).files}
+        return Request(snapshot.revision, uri, self.project.texts()), texts
+
+    async def publish_results(self, uris: Sequence[str]) -> None:
+        """Show new results of clauses: diagnostics again, and the client asks for its hints anew."""
+        for uri in uris:
+            if uri in self._opened:
+                await self._publish_one(uri)
+        capabilities = self.client_capabilities.workspace
+        hints = capabilities.inlay_hint if capabilities else None
+        if hints is not None and hints.refresh_support:
+            self.workspace_inlay_hint_refresh(None)
+
+    def stop(self) -> None:
+        """End what runs beside the server."""
+        if self.run is not None:
+            self.run.cancel()
+        self._validator.stop()
+        self._analysis.shutdown(wait=False, cancel_futures=True)
+
+    async def _publish_one(self, uri: str) -> None:
+        def find(snapshot: Snapshot) -> tuple[int, list[types.Diagnostic]]:
+            found = [*fast_diagnostics(snapshot, uri), *self._valid_shapes(snapshot, uri)]
+            found += clause_diagnostics(snapshot, uri, self.judged)
+            document = document_of(snapshot, uri)
+            return document.version, [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
+
+        version, diagnostics = await self.analyse(find)
+        self._send(uri, version, diagnostics)
+
+    def _valid_shapes(self, snapshot: Snapshot, uri: str) -> list[Diagnostic]:
+        """Return the shapes' findings in a file, from every open file's validation, while its text is the same."""
+        kept: list[Diagnostic] = []
+        for owner, found in self._shapes.items():
+            text = self._shaped_texts[owner].get(uri)
+            if text == document_of(snapshot, uri).text:
+                kept += [diagnostic for diagnostic in found if diagnostic.uri == uri]
+        return kept
+
+    def _shapes_found(self, answer: Answer) -> None:
+        """Take an answer of the validation process, which is the newest for its file."""
+        self._shapes[answer.uri] = answer.diagnostics
+        self._shaped_texts[answer.uri] = self._requested_texts[answer.uri]
+
+        async def show() -> None:
+            for uri in list(self._opened):
+                await self._publish_one(uri)
+
+        self.spawn(show())
+
+    def spawn(self, work: Coroutine[Any, Any, None]) -> None:
+        """Start work that nobody waits for; it is kept from being collected until it ends."""
+        task = asyncio.get_running_loop().create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def _send(self, uri: str, version: int | None, diagnostics: list[types.Diagnostic]) -> None:
+        self.text_document_publish_diagnostics(
+            types.PublishDiagnosticsParams(uri=uri, version=version, diagnostics=diagnostics)
+        )
