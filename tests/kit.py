@@ -1,0 +1,152 @@
+"""Fixtures as text: several files, a cursor, and the diagnostics expected where they stand.
+
+``//- name.bdd`` begins a file; ``$0`` is the cursor; a comment line of carets under a line expects a diagnostic on
+the text above the carets: ``//   ^^^^ code`` with, optionally, words that its message must contain.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from robbdd_tools.base.diagnostic import Diagnostic
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.names.project import Project, Snapshot
+
+FOLDER = "file:///fixture/"
+EXAMPLES = Path(__file__).parent.parent / "examples"
+
+SCENE = """ns env = 'https://example.org/env/'
+obj set (ns=env) parts { object bolt, object nut }
+similar obj set (ns=env) washers { base name: washer  count: 3 }
+obj set (ns=env) furniture { object bench, object tray }
+ws set (ns=env) places { workspace bench_ws, workspace tray_ws }
+agn set (ns=env) arms { agent panda, agent ur10 }
+comp (ns=env) tray_comp of ws <places.tray_ws> { obj <furniture.tray> }
+comp (ns=env) bench_comp of ws <places.bench_ws> { obj <furniture.bench> ws comp <tray_comp> }
+scene (ns=env) bench_scene { obj set <parts> ws comp <bench_comp> ws comp <tray_comp> agn set <arms> }
+"""
+"""A small sound scene for models that need one: import it as ``lab.scene``."""
+
+EVENTS = """import "lab.scene"
+ns t = 'https://example.org/t/'
+Task (ns=t) task
+Event (ns=t) start
+Event (ns=t) pick-start
+Event (ns=t) place-end
+Event (ns=t) end
+"""
+
+TEMPLATE = """Scenario Template (ns=t) fetch {
+    duration: from <start> until <end>
+    task: <task>
+    var part
+    var robot
+    var goal
+    Given:
+        on-bench: holds(<part> is located at <goal>, before <pick-start>)
+    When:
+        Behaviour (ns=t) carry {
+            duration: from <pick-start> until <place-end>
+            <robot> picks <part> and places at <goal>
+        }
+    Then:
+        in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)
+}
+"""
+
+STORY = """User Story (ns=t) fetching {
+    As A "operator" I Want "parts fetched" So That "work goes on"
+    Scenarios:
+        Scenario bench-to-tray {
+            template: <fetch>
+            scene: <bench_scene>
+            variation:
+                var <fetch.part>: obj set <parts>
+                var <fetch.robot>: { <arms.panda> }
+                var <fetch.goal>: { <places.bench_ws>, <places.tray_ws> }
+        }
+}
+"""
+
+MODEL = EVENTS + TEMPLATE + STORY
+"""A small sound model over ``SCENE``."""
+
+_MARKER = re.compile(r"^(\s*//\s*)(\^+)\s+(\S+)\s*(.*)$")
+
+
+@dataclass(frozen=True)
+class Expected:
+    """A diagnostic that a fixture expects."""
+
+    uri: str
+    span: Span
+    code: str
+    words: str
+
+
+@dataclass(frozen=True)
+class Fixture:
+    """The project of a fixture, its first file, its cursor (-1 without) and its expectations."""
+
+    project: Project
+    uri: str
+    cursor: int
+    expected: tuple[Expected, ...]
+
+    @property
+    def snapshot(self) -> Snapshot:
+        return self.project.snapshot()
+
+
+def fixture(text: str) -> Fixture:
+    """Make a project of a fixture's text; without ``//-`` it is one ``main.bdd`` beside ``lab.scene``."""
+    parts = re.split(r"^//- (\S+)\n", text, flags=re.MULTILINE)
+    files = dict(zip(parts[1::2], parts[2::2], strict=True)) if len(parts) > 1 else {"main.bdd": text}
+    files.setdefault("lab.scene", SCENE)
+    project = Project()
+    cursor = -1
+    expected: list[Expected] = []
+    for name, content in files.items():
+        if "$0" in content:
+            cursor = content.index("$0")
+            content = content.replace("$0", "")
+        uri = FOLDER + name
+        expected += _expectations(uri, content)
+        project.open(uri, 1, content)
+    return Fixture(project, FOLDER + next(iter(files)), cursor, tuple(expected))
+
+
+def _expectations(uri: str, text: str) -> list[Expected]:
+    document = Document(uri, 0, text)
+    found: list[Expected] = []
+    marked = 0
+    for line in range(len(document.line_starts)):
+        match = _MARKER.match(document.line_text(line))
+        if match is None:
+            marked = line
+            continue
+        start = document.line_starts[marked] + match.start(2)
+        found.append(Expected(uri, Span(start, start + len(match[2])), match[3], match[4]))
+    return found
+
+
+def assert_diagnostics(found: list[Diagnostic], case: Fixture) -> None:
+    """Check that exactly the expected diagnostics were found, each at its place with its words."""
+    shown = sorted((entry.uri, entry.span, entry.code) for entry in found)
+    assert shown == sorted((entry.uri, entry.span, entry.code) for entry in case.expected), found
+    for expected in case.expected:
+        messages = [entry.message for entry in found if (entry.span, entry.code) == (expected.span, expected.code)]
+        assert any(expected.words in message for message in messages), messages
+
+
+def corpus(*endings: str) -> list[Path]:
+    """Return the foreign models named by ``ROBBDD_CORPUS``; skips the test where it is not set."""
+    folder = os.environ.get("ROBBDD_CORPUS")
+    if not folder:
+        pytest.skip("ROBBDD_CORPUS is not set: no foreign models to read")
+    return sorted(path for path in Path(folder, "current").rglob("*") if path.suffix in endings)
