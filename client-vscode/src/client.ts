@@ -16,6 +16,7 @@ import type { ServerState } from "./presentation";
 import { RestartBudget } from "./restarts";
 import { isRunNotification } from "./runs/messages";
 import type { RunMonitor } from "./runs/monitor";
+import { openServerSetting } from "./settings";
 import { surroundings } from "./surroundings";
 
 export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
@@ -69,7 +70,9 @@ export class Server implements vscode.Disposable {
       return undefined;
     }
     try {
-      return await client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [argument] });
+      return await this.follow(command, argument, () =>
+        client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [argument] }),
+      );
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
       this.log.error(`${command}: ${reason}`);
@@ -119,7 +122,7 @@ export class Server implements vscode.Disposable {
           // A broken pipe is followed by the close of the connection, which is where the decision is made.
           error: () => ({ action: ErrorAction.Continue, handled: true }),
           closed: () => {
-            this.runs.interrupt();
+            this.runs.abandon();
             // A server that never answered will not do so the next time either.
             const again = answered && budget.crashed(Date.now());
             if (!again) {
@@ -129,13 +132,8 @@ export class Server implements vscode.Disposable {
           },
         },
         middleware: {
-          executeCommand: async (name, argumentsOf, next) => {
-            const result: unknown = await next(name, argumentsOf);
-            if (name === "robbdd.gherkin") {
-              await openFeatures(result);
-            }
-            return result;
-          },
+          executeCommand: (name, argumentsOf, next) =>
+            this.follow(name, argumentsOf[0], async () => (await next(name, argumentsOf)) as unknown),
         },
         // Python's logging writes everything to stderr; that alone does not make a line an error.
         stdioOptions: { stdout: forwardLines, stderr: forwardLines },
@@ -159,13 +157,29 @@ export class Server implements vscode.Disposable {
     return client;
   }
 
+  /** Send a command of the server, whether a lens or the palette asked for it, and do what follows from its answer. */
+  private async follow(command: string, argument: unknown, send: () => Promise<unknown>): Promise<unknown> {
+    try {
+      const result = await send();
+      if (command === "robbdd.gherkin") {
+        await openFeatures(result);
+      }
+      return result;
+    } finally {
+      if (command === "robbdd.run" && hasUri(argument)) {
+        // The answer comes after the last message. A cancelled or crashed run has not said that it ended.
+        this.runs.end(argument.uri);
+      }
+    }
+  }
+
   private async shutDown(): Promise<void> {
     const client = this.client;
     this.client = undefined;
     if (client?.needsStop() === true) {
       await client.dispose(STOP_TIMEOUT);
     }
-    this.runs.interrupt();
+    this.runs.abandon();
     this.publish({ kind: "stopped" });
   }
 
@@ -196,7 +210,7 @@ export class Server implements vscode.Disposable {
     }
     this.publish({ kind: "failed", problem: lookup.problem });
     this.complain(lookup.problem, {
-      "Open Setting": () => void vscode.commands.executeCommand("workbench.action.openSettings", "robbdd.server.path"),
+      "Open Setting": openServerSetting,
       "Try Again": () => void this.restart(),
     });
   }
@@ -209,6 +223,10 @@ export class Server implements vscode.Disposable {
       }
     });
   }
+}
+
+function hasUri(value: unknown): value is { readonly uri: string } {
+  return typeof value === "object" && value !== null && "uri" in value && typeof value.uri === "string";
 }
 
 function forwardLines(input: Readable, channel: vscode.LogOutputChannel): void {

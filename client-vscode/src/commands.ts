@@ -1,8 +1,8 @@
 // The commands of the palette. Those of code lenses (robbdd.run, …) are the server's own.
 import * as vscode from "vscode";
 import type { Server } from "./client";
-import { openFeatures } from "./features";
 import type { RunMonitor } from "./runs/monitor";
+import { openServerSetting } from "./settings";
 
 export function registerCommands(
   server: Server,
@@ -12,13 +12,7 @@ export function registerCommands(
   const handlers: Record<string, (target?: unknown) => unknown> = {
     "robbdd.runFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri })),
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
-    "robbdd.generateGherkin": (target) =>
-      withModel(target, async (uri) => {
-        const result = await server.execute("robbdd.gherkin", { uri });
-        if (result !== undefined) {
-          await openFeatures(result);
-        }
-      }),
+    "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
     "robbdd.restartServer": () => server.restart(),
     "robbdd.showLog": () => {
       log.show();
@@ -45,12 +39,13 @@ async function withModel(target: unknown, task: (uri: string) => Promise<unknown
 
 async function chooseAction(): Promise<void> {
   const actions = [
-    { label: "$(output) Show Log", command: "robbdd.showLog" },
-    { label: "$(debug-restart) Restart Language Server", command: "robbdd.restartServer" },
-    { label: "$(gear) Open Setting robbdd.server.path", command: "workbench.action.openSettings" },
+    { label: "$(output) Show Log", run: () => void vscode.commands.executeCommand("robbdd.showLog") },
+    {
+      label: "$(debug-restart) Restart Language Server",
+      run: () => void vscode.commands.executeCommand("robbdd.restartServer"),
+    },
+    { label: "$(gear) Open Setting robbdd.server.path", run: openServerSetting },
   ];
   const choice = await vscode.window.showQuickPick(actions, { placeHolder: "RobBDD language server" });
-  if (choice !== undefined) {
-    await vscode.commands.executeCommand(choice.command, "robbdd.server.path");
-  }
+  choice?.run();
 }

@@ -1,12 +1,11 @@
 // What follows when the server has written feature files.
 import * as vscode from "vscode";
 
-/** Open the first of the feature files that `robbdd.gherkin` returned. */
+/** Open the first of the feature files that `robbdd.gherkin` returned; when there is none the server has said why. */
 export async function openFeatures(result: unknown): Promise<void> {
   const files = featureFiles(result);
   const [first] = files;
   if (first === undefined) {
-    void vscode.window.showWarningMessage("No feature was generated. The Problems view says what is missing.");
     return;
   }
   await vscode.window.showTextDocument(vscode.Uri.parse(first), { viewColumn: vscode.ViewColumn.Beside });

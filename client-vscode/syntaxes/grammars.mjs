@@ -4,7 +4,7 @@ import { COMMON, NAME, QUALIFIED, declaration, grammar, labels, phrases } from "
 const DECLARE = "storage.type.declaration";
 const SECTION = "keyword.control.section";
 const WORD = "keyword.other";
-const PROPERTY = "support.type.property-name";
+const PROPERTY = "keyword.other.property";
 const PHRASE = "support.function";
 
 const NUMBER = String.raw`(?<![\p{L}\p{N}_.])([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)`;
@@ -101,7 +101,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   { match: String.raw`(?<=>)\s*(at)(?![\p{L}\p{N}_-])`, captures: { 1: { name: `${PHRASE}.behaviour.robbdd` } } },
   phrases(`${WORD}.time`, "seconds", "before", "after", "from", "until"),
   phrases("keyword.control.quantifier", "for all", "exists in", "such that", "in"),
-  phrases("keyword.operator.logical", "and", "or", "not"),
+  phrases("keyword.operator.wordlike", "and", "or", "not"),
   phrases(`${WORD}.story`, "As A", "As An", "I Want", "So That"),
   phrases(
     `${WORD}.variation`,

@@ -100,7 +100,7 @@ test("declarations of a .bdd file name what they declare", async () => {
     "Task → storage.type.declaration",
     "fetch-task → variable.other.constant",
     "fetch → entity.name.type.template",
-    "duration → support.type.property-name",
+    "duration → keyword.other.property",
     "from → keyword.other.time",
     "until → keyword.other.time",
     "set var → storage.type.variable",
@@ -131,8 +131,8 @@ test("clauses show their section, fluent, quantifier and time constraint", async
     "occurs → support.function.event",
     "and places at → support.function.behaviour",
     "for all → keyword.control.quantifier",
-    "not → keyword.operator.logical",
-    "or → keyword.operator.logical",
+    "not → keyword.operator.wordlike",
+    "or → keyword.operator.wordlike",
   );
 });
 
@@ -157,7 +157,7 @@ test("a scene shows its sets and their members", async () => {
     "similar obj set (ns=env) washers { base name: washer  count: 3 }\nobj set (ns=env) parts { object bolt }\nscene (ns=env) s { obj set <parts> }",
     "similar obj set → storage.type.declaration",
     "washers → entity.name.type.set",
-    "base name → support.type.property-name",
+    "base name → keyword.other.property",
     "3 → constant.numeric",
     "bolt → variable.other.constant",
     "s → entity.name.type.scene",
@@ -173,7 +173,7 @@ test("a unit is one behind a number or a vector only", async () => {
     "kg → keyword.other.unit",
     "m → entity.name.function.model",
     "mjcf → constant.language",
-    "sys path → support.type.property-name",
+    "sys path → keyword.other.property",
   );
 });
 
@@ -184,9 +184,9 @@ test("an execution shows its policies and limits", async () => {
     "at-bench → entity.name.function.policy",
     "seconds → keyword.other.unit",
     "linear distance → support.function.evaluator",
-    "less-than → support.type.property-name",
+    "less-than → keyword.other.property",
     "run → entity.name.type.execution",
-    "variant → support.type.property-name",
+    "variant → keyword.other.property",
   );
 });
 

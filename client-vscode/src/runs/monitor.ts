@@ -26,17 +26,29 @@ export class RunMonitor implements vscode.Disposable {
     this.publish();
   }
 
+  /** The server has nothing more to say about a run. */
+  end(uri: string): void {
+    this.interrupt(uri, "The run ended before it was complete.");
+  }
+
   /** The server is gone, and with it whatever it was running. */
-  interrupt(): void {
-    for (const [uri, report] of this.reports) {
-      this.print(report.interrupt("The language server stopped during the run."));
-      this.settle(uri, report);
+  abandon(): void {
+    for (const uri of [...this.reports.keys()]) {
+      this.interrupt(uri, "The language server stopped during the run.");
     }
-    this.publish();
   }
 
   dispose(): void {
     this.channel.dispose();
+  }
+
+  private interrupt(uri: string, reason: string): void {
+    const report = this.reports.get(uri);
+    if (report !== undefined) {
+      this.print(report.interrupt(reason));
+      this.settle(uri, report);
+      this.publish();
+    }
   }
 
   private settle(uri: string, report: RunReport): void {

@@ -1,0 +1,86 @@
+// A whole session: a copy of a workspace, a code-server on it, a browser that shows it; all of it gone at the end.
+import { cp, mkdir, mkdtemp, readFile, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { CHROMIUM, SCREENSHOTS, VSIX, playwright, required } from "./checkout.mjs";
+import { CodeServer } from "./codeServer.mjs";
+import { Workbench } from "./workbench.mjs";
+
+const LOOPBACK = new Set(["127.0.0.1", "localhost", "[::1]"]);
+
+const CHROMIUM_FLAGS = [
+  "--no-sandbox", // tests run as root in containers
+  "--disable-gpu",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+  // Below the reach of page routes too (service workers, web views): no name but loopback resolves.
+  "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost",
+];
+
+export class Session {
+  #folder;
+  #browser;
+  #page;
+
+  /**
+   * Open a workspace in the workbench.
+   *
+   * @param {object} options
+   * @param {string} options.workspace folder to work on a copy of
+   * @param {Record<string, unknown>} [options.settings] editor settings
+   * @param {string} [options.searchPath] PATH of the extension host
+   * @param {boolean} [options.trust] false leaves the workspace untrusted
+   * @param {(workspace: string) => Promise<void>} [options.prepare] changes the copy before it is opened
+   */
+  static async open({ workspace, prepare = async () => {}, ...options }) {
+    const session = new Session();
+    try {
+      await session.#open(workspace, prepare, options);
+      return session;
+    } catch (error) {
+      await session.close("could-not-open");
+      throw error;
+    }
+  }
+
+  async #open(workspace, prepare, options) {
+    this.#folder = await mkdtemp(join(tmpdir(), "robbdd-workbench-"));
+    this.workspace = join(this.#folder, "workspace");
+    await cp(workspace, this.workspace, { recursive: true });
+    await prepare(this.workspace);
+    const state = join(this.#folder, "state");
+    await mkdir(state);
+    this.server = new CodeServer({ state, ...options });
+    await this.server.start(required(VSIX, "run npm run package in client-vscode"));
+    this.#browser = await playwright().chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_FLAGS });
+    const context = await this.#browser.newContext({ viewport: { width: 1360, height: 1040 } });
+    await context.route(
+      (url) => !LOOPBACK.has(url.hostname) && url.protocol.startsWith("http"),
+      (route) => route.abort("blockedbyclient"),
+    );
+    this.#page = await context.newPage();
+    this.workbench = await Workbench.open(this.#page, this.server.address(this.workspace));
+  }
+
+  /** The text of a file of the workspace as it is on disk. */
+  text(path) {
+    return readFile(join(this.workspace, path), "utf8");
+  }
+
+  /** Close everything. With the name of a failure a last picture and the server's log are kept. */
+  async close(failure) {
+    if (failure !== undefined) {
+      await mkdir(SCREENSHOTS, { recursive: true });
+      await this.#page?.screenshot({ path: join(SCREENSHOTS, `${failure}.png`) }).catch(() => {});
+      await cp(this.server?.log ?? "", join(SCREENSHOTS, `${failure}.log`)).catch(() => {});
+    }
+    await this.#browser?.close();
+    await this.server?.stop();
+    if (this.#folder !== undefined) {
+      await rm(this.#folder, { recursive: true, force: true, maxRetries: 5 });
+    }
+  }
+}

@@ -1,0 +1,75 @@
+// What the extension does by itself: colours, and what it says when there is no language server.
+import assert from "node:assert/strict";
+import { chmod, mkdir, readFile, writeFile } from "node:fs/promises";
+import { delimiter, dirname, join } from "node:path";
+import { afterEach, test } from "node:test";
+import { SAMPLES } from "./harness/checkout.mjs";
+import { Session } from "./harness/session.mjs";
+import { SCHEMES } from "./harness/workbench.mjs";
+
+/** A PATH with the tools the editor needs and, on a developer's machine too, no language server. */
+const BARE_PATH = ["/usr/bin", "/bin", dirname(process.execPath)].join(delimiter);
+
+/** @type {Session | undefined} */
+let session;
+let passed = false;
+
+afterEach(async (context) => {
+  await session?.close(passed ? undefined : context.name.replaceAll(/\W+/g, "-"));
+  session = undefined;
+  passed = false;
+});
+
+test("a .bdd file is coloured by what its words mean, in a dark and in a light theme", async () => {
+  session = await Session.open({ workspace: SAMPLES, searchPath: BARE_PATH });
+  const { workbench } = session;
+  await workbench.openFile("sorting.bdd");
+  for (const scheme of Object.keys(SCHEMES)) {
+    await workbench.changeScheme(scheme);
+    const words = ["Scenario Template", "sorting", "Given", "does not drop", "evt-begin", "0.5", '"machinist"', "carry"];
+    const colours = new Map();
+    for (const word of words) {
+      colours.set(word, await workbench.colourOf(word));
+    }
+    // Eight words of seven kinds: the template and the behaviour are both declared here, so they look alike.
+    assert.equal(colours.get("sorting"), colours.get("carry"));
+    assert.equal(new Set(colours.values()).size, 7, JSON.stringify([...colours]));
+    await workbench.screenshot(`colours-${scheme}`);
+  }
+  passed = true;
+});
+
+test("without a language server a message says how to install it and leads to the setting", async () => {
+  session = await Session.open({ workspace: SAMPLES, searchPath: BARE_PATH });
+  const { workbench } = session;
+  await workbench.openFile("sorting.bdd");
+  const message = await workbench.notification("pip install robbdd-tools");
+  assert.match(await workbench.status.textContent(), /RobBDD/);
+  await workbench.screenshot("server-missing");
+  await message.hover();
+  await message.getByRole("button", { name: "Open Setting" }).click();
+  await workbench.page.locator(".settings-editor .setting-item-contents", { hasText: "Server: Path" }).waitFor();
+  passed = true;
+});
+
+test("an untrusted workspace cannot bring its own server", async () => {
+  const marker = (workspace) => join(workspace, "started");
+  session = await Session.open({
+    workspace: SAMPLES,
+    searchPath: BARE_PATH,
+    trust: false,
+    prepare: async (workspace) => {
+      const program = join(workspace, ".venv/bin/robbdd-lsp");
+      await mkdir(dirname(program), { recursive: true });
+      await writeFile(program, `#!/bin/sh\ntouch "${marker(workspace)}"\n`);
+      await chmod(program, 0o755);
+      await mkdir(join(workspace, ".vscode"));
+      await writeFile(join(workspace, ".vscode/settings.json"), JSON.stringify({ "robbdd.server.path": program }));
+    },
+  });
+  const { workbench, workspace } = session;
+  await workbench.openFile("sorting.bdd");
+  await workbench.notification("The workspace is not trusted");
+  await assert.rejects(readFile(marker(workspace)), { code: "ENOENT" });
+  passed = true;
+});
