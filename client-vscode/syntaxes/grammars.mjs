@@ -13,7 +13,11 @@ const string = (quote, kind) => ({
   name: `string.quoted.${kind}.robbdd`,
   begin: quote,
   end: quote,
-  patterns: [{ match: String.raw`\\.`, name: "constant.character.escape.robbdd" }],
+  patterns: [
+    { match: String.raw`\\.`, name: "constant.character.escape.robbdd" },
+    // `{name}` stands for an argument in a text template.
+    { match: String.raw`\{${NAME}\}`, name: "constant.other.placeholder.robbdd" },
+  ],
 });
 
 const common = grammar("RobBDD common ground", "source.robbdd.common", [

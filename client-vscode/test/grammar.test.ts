@@ -76,9 +76,10 @@ test("a comment swallows keywords and quotes", async () => {
   assert.deepEqual(await tokens("source.robbdd", `// Then: "it's`), [`// Then: "it's → comment.line.double-slash`]);
 });
 
-test("an escaped quote does not end its string", async () => {
+test("an escaped quote does not end a template's text, where placeholders stand out", async () => {
   const found = await tokens("source.robbdd", String.raw`pred("a \"{r}\" b", r=<robot>)`);
   assert.ok(found.includes(String.raw`\" → constant.character.escape`));
+  assert.ok(found.includes("{r} → constant.other.placeholder"));
   assert.ok(found.includes("r → variable.parameter"));
   assert.ok(found.includes("robot → variable.other.property"));
 });

@@ -60,6 +60,11 @@ export class Workbench {
     await this.page.locator(".quick-input-widget").waitFor({ state: "hidden" });
   }
 
+  /** Give the active editor the keyboard. */
+  async focusEditor() {
+    await this.command("View: Focus Active Editor Group");
+  }
+
   async type(text) {
     await this.page.keyboard.type(text);
   }
@@ -123,6 +128,20 @@ export class Workbench {
       throw new Error(`no token of its own reads "${text}"`);
     }
     return colours[0];
+  }
+
+  /** Wait until the status item of the extension reads like this. */
+  async statusText(pattern, timeout = PATIENCE) {
+    await this.status.filter({ hasText: pattern }).waitFor({ timeout });
+  }
+
+  /** The colour of the first verdict beside a clause and that of the ground it stands on. */
+  async verdictColours() {
+    const hint = this.page.locator(`${EDITOR} .view-line span > span`, { hasText: /[✔✗]/ }).first();
+    return hint.evaluate((span) => {
+      const ground = span.closest(".monaco-editor-background, .monaco-editor");
+      return [getComputedStyle(span).color, getComputedStyle(ground).backgroundColor];
+    });
   }
 
   /** Wait for the toast with this text and return it. */
