@@ -55,34 +55,45 @@ class Arm:
         position: FloatArray = self._data.site_xpos[self._site].copy()
         return position, self._data.site_xmat[self._site].reshape(3, 3).copy()
 
+    def towards(self, position: FloatArray) -> FloatArray:
+        """Return the home posture (n,) with the first joint turned towards a position, within its limits."""
+        posture = self.home.copy()
+        posture[0] += np.arctan2(position[1], position[0])
+        return np.clip(posture, self.lower, self.upper)
+
     def solve(self, seed: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:
         """Return joint positions (n,) near ``seed`` that put the tool at a pose; raises ``Unreachable``.
 
         Damped least squares; what a redundant arm is free in is drawn towards the home posture, with its first
-        joint turned towards the goal.
+        joint turned towards the goal. Joints that come to a limit stay there while the others make up for them.
         """
         joints = np.clip(seed, self.lower, self.upper)
-        posture = self.home.copy()
-        posture[0] += np.arctan2(position[1], position[0])
+        posture = self.towards(position)
+        gap = np.empty(6)
         error = np.inf
         for _ in range(ROUNDS):
             at, turned = self.forward(joints)
-            gap = np.concatenate([position - at, _rotation_between(turned, rotation)])
+            gap[:3] = position - at
+            gap[3:] = _rotation_between(turned, rotation)
             error = float(np.abs(gap).max())
             if error < CLOSE:
                 return joints
-            joints = np.clip(joints + self._step(gap, posture - joints), self.lower, self.upper)
+            joints = self._improve(joints, gap, posture)
         raise Unreachable(f"{1000 * error:.0f} mm short")
 
-    def _step(self, gap: FloatArray, homewards: FloatArray) -> FloatArray:
+    def _improve(self, joints: FloatArray, gap: FloatArray, posture: FloatArray) -> FloatArray:
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_jacSite(self._model, self._data, self._jacobian[:3], self._jacobian[3:], self._site)
         jacobian = self._jacobian[:, self._speeds]
-        square = jacobian @ jacobian.T
-        square.flat[::7] += LEAST_DAMPING + DAMPING * float(gap @ gap)
-        both = np.linalg.solve(square, np.column_stack([gap, jacobian @ homewards]))
-        step: FloatArray = jacobian.T @ (both[:, 0] - POSTURE * both[:, 1]) + POSTURE * homewards
-        return step / max(1.0, float(np.abs(step).max()) / STRIDE)
+        free = np.ones(len(joints))
+        moved = joints
+        for _ in range(len(joints)):
+            moved = joints + _step(jacobian * free, gap, (posture - joints) * free)
+            beyond = ((moved < self.lower) | (moved > self.upper)) & (free > 0.0)
+            if not beyond.any():
+                break
+            free[beyond] = 0.0
+        return np.minimum(np.maximum(moved, self.lower), self.upper)
 
 
 @cache
@@ -91,10 +102,20 @@ def arm_of(robot: RobotModel) -> Arm:
     return Arm(robot)
 
 
+def _step(jacobian: FloatArray, gap: FloatArray, homewards: FloatArray) -> FloatArray:
+    """One round of damped least squares with a pull (n,) in the null space of the Jacobian (6, n)."""
+    square = jacobian @ jacobian.T
+    square.flat[::7] += LEAST_DAMPING + DAMPING * float(gap @ gap)
+    pull = POSTURE * homewards
+    step: FloatArray = pull + jacobian.T @ np.linalg.solve(square, gap - jacobian @ pull)
+    return step / max(1.0, float(np.abs(step).max()) / STRIDE)
+
+
 def _rotation_between(start: FloatArray, goal: FloatArray) -> FloatArray:
     """Rotation vector (3,) rad, world frame, that turns one small step from ``start`` towards ``goal``."""
-    turn: FloatArray = 0.5 * np.cross(start.T, goal.T).sum(axis=0)
-    # Beyond a quarter turn the cross products shrink again; keep the step's length there.
-    if np.trace(start.T @ goal) < 1.0:
-        turn = turn / max(float(np.linalg.norm(turn)), 1e-9)
+    between = goal @ start.T
+    turn: FloatArray = 0.5 * (between - between.T)[[2, 0, 1], [1, 2, 0]]
+    # Beyond a quarter turn the sine shrinks again; keep the step's length there.
+    if float(between.trace()) < 1.0:
+        turn = turn / max(float(np.sqrt(turn @ turn)), 1e-9)
     return turn

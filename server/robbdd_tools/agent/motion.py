@@ -118,8 +118,13 @@ def _timed(path: FloatArray, shares: FloatArray, duration: float) -> Motion:
     ticks = max(1, ceil(duration / TICK))
     time = np.arange(ticks + 1) / ticks
     progress = time**3 * (10.0 + time * (6.0 * time - 15.0))
-    joints = np.column_stack([np.interp(progress, shares, column) for column in path.T])
-    return Motion(joints[1:], np.gradient(joints, TICK, axis=0)[1:])
+    joints = np.empty((ticks + 1, path.shape[1]))
+    for joint in range(path.shape[1]):
+        joints[:, joint] = np.interp(progress, shares, path[:, joint])
+    velocities = np.empty_like(joints)
+    velocities[1:-1] = (joints[2:] - joints[:-2]) / (2 * TICK)
+    velocities[-1] = 0.0
+    return Motion(joints[1:], velocities[1:])
 
 
 def _between(start: ToolPose, goal: ToolPose, share: float) -> ToolPose:

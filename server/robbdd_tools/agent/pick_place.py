@@ -109,7 +109,7 @@ class PickPlace:
             at = tool_pose(robot.base, grasp.position, grasp.closing)
             above = self._at_travel(at)
             try:
-                joints = self._arm.solve(self._arm.solve(self._arm.home, *frame_of(above)), *frame_of(at))
+                joints = self._reach(above, at)
             except Unreachable:
                 continue
             rank = (round(clearance.depth(joints), 4), abs(at.turn))
@@ -138,13 +138,19 @@ class PickPlace:
         while height <= top:
             pose = tool_pose(robot.base, np.array([x, y, height]), closing)
             try:
-                joints = self._arm.solve(self._arm.solve(self._joints, *frame_of(self._at_travel(pose))), *frame_of(pose))
+                joints = self._reach(self._at_travel(pose), pose)
             except Unreachable:
                 return None
             if clearance.depth(joints) == 0.0:
                 return pose
             height += 0.02
         return None
+
+    def _reach(self, above: ToolPose, at: ToolPose) -> FloatArray:
+        """Return the joint positions at a pose that is come to from above; raises ``Unreachable``."""
+        position, rotation = frame_of(above)
+        start = self._arm.solve(self._arm.towards(position), position, rotation)
+        return self._arm.solve(start, *frame_of(at))
 
     def _at_travel(self, pose: ToolPose) -> ToolPose:
         height = max(TRAVEL - self._robot.base.position[2], pose.height)

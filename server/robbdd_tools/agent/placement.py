@@ -156,9 +156,7 @@ def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:
     return {table: tuple(names) for table, names in chosen.items()}
 
 
-def _fields(
-    scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose, name: str
-) -> Iterator[_Field]:
+def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose, name: str) -> Iterator[_Field]:
     """The areas for an object, best first; raises ``SceneError`` when there is none."""
     carrier = cast.tables[0]
     if (workspace := scene.places.get(name)) is not None:

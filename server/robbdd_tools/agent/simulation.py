@@ -74,7 +74,7 @@ class Simulation:
         self._owner = self._owners()
         self._positions: FloatArray = np.zeros((len(names), 3))
         self._orientations: FloatArray = np.zeros((len(names), 4))
-        self._pads = {name: np.array(robot.pads) for name, robot in self.robots.items()}
+        self._pads = {name: robot.pads for name, robot in self.robots.items()}
         self.grips: dict[str, FloatArray] = {name: np.zeros(len(names)) for name in self.robots}
         self.recorder = Recorder(names, tuple(self.robots))
         self._go_home()
@@ -86,7 +86,7 @@ class Simulation:
     @property
     def time(self) -> float:
         """Simulated time of the last sample, s."""
-        return self.ticks * TICK
+        return round(self.ticks * TICK, 6)
 
     def settle(self) -> None:
         """Step until nothing moves any more, then start the clock and take the first sample."""
@@ -173,21 +173,26 @@ class Simulation:
             self.command(robot, home, robot.model.gripper_open)
         mujoco.mj_forward(self.model, self.data)
 
-    def _owners(self) -> FloatArray:
-        """Column of the object that each geom belongs to, -1 for any other geom, shape (ngeom,)."""
-        owner = np.full(self.model.ngeom, -1)
+    def _owners(self) -> dict[int, int]:
+        """Map each geom of a loose object to the object's column."""
+        owner: dict[int, int] = {}
         for name in self._free:
             body = self.model.body(name)
-            owner[body.geomadr[0] : body.geomadr[0] + body.geomnum[0]] = self._column[name]
+            first = int(body.geomadr[0])
+            owner |= dict.fromkeys(range(first, first + int(body.geomnum[0])), self._column[name])
         return owner
 
     def _find_grips(self) -> None:
-        pairs = self.data.contact.geom
+        """Mark what touches every gripping face of an agent (contacts are few: plain sets are the fastest)."""
+        touching: dict[int, set[int]] = {pad: set() for pads in self._pads.values() for pad in pads}
+        for first, second in self.data.contact.geom.tolist():
+            if first in touching:
+                touching[first].add(self._owner.get(second, -1))
+            elif second in touching:
+                touching[second].add(self._owner.get(first, -1))
         for name, pads in self._pads.items():
             grip = self.grips[name]
             grip[:] = 0.0
-            touched: list[set[int]] = []
-            for pad in pads:
-                rows = pairs[(pairs == pad).any(axis=1)]
-                touched.append(set(self._owner[rows].max(axis=1).tolist()) - {-1})
-            grip[list(set.intersection(*touched))] = 1.0
+            first, *others = (touching[pad] for pad in pads)
+            for column in first.intersection(*others) - {-1}:
+                grip[column] = 1.0

@@ -1,0 +1,32 @@
+"""``python -m robbdd_tools.agent RUN_FOLDER``: executes a prepared run and reports on its standard output."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from types import FrameType
+
+
+def _stop(signum: int, _frame: FrameType | None) -> None:
+    # Every message is written whole and at once, so that there is nothing to flush or to undo.
+    os._exit(128 + signum)
+
+
+def _main() -> int:
+    signal.signal(signal.SIGTERM, _stop)
+    signal.signal(signal.SIGINT, _stop)
+    if len(sys.argv) != 2:
+        print("usage: python -m robbdd_tools.agent RUN_FOLDER", file=sys.stderr)
+        return 2
+    # Whatever else prints, behave and the engine included, must not end up among the messages.
+    messages = os.dup(1)
+    os.dup2(2, 1)
+    # The handlers are in place before the slow imports.
+    from robbdd_tools.agent.runner import run_folder
+
+    return run_folder(sys.argv[1], messages)
+
+
+if __name__ == "__main__":
+    sys.exit(_main())

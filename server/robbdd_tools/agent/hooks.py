@@ -1,0 +1,50 @@
+"""Hooks of behave: they hold the simulated world while behave goes through the scenarios.
+
+behave has no types; this module and ``steps`` are the only ones that see its objects.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from robbdd_tools.agent.channel import current_channel
+from robbdd_tools.agent.engine import keep_quiet
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.session import Session
+from robbdd_tools.run.protocol import MANIFEST, read_manifest
+
+ROLES = ("given", "when", "then")
+
+
+def before_all(context: Any) -> None:
+    """Read the manifest that lies beside the features folder; raises ``OSError`` or ``ValueError``."""
+    folder = Path(context.config.base_dir).resolve().parent
+    if not (folder / MANIFEST).is_file():
+        raise OSError(f"there is no {MANIFEST} in {folder}: run a folder that 'robbdd run' has written")
+    keep_quiet()
+    context.session = Session(folder, read_manifest(folder), current_channel())
+
+
+def before_scenario(context: Any, scenario: Any) -> None:
+    """Read the scenario's steps ahead, so that its world knows which behaviours are to come."""
+    # A failed clause says nothing about the others: each gets its verdict.
+    scenario.continue_after_failed_step = True
+    texts = [(int(step.line), str(step.step_type), str(step.name)) for step in scenario.all_steps]
+    try:
+        context.session.start(Path(scenario.filename), int(scenario.line), texts)
+    except SceneError as error:
+        # The steps say so one by one; an error in a hook would be reported with less.
+        print(error)
+
+
+def after_scenario(context: Any, _scenario: Any) -> None:
+    """Give the clauses that are still open their verdict."""
+    context.session.finish()
+
+
+def after_all(context: Any) -> None:
+    """Report what was never executed."""
+    session = getattr(context, "session", None)
+    if session is not None:
+        session.close("behave did not execute the scenario")

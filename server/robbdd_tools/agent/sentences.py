@@ -1,0 +1,199 @@
+"""Reads the sentences of a feature back into clauses and behaviours; every pattern derives from the catalog."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Literal
+
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Behaviour, Predicate, Slot
+
+TIME = (
+    r"(?:(?:within (?P<horizon>\d+(?:\.\d+)?(?:e[+-]?\d+)?) seconds )?"
+    r'(?P<relation>before|after) event "(?P<event>[^"]*)"'
+    r'|from "(?P<start>[^"]*)" until "(?P<end>[^"]*)")'
+)
+"""A time constraint as it ends a sentence."""
+NOT, GROUP = r"not \( (?P<inner>.*) \)", r"\( (?P<inner>.*) \)"
+"""A negation, and an alternative or enumeration."""
+OCCURS = r'event "(?P<event>[^"]*)" occurs'
+ANY = "any of "
+
+
+@dataclass(frozen=True, slots=True)
+class AnyOf:
+    """Some element of these: what an existential variable stands for."""
+
+    elements: tuple[str, ...]
+
+
+Filler = str | tuple[str, ...] | AnyOf
+
+
+@dataclass(frozen=True, slots=True)
+class Fluent:
+    """``holds(predicate, time)`` with what fills the predicate's slots."""
+
+    predicate: Predicate
+    arguments: Mapping[str, Filler]
+    time: TimeConstraint
+
+
+@dataclass(frozen=True, slots=True)
+class Junction:
+    """Clauses joined by ``and`` or ``or``, or one clause negated."""
+
+    operator: Literal["and", "or", "not"]
+    operands: tuple[Clause, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Unmatched:
+    """A sentence that nothing in the catalog says."""
+
+    text: str
+
+
+Clause = Fluent | Junction | Unmatched
+
+
+@dataclass(frozen=True, slots=True)
+class Doing:
+    """A behaviour with what fills its slots."""
+
+    behaviour: Behaviour
+    arguments: Mapping[str, Filler]
+
+
+def sentence_pattern(sentence: str, slots: tuple[Slot, ...]) -> str:
+    """Return the regular expression of a catalog sentence, one named group per slot."""
+    kinds = {slot.name: slot.kind for slot in slots}
+    parts = re.split(r"\{(\w+)\}", sentence)
+    pieces = [re.escape(text) for text in parts[::2]]
+    groups = [f"(?P<{name}>{_inside(kinds[name])})" for name in parts[1::2]]
+    return pieces[0] + "".join(group + piece for group, piece in zip(groups, pieces[1:], strict=True))
+
+
+def fluent_pattern(predicate: Predicate) -> str:
+    """Return the regular expression of a step that states a fluent of this predicate."""
+    return f"{sentence_pattern(predicate.sentence, predicate.slots)} {TIME}"
+
+
+def read_clause(text: str) -> Clause:
+    """Read the sentence of a Given or Then step; never raises."""
+    for predicate, pattern in _fluents():
+        if (match := pattern.fullmatch(text)) is not None:
+            return Fluent(predicate, _fillers(match, predicate.slots), _time(match))
+    if (match := re.fullmatch(NOT, text)) is not None and _balanced(match["inner"]):
+        return Junction("not", (read_clause(match["inner"]),))
+    inner = text
+    if (match := re.fullmatch(GROUP, text)) is not None and _balanced(match["inner"]):
+        inner = match["inner"]
+    for operator in ("and", "or"):
+        parts = _split(inner, f" {operator} ")
+        if len(parts) > 1:
+            return Junction(operator, tuple(read_clause(part) for part in parts))
+    return read_clause(inner) if inner != text else Unmatched(text)
+
+
+def read_doing(text: str) -> Doing | None:
+    """Read the sentence of a When step, ``None`` when it names no behaviour of the catalog."""
+    for behaviour, pattern in _doings():
+        if (match := pattern.fullmatch(text)) is not None:
+            return Doing(behaviour, _fillers(match, behaviour.slots))
+    return None
+
+
+def read_event(text: str) -> str | None:
+    """Return the event of the step ``event "…" occurs``, ``None`` for any other."""
+    match = re.fullmatch(OCCURS, text)
+    return match["event"] if match is not None else None
+
+
+def fluents_of(clause: Clause) -> Iterator[Fluent]:
+    """Yield the fluents of a clause."""
+    match clause:
+        case Fluent():
+            yield clause
+        case Junction():
+            for operand in clause.operands:
+                yield from fluents_of(operand)
+        case Unmatched():
+            return
+
+
+@cache
+def _fluents() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
+    predicates = load_catalog().predicates.values()
+    return tuple((predicate, re.compile(fluent_pattern(predicate))) for predicate in predicates)
+
+
+@cache
+def _doings() -> tuple[tuple[Behaviour, re.Pattern[str]], ...]:
+    behaviours = load_catalog().behaviours.values()
+    return tuple((word, re.compile(sentence_pattern(word.sentence, word.slots))) for word in behaviours)
+
+
+def _inside(kind: Kind) -> str:
+    """What may stand inside the quotes for a kind of slot: a value may hold anything, a name no quotes."""
+    return ".*?" if kind is Kind.VALUE else r'[^"]*'
+
+
+def _fillers(match: re.Match[str], slots: tuple[Slot, ...]) -> dict[str, Filler]:
+    return {slot.name: _filler(match[slot.name]) for slot in slots}
+
+
+def _filler(text: str) -> Filler:
+    some = text.startswith(f"{ANY}[")
+    listed = text.removeprefix(ANY) if some else text
+    if not (listed.startswith("[") and listed.endswith("]")):
+        return text
+    try:
+        value: list[object] = ast.literal_eval(listed)
+    except (ValueError, SyntaxError):
+        return text
+    elements = tuple(str(element) for element in value)
+    return AnyOf(elements) if some else elements
+
+
+def _time(match: re.Match[str]) -> TimeConstraint:
+    if match["start"] is not None:
+        return During(match["start"], match["end"])
+    horizon = float(match["horizon"]) if match["horizon"] is not None else None
+    return Before(match["event"], horizon) if match["relation"] == "before" else After(match["event"], horizon)
+
+
+def _balanced(text: str) -> bool:
+    """Whether a text closes no parenthesis that it has not opened (quotes hide them)."""
+    depth = 0
+    for char in _outside_quotes(text):
+        depth += (char == "(") - (char == ")")
+        if depth < 0:
+            return False
+    return depth == 0
+
+
+def _split(text: str, separator: str) -> list[str]:
+    """Split where a separator stands outside of quotes and parentheses."""
+    bare = _outside_quotes(text)
+    parts: list[str] = []
+    depth, start = 0, 0
+    for index, char in enumerate(bare):
+        depth += (char == "(") - (char == ")")
+        if depth == 0 and bare.startswith(separator, index):
+            parts.append(text[start:index])
+            start = index + len(separator)
+    return [*parts, text[start:]]
+
+
+def _outside_quotes(text: str) -> str:
+    """Blank out everything within double quotes, keeping the length."""
+    return re.sub(r'"[^"]*"', lambda match: '"' + "_" * (len(match[0]) - 2) + '"', text)

@@ -1,0 +1,200 @@
+"""The state of a run while behave goes through it: the manifest, the scenario at hand, what has been judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from robbdd_tools.agent.clauses import decide, is_closed
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.execution import Call, Execution, Timing
+from robbdd_tools.agent.sentences import Clause, Doing, fluents_of, read_clause, read_doing, read_event
+from robbdd_tools.monitor.time import After, Before
+from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.run.protocol import ClauseJudged, ClauseStarted, LogLine, ScenarioFinished, ScenarioStarted
+
+if TYPE_CHECKING:
+    from robbdd_tools.agent.channel import Channel
+    from robbdd_tools.run.protocol import Manifest, ScenarioSpec
+
+LEAD = 0.5
+"""Seconds between the scenario's start and its first behaviour, at least."""
+
+
+class ScenarioRun:
+    """One scenario being executed. ``texts`` are its steps in order: line, role (given, when, then) and sentence."""
+
+    def __init__(self, index: int, spec: ScenarioSpec, texts: Sequence[tuple[int, str, str]], channel: Channel) -> None:
+        self._index = index
+        self._spec = spec
+        self._channel = channel
+        self._open = {clause.line: clause.sentence for clause in spec.clauses}
+        self._doings = {line: doing for line, role, text in texts if role == "when" and (doing := read_doing(text))}
+        self._clauses = {line: read_clause(text) for line, role, text in texts if role != "when"}
+        self._execution: Execution | None = None
+        self._broken = ""
+        self._began = perf_counter()
+        channel.send(ScenarioStarted(index))
+
+    def set_up(self) -> None:
+        """Build the scene, unless that was done; raises ``SceneError``."""
+        if self._broken:
+            raise SceneError(self._broken)
+        if self._execution is None:
+            try:
+                calls = [_call(doing) for doing in self._doings.values()]
+                self._execution = Execution(self._spec, calls, _timing(self._clauses.values()))
+            except SceneError as error:
+                self._broken = str(error)
+                self._channel.send(LogLine("error", f"{self._spec.name}: {error}"))
+                raise
+
+    def clause(self, line: int, text: str) -> Verdict:
+        """Run on as far as a Given or Then clause needs and judge it."""
+        clause = self._clauses.get(line) or read_clause(text)
+
+        def verdict(execution: Execution) -> Verdict:
+            events = self._spec.events.keys()
+            trace = execution.advance_until(lambda trace: is_closed(clause, trace, events))
+            return decide(clause, trace, execution.regions, events)
+
+        return self._judged(line, verdict)
+
+    def behaviour(self, line: int, text: str) -> Verdict:
+        """Run to the end of a behaviour; its clause holds when the behaviour went through."""
+        index = list(self._doings).index(line) if line in self._doings else None
+
+        def verdict(execution: Execution) -> Verdict:
+            if index is None:
+                return unknown(f"no step definition for '{text}'")
+            if execution.run_behaviour(index):
+                return Verdict(Outcome.HOLDS)
+            return Verdict(Outcome.VIOLATED, reason=execution.trace.remark)
+
+        return self._judged(line, verdict)
+
+    def event(self, line: int, text: str) -> Verdict:
+        """Run on until the event that a When step names has occurred."""
+        event = read_event(text) or text
+
+        def verdict(execution: Execution) -> Verdict:
+            if event not in self._spec.events:
+                return unknown(f"nothing in the scenario emits event {event}")
+            trace = execution.advance_until(lambda trace: trace.event_time(event) is not None)
+            time = trace.event_time(event)
+            if time is None:
+                return unknown(f"event {event} never occurred" + (f": {trace.remark}" if trace.remark else ""))
+            return Verdict(Outcome.HOLDS, at=time)
+
+        return self._judged(line, verdict)
+
+    def finish(self) -> None:
+        """Report what was left open as unknown, and the scenario as finished."""
+        for line, sentence in list(self._open.items()):
+            self._report(line, unknown(self._broken or f"no step definition for '{sentence}'"))
+        execution = self._execution
+        simulated = execution.simulated if execution is not None else 0.0
+        stepping = execution.stepping if execution is not None else 0.0
+        wall = perf_counter() - self._began
+        self._channel.send(ScenarioFinished(self._index, round(simulated, 6), wall, stepping))
+
+    def _judged(self, line: int, verdict: Callable[[Execution], Verdict]) -> Verdict:
+        if line in self._open:
+            self._channel.send(ClauseStarted(self._index, line))
+        try:
+            self.set_up()
+        except SceneError as error:
+            found = unknown(str(error))
+        else:
+            assert self._execution is not None
+            found = verdict(self._execution)
+        self._report(line, found)
+        return found
+
+    def _report(self, line: int, verdict: Verdict) -> None:
+        if self._open.pop(line, None) is None:
+            return
+        self._channel.send(
+            ClauseJudged(
+                self._index,
+                line,
+                str(verdict.outcome),
+                verdict.robustness,
+                verdict.unit,
+                verdict.at,
+                verdict.reason,
+            )
+        )
+
+
+class Session:
+    """A run: finds the scenario of a manifest that behave is at."""
+
+    def __init__(self, folder: Path, manifest: Manifest, channel: Channel) -> None:
+        self._channel = channel
+        self._indices = {
+            ((folder / spec.feature).resolve(), spec.line): index for index, spec in enumerate(manifest.scenarios)
+        }
+        self._manifest = manifest
+        self._finished: set[int] = set()
+        self._present: tuple[int, ScenarioRun] | None = None
+
+    def start(self, feature: Path, line: int, texts: Sequence[tuple[int, str, str]]) -> None:
+        """Begin the scenario whose heading stands there; raises ``SceneError`` when the manifest has none there."""
+        self._present = None
+        index = self._indices.get((feature.resolve(), line))
+        if index is None:
+            raise SceneError(f"{feature.name}:{line}: the manifest of this run knows no scenario here")
+        self._present = (index, ScenarioRun(index, self._manifest.scenarios[index], texts, self._channel))
+
+    @property
+    def scenario(self) -> ScenarioRun:
+        """The scenario at hand; raises ``SceneError`` when the manifest does not know it."""
+        if self._present is None:
+            raise SceneError("the manifest of this run does not know this scenario")
+        return self._present[1]
+
+    def finish(self) -> None:
+        """End the scenario at hand."""
+        if self._present is not None:
+            index, run = self._present
+            run.finish()
+            self._finished.add(index)
+            self._present = None
+
+    def close(self, reason: str) -> None:
+        """Report every scenario that was never executed."""
+        self.finish()
+        for index, spec in enumerate(self._manifest.scenarios):
+            if index not in self._finished:
+                self._channel.send(ScenarioStarted(index))
+                for clause in spec.clauses:
+                    self._channel.send(ClauseJudged(index, clause.line, "unknown", None, "", None, reason))
+                self._channel.send(ScenarioFinished(index, 0.0, 0.0, 0.0))
+                self._finished.add(index)
+
+
+def _call(doing: Doing) -> Call:
+    arguments: dict[str, str] = {}
+    for slot, filler in doing.arguments.items():
+        if not isinstance(filler, str):
+            raise SceneError(f"'{doing.behaviour.name}' needs one {slot}, not a set of them")
+        arguments[slot] = filler
+    return Call(doing.behaviour.name, arguments)
+
+
+def _timing(clauses: Iterable[Clause]) -> Timing:
+    """Leave enough time before and after for the windows that the clauses speak of."""
+    lead, tail = LEAD, 0.0
+    for clause in clauses:
+        for fluent in fluents_of(clause):
+            match fluent.time:
+                case Before(_, float(horizon)):
+                    lead = max(lead, horizon)
+                case After(_, float(horizon)):
+                    tail = max(tail, horizon)
+                case _:
+                    pass
+    return Timing(lead=lead, tail=tail)

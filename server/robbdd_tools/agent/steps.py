@@ -1,0 +1,91 @@
+"""Steps of behave, one for every sentence of the catalog."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.sentences import GROUP, NOT, OCCURS, fluent_pattern, sentence_pattern
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.monitor.verdict import Outcome, Verdict
+
+if TYPE_CHECKING:
+    from robbdd_tools.agent.session import ScenarioRun
+
+TABLES = ("a set of objects", "a set of workspaces", "a set of agents", "variable scene elements")
+"""Steps that list the scene for the reader; the manifest holds the same."""
+
+
+def register() -> None:
+    """Register the steps with behave; called from a file of the steps folder."""
+    behave = import_module("behave")
+    matchers = import_module("behave.matchers")
+    matchers.use_step_matcher("re")
+    try:
+        for text in TABLES:
+            behave.given(re.escape(text))(_tell)
+        behave.given("the scene is set up")(_set_up)
+        for predicate in load_catalog().predicates.values():
+            _judged_step(behave, fluent_pattern(predicate))
+        _judged_step(behave, NOT)
+        _judged_step(behave, GROUP)
+        for behaviour in load_catalog().behaviours.values():
+            behave.when(sentence_pattern(behaviour.sentence, behaviour.slots))(_execute)
+        behave.when(OCCURS)(_await_event)
+    finally:
+        matchers.use_step_matcher("parse")
+
+
+def _judged_step(behave: Any, pattern: str) -> None:
+    behave.given(pattern)(_judge)
+    behave.then(pattern)(_judge)
+
+
+def _tell(_context: Any) -> None:
+    """Do nothing: the table is for the reader."""
+
+
+def _set_up(context: Any) -> None:
+    try:
+        context.session.scenario.set_up()
+    except SceneError as error:
+        raise AssertionError(str(error)) from None
+
+
+def _judge(context: Any, **_words: str) -> None:
+    _check(context, lambda scenario, line, text: scenario.clause(line, text))
+
+
+def _execute(context: Any, **_words: str) -> None:
+    _check(context, lambda scenario, line, text: scenario.behaviour(line, text))
+
+
+def _await_event(context: Any, **_words: str) -> None:
+    _check(context, lambda scenario, line, text: scenario.event(line, text))
+
+
+def _check(context: Any, judge: Callable[[ScenarioRun, int, str], Verdict]) -> None:
+    """Fail the step unless the verdict on it is *holds*."""
+    step = _present_step(context)
+    try:
+        verdict = judge(context.session.scenario, int(step.line), str(step.name))
+    except SceneError as error:
+        raise AssertionError(str(error)) from None
+    if verdict.outcome is not Outcome.HOLDS:
+        raise AssertionError(_in_words(verdict))
+
+
+def _present_step(context: Any) -> Any:
+    """Return the step that is being run: behave tells a step function only its words."""
+    return next(step for step in context.scenario.all_steps if step.status.is_untested())
+
+
+def _in_words(verdict: Verdict) -> str:
+    margin = "" if verdict.robustness is None else f"margin {verdict.robustness:.4g} {verdict.unit}".rstrip()
+    at = "" if verdict.at is None else f"at {verdict.at:.2f} s"
+    details = " ".join(part for part in (margin, at) if part)
+    said = "; ".join(part for part in (verdict.reason, details) if part)
+    return f"{verdict.outcome}: {said}" if said else str(verdict.outcome)
