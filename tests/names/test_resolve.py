@@ -2,16 +2,22 @@
 
 import pytest
 
-from kit import EVENTS, MODEL, SCENE, TEMPLATE, assert_diagnostics, corpus, fixture
-from robbdd_tools.base.diagnostic import Severity
+from kit import EVENTS, MODEL, SCENE, TEMPLATE, Fixture, assert_diagnostics, corpus, fixture
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.names.project import Project
 
 
+def findings(case: Fixture) -> list[Diagnostic]:
+    analysis = case.snapshot.file(case.uri)
+    assert analysis is not None
+    return list(analysis.diagnostics)
+
+
 def check(text: str) -> None:
     case = fixture(text)
-    found = [entry for uri in case.project.texts() for entry in getattr(case.snapshot.file(uri), "diagnostics", ())]
-    assert_diagnostics(found, case)
+    analyses = [case.snapshot.file(uri) for uri in case.project.texts()]
+    assert_diagnostics([entry for analysis in analyses if analysis for entry in analysis.diagnostics], case)
 
 
 def test_a_sound_model_has_no_finding() -> None:
@@ -20,7 +26,7 @@ def test_a_sound_model_has_no_finding() -> None:
 
 def test_an_unknown_name_is_reported_with_the_nearest_known_one() -> None:
     case = fixture(MODEL.replace("template: <fetch>", "template: <fetsch>"))
-    (found,) = getattr(case.snapshot.file(case.uri), "diagnostics", ())
+    (found,) = findings(case)
     assert found.message == "there is no scenario template 'fetsch'; did you mean 'fetch'?"
     assert found.fixes[0].edits[0].text == "fetch"
 
@@ -81,7 +87,7 @@ def test_a_name_declared_twice_is_reported_at_the_second_place() -> None:
 
 def test_two_fluents_of_one_template_need_two_names() -> None:
     case = fixture(MODEL.replace("in-tray:", "on-bench:"))
-    assert [entry.code for entry in getattr(case.snapshot.file(case.uri), "diagnostics", ())] == ["duplicate-name"]
+    assert [entry.code for entry in findings(case)] == ["duplicate-name"]
 
 
 @pytest.mark.parametrize(
@@ -149,12 +155,11 @@ def test_an_edit_changes_what_importers_see() -> None:
     case = fixture(MODEL)
     scene = "file:///fixture/lab.scene"
     case.project.open(scene, 2, SCENE.replace("object bolt", "object screw"))
-    assert getattr(case.snapshot.file(case.uri), "diagnostics", ()) == ()
+    assert findings(case) == []
     case.project.open(scene, 3, SCENE.replace("obj set (ns=env) parts", "obj set (ns=env) pieces"))
-    found = getattr(case.snapshot.file(case.uri), "diagnostics", ())
-    assert [entry.code for entry in found] == ["unknown-name"]
+    assert [entry.code for entry in findings(case)] == ["unknown-name"]
     case.project.open(scene, 4, SCENE)
-    assert getattr(case.snapshot.file(case.uri), "diagnostics", ()) == ()
+    assert findings(case) == []
 
 
 def test_iris_follow_their_namespaces() -> None:

@@ -1,5 +1,7 @@
 """A text falls into its declarations, whatever is broken inside them."""
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -57,7 +59,7 @@ def test_chunks_are_the_text_in_order_without_gaps(text: str) -> None:
     chunks = split("bdd", text)
     for chunk in chunks:
         assert text[chunk.offset : chunk.offset + len(chunk.text)] == chunk.text
-    assert all(a.offset + len(a.text) == b.offset for a, b in zip(chunks, chunks[1:], strict=False))
+    assert all(a.offset + len(a.text) == b.offset for a, b in pairwise(chunks))
     if chunks:
         assert text.endswith(chunks[-1].text)
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from robbdd_tools.catalog.registry import Catalog
-from robbdd_tools.gherkin.variations import Binding
 from robbdd_tools.graph.model import (
     AcceptanceModel,
     BehaviourClause,

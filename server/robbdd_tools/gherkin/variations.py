@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import combinations, combinations_with_replacement, permutations, product
+from itertools import combinations, combinations_with_replacement, permutations
 from math import comb, perm, prod
 
 from robbdd_tools.graph.model import Cell, Iri, Product, Selection, Table
@@ -17,7 +17,7 @@ def bindings(variation: Product | Table) -> Iterator[Binding]:
     if isinstance(variation, Table):
         rows: Iterable[tuple[Cell, ...]] = variation.rows
     else:
-        rows = product(*(tuple(_cells(choices)) for choices in variation.choices))
+        rows = _product(variation.choices)
     for row in rows:
         yield dict(zip(variation.variables, row, strict=True))
 
@@ -27,6 +27,16 @@ def count(variation: Product | Table) -> int:
     if isinstance(variation, Table):
         return len(variation.rows)
     return prod(_size(choices) for choices in variation.choices)
+
+
+def _product(choices: tuple[tuple[Cell, ...] | Selection, ...]) -> Iterator[tuple[Cell, ...]]:
+    """As ``itertools.product``, which would first write every selection out in memory."""
+    if not choices:
+        yield ()
+        return
+    for cell in _cells(choices[0]):
+        for rest in _product(choices[1:]):
+            yield (cell, *rest)
 
 
 def _cells(choices: tuple[Cell, ...] | Selection) -> Iterable[Cell]:

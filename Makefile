@@ -1,0 +1,51 @@
+# Two commands to start with: `make demo` and `make test`. Everything else is a part of them.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+CLIENT := client-vscode
+CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
+
+.PHONY: demo test setup lint test-python test-client test-editors bench clean
+
+demo: $(READY)
+	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
+
+test: lint test-python test-client
+
+setup: $(READY) $(CLIENT_READY)
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/pyright
+
+test-python: $(READY)
+	$(BIN)/pytest -m "not workbench"
+
+test-client: $(CLIENT_READY)
+	cd $(CLIENT) && npm run --silent build && npm run --silent lint && npm test --silent
+
+# Drives the extension in a real VS Code workbench; installs Chromium and code-server where they are missing.
+test-editors: $(READY) $(CLIENT_READY)
+	tests/editors/workbench/setup.sh
+	cd $(CLIENT) && npm run --silent package
+	tests/editors/workbench/run.sh
+
+# Measures speed as ratios of one run and writes the figures into docs/performance.md.
+bench: $(READY)
+	$(BIN)/python -m tests.bench
+
+$(READY): pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "robbdd needs Python 3.11 or newer: make PYTHON=/path/to/python3.11"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@
+
+$(CLIENT_READY): $(CLIENT)/package.json $(CLIENT)/package-lock.json
+	cd $(CLIENT) && npm ci --no-audit --no-fund
+	@touch $@
+
+clean:
+	rm -rf $(VENV) $(CLIENT)/node_modules $(CLIENT)/out build dist

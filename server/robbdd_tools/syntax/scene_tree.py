@@ -1,0 +1,122 @@
+"""The syntax trees of what every file kind shares, and of scenes: one frozen class per grammar rule.
+
+Spans count from the start of the chunk, so that a tree stays valid wherever its text moves to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from robbdd_tools.base.document import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """Any piece of a tree; ``span`` covers its text without surrounding white space."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Name(Node):
+    """A name where it is declared."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Text(Node):
+    """A string; ``value`` has its escapes resolved."""
+
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Number(Node):
+    """A number: an ``int`` where it was written without point and exponent."""
+
+    value: int | float
+
+
+@dataclass(frozen=True, slots=True)
+class Ref(Node):
+    """A reference. ``role`` is the grammar rule without ``Ref`` (``Event``, ``AnySet`` …); ``span`` the path's."""
+
+    role: str
+    path: str
+
+
+@dataclass(frozen=True, slots=True)
+class Import(Node):
+    """``import "path"``."""
+
+    path: Text
+
+
+@dataclass(frozen=True, slots=True)
+class Namespace(Node):
+    """``ns name = 'iri'``."""
+
+    name: Name
+    iri: Text
+
+
+@dataclass(frozen=True, slots=True)
+class NamespaceArgument(Node):
+    """``(ns=name)``."""
+
+    reference: Ref
+
+
+@dataclass(frozen=True, slots=True)
+class Member(Node):
+    """An object, workspace or agent inside its set."""
+
+    name: Name
+
+
+@dataclass(frozen=True, slots=True)
+class ElementSet(Node):
+    """``obj set``, ``ws set`` or ``agn set``; ``kind`` is ``object``, ``workspace`` or ``agent``."""
+
+    kind: str
+    namespace: NamespaceArgument
+    name: Name
+    members: tuple[Member, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SimilarSet(Node):
+    """``similar obj set``: stands for base name + 0 … count-1."""
+
+    kind: str
+    namespace: NamespaceArgument
+    name: Name
+    base: Name
+    count: Number
+
+
+@dataclass(frozen=True, slots=True)
+class Link(Node):
+    """An entry that names something: ``obj <…>``, ``ws comp <…>``, ``set <…>``; its role tells which."""
+
+    reference: Ref
+
+
+@dataclass(frozen=True, slots=True)
+class Composition(Node):
+    """``comp … of ws <…> { … }``."""
+
+    namespace: NamespaceArgument
+    name: Name
+    workspace: Ref
+    entries: tuple[Link, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Scene(Node):
+    """``scene … { … }``."""
+
+    namespace: NamespaceArgument
+    name: Name
+    entries: tuple[Link, ...]

@@ -1,0 +1,116 @@
+"""The rules of ARCHITECTURE.md that can be read off the source."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import robbdd_tools
+
+PACKAGE = Path(robbdd_tools.__file__).parent
+ROOT = PACKAGE.parent.parent
+LAYERS: tuple[frozenset[str], ...] = (
+    frozenset({"base", "catalog.api"}),
+    frozenset({"monitor"}),
+    frozenset({"catalog"}),
+    frozenset({"syntax"}),
+    frozenset({"names"}),
+    frozenset({"graph"}),
+    frozenset({"checks", "features", "gherkin"}),
+    frozenset({"run"}),
+    frozenset({"lsp", "cli", "commands"}),
+)
+AGENT_MAY = {"base", "catalog", "catalog.api", "monitor", "run.protocol", "agent"}
+HOMES = {
+    "textx": {"syntax"},
+    "rdflib": {"graph"},
+    "pyshacl": {"graph"},
+    "pyld": {"graph"},
+    "jinja2": {"gherkin"},
+    "behave": {"agent"},
+    "mujoco": {"agent"},
+    "pygls": {"lsp"},
+    "lsprotocol": {"lsp"},
+    "rich": {"commands"},
+}
+# Layers that may sit beside one another and see each other; all others of one rank are strangers.
+NEIGHBOURS = {("features", "checks"), ("cli", "commands"), ("commands", "cli")}
+
+
+def modules() -> Iterator[tuple[str, Path]]:
+    for path in sorted(PACKAGE.rglob("*.py")):
+        yield ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__"), path
+
+
+def imports(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"relative import in {path}"
+            yield node.module or ""
+
+
+def layer(module: str) -> str:
+    return "catalog.api" if module == "catalog.api" else module.partition(".")[0]
+
+
+def rank(name: str) -> int:
+    return next(index for index, names in enumerate(LAYERS) if name in names)
+
+
+def own_imports(path: Path) -> Iterator[str]:
+    prefix = "robbdd_tools."
+    yield from (name.removeprefix(prefix) for name in imports(path) if name.startswith(prefix))
+
+
+@pytest.mark.parametrize(("module", "path"), [entry for entry in modules() if "." in entry[0] or entry[0] == "cli"])
+def test_a_module_imports_only_from_layers_to_its_left(module: str, path: Path) -> None:
+    own = layer(module)
+    for target in own_imports(path):
+        other = layer(target)
+        if own == "agent":
+            assert other in AGENT_MAY or target == "run.protocol", f"{module} imports {target}"
+        else:
+            assert other != "agent", f"{module} imports the agent"
+            beside = other == own or (own, other) in NEIGHBOURS
+            assert beside or rank(other) < rank(own), f"{module} imports {target}"
+
+
+@pytest.mark.parametrize(("module", "path"), list(modules()))
+def test_a_library_has_one_home(module: str, path: Path) -> None:
+    for name in imports(path):
+        homes = HOMES.get(name.partition(".")[0])
+        assert homes is None or layer(module) in homes, f"{module} imports {name}"
+
+
+@pytest.mark.parametrize(("module", "path"), list(modules()))
+def test_modules_stay_readable_in_one_sitting(module: str, path: Path) -> None:
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= 350, module
+
+
+def loaded_after(code: str) -> set[str]:
+    script = f"import sys\n{code}\nprint(*sorted(name for name in sys.modules if '.' not in name))"
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    return set(result.stdout.split())
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "from robbdd_tools.lsp.handlers import create_server; create_server()",
+        "import robbdd_tools.cli, robbdd_tools.commands.check",
+    ],
+)
+def test_heavy_libraries_wait_until_they_are_needed(code: str) -> None:
+    assert loaded_after(code).isdisjoint({"rdflib", "pyshacl", "pyld", "mujoco", "behave", "jinja2", "numpy"})
+
+
+def test_the_version_is_told_without_loading_anything() -> None:
+    loaded = loaded_after("from robbdd_tools.cli import main\ntry: main(['--version'])\nexcept SystemExit: pass")
+    assert loaded.isdisjoint({"textx", "rdflib", "pygls", "rich", "numpy", "mujoco"})
