@@ -62,22 +62,31 @@ export class Server implements vscode.Disposable {
     return this.enqueue(() => this.shutDown());
   }
 
-  /** Run a command of the server; undefined, after a message, when there is no server or it refuses. */
-  async execute(command: string, argument: object): Promise<unknown> {
+  /**
+   * Run a command of the server, whether a code lens or the palette asked for it, and do what follows from its
+   * answer. Undefined, after a message, when there is no server or it refuses.
+   */
+  async execute(command: string, argument: unknown): Promise<unknown> {
     const client = this.client;
     if (client?.state !== State.Running) {
       void vscode.window.showWarningMessage("The RobBDD language server is not running.");
       return undefined;
     }
     try {
-      return await this.follow(command, argument, () =>
-        client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [argument] }),
-      );
+      const params = { command, arguments: [argument] };
+      const result: unknown = await client.sendRequest(ExecuteCommandRequest.type, params);
+      if (command === "robbdd.gherkin") {
+        await openFeatures(result);
+      }
+      return result;
     } catch (error) {
-      const reason = error instanceof Error ? error.message : String(error);
-      this.log.error(`${command}: ${reason}`);
-      void vscode.window.showErrorMessage(`RobBDD: ${reason}`);
+      this.refused(command, error);
       return undefined;
+    } finally {
+      if (command === "robbdd.run" && hasUri(argument)) {
+        // The answer comes after the last message. A cancelled or crashed run has not said that it ended.
+        this.runs.end(argument.uri);
+      }
     }
   }
 
@@ -132,8 +141,7 @@ export class Server implements vscode.Disposable {
           },
         },
         middleware: {
-          executeCommand: (name, argumentsOf, next) =>
-            this.follow(name, argumentsOf[0], async () => (await next(name, argumentsOf)) as unknown),
+          executeCommand: (name, [argument]: unknown[]) => this.execute(name, argument),
         },
         // Python's logging writes everything to stderr; that alone does not make a line an error.
         stdioOptions: { stdout: forwardLines, stderr: forwardLines },
@@ -157,20 +165,14 @@ export class Server implements vscode.Disposable {
     return client;
   }
 
-  /** Send a command of the server, whether a lens or the palette asked for it, and do what follows from its answer. */
-  private async follow(command: string, argument: unknown, send: () => Promise<unknown>): Promise<unknown> {
-    try {
-      const result = await send();
-      if (command === "robbdd.gherkin") {
-        await openFeatures(result);
-      }
-      return result;
-    } finally {
-      if (command === "robbdd.run" && hasUri(argument)) {
-        // The answer comes after the last message. A cancelled or crashed run has not said that it ended.
-        this.runs.end(argument.uri);
-      }
-    }
+  private refused(command: string, error: unknown): void {
+    const reason = error instanceof Error ? error.message : String(error);
+    this.log.error(`${command}: ${reason}`);
+    this.complain(`RobBDD: ${reason}`, {
+      "Show Log": () => {
+        this.log.show();
+      },
+    });
   }
 
   private async shutDown(): Promise<void> {

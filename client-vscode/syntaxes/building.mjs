@@ -22,6 +22,19 @@ export function labels(scope, ...texts) {
   };
 }
 
+/** A label whose value is a bare word, as in `base name: washer`. */
+export function property(scope, valueScope, ...texts) {
+  const longestFirst = [...texts].sort((a, b) => b.length - a.length);
+  return {
+    match: String.raw`${START}(${longestFirst.map(spaced).join("|")})\s*(:)\s*(${QUALIFIED})${END}`,
+    captures: {
+      1: { name: `${scope}.robbdd` },
+      2: { name: "punctuation.separator.label.robbdd" },
+      3: { name: `${valueScope}.robbdd` },
+    },
+  };
+}
+
 /** A declaration: its words, perhaps a namespace in parentheses, its name. */
 export function declaration(keyword, nameScope, ...texts) {
   const longestFirst = [...texts].sort((a, b) => b.length - a.length);

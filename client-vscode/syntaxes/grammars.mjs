@@ -1,5 +1,5 @@
 // The TextMate grammars of the five file kinds. The build writes them as JSON.
-import { COMMON, NAME, QUALIFIED, declaration, grammar, labels, phrases } from "./building.mjs";
+import { COMMON, NAME, QUALIFIED, declaration, grammar, labels, phrases, property } from "./building.mjs";
 
 const DECLARE = "storage.type.declaration";
 const SECTION = "keyword.control.section";
@@ -55,6 +55,7 @@ const scene = grammar("RobBDD Scene", "source.robbdd.scene", [
   declaration(DECLARE, "entity.name.type.scene", "scene"),
   declaration(DECLARE, "entity.name.type.composition", "comp"),
   declaration(DECLARE, "variable.other.constant", "object", "workspace", "agent"),
+  property(PROPERTY, "variable.other.constant", "base name"),
   labels(PROPERTY, "base name", "count"),
   // What stays of a declaration that is still being typed, and links to sets and compositions.
   phrases(DECLARE, "similar", "obj set", "ws set", "agn set", "ws comp", "comp", "scene", "obj", "ws", "agn"),
@@ -85,6 +86,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
     match: String.raw`(?<![\p{L}\p{N}_-])((?:set\s+)?var)\s+(${QUALIFIED})`,
     captures: { 1: { name: "storage.type.variable.robbdd" }, 2: { name: "variable.parameter.robbdd" } },
   },
+  phrases("storage.type.variable", "set var", "var"),
   {
     match: String.raw`(?<![\p{L}\p{N}_-])(${NAME})\s*(:)\s*(holds)(?![\p{L}\p{N}_-])`,
     captures: {
@@ -150,6 +152,8 @@ const units = [
 const scenex = grammar("RobBDD Scene Instance", "source.robbdd.scenex", [
   ...units,
   COMMON,
+  property(PROPERTY, "constant.language", "axes"),
+  property(PROPERTY, "entity.name.namespace", "module", "attr"),
   declaration(DECLARE, "entity.name.type.instance", "scene inst"),
   declaration(DECLARE, "entity.name.type.tree", "ktree inst", "ktree", "kgraph"),
   declaration(DECLARE, "entity.name.type.distribution", "distrib"),
@@ -175,6 +179,7 @@ const scenex = grammar("RobBDD Scene Instance", "source.robbdd.scenex", [
 const bddx = grammar("RobBDD Execution", "source.robbdd.bddx", [
   ...units,
   COMMON,
+  property(PROPERTY, "entity.name.namespace", "module", "attr"),
   declaration(DECLARE, "entity.name.type.execution", "Scenario Exec"),
   declaration(DECLARE, "entity.name.function.behaviour", "bhv impl"),
   declaration(DECLARE, "entity.name.function.policy", "obs policy"),
@@ -186,10 +191,7 @@ const bddx = grammar("RobBDD Execution", "source.robbdd.bddx", [
     ...["less-than", "greater-than", "equals", "tolerance", "between", "max time offset", "trinary topic"],
     ...["variant", "scene inst", "bhv", "policies", "repeat", "seed", "timeout", "noise", "latency", "module", "attr"],
   ),
-  {
-    match: String.raw`(?<![\p{L}\p{N}_-])((?:set\s+)?var)(?![\p{L}\p{N}_-])`,
-    captures: { 1: { name: "storage.type.variable.robbdd" } },
-  },
+  phrases("storage.type.variable", "set var", "var"),
   phrases(`${PHRASE}.evaluator`, "linear distance", "angular distance"),
   phrases(`${PHRASE}.provider`, "ros simulation entity state", "simulation ground truth"),
   phrases(WORD, "observes", "for", "and", "py", "catalog", "obj", "ws", "agn"),

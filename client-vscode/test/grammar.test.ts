@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { createRequire } from "node:module";
-import { join } from "node:path";
+import { basename, extname, join } from "node:path";
 import { test } from "node:test";
 import { OnigScanner, OnigString, loadWASM } from "vscode-oniguruma";
 import { INITIAL, Registry, type IRawGrammar } from "vscode-textmate";
@@ -190,6 +190,64 @@ test("an execution shows its policies and limits", async () => {
     "variant → keyword.other.property",
   );
 });
+
+/** Words that the grammar gives no scope at all: each is one that a reader would expect in colour. */
+async function plainWords(scope: string, text: string): Promise<string[]> {
+  const grammar = await registry.loadGrammar(scope);
+  assert.ok(grammar);
+  let stack = INITIAL;
+  const plain: string[] = [];
+  for (const line of text.split("\n")) {
+    const result = grammar.tokenizeLine(line, stack);
+    stack = result.ruleStack;
+    for (const token of result.tokens) {
+      const part = line.slice(token.startIndex, token.endIndex);
+      if (token.scopes.at(-1) === scope) {
+        plain.push(...(part.match(/[\p{L}\p{N}_-]*\p{L}[\p{L}\p{N}_-]*/gu) ?? []));
+      }
+    }
+  }
+  return plain;
+}
+
+const SCOPES: Record<string, string> = {
+  bdd: "source.robbdd",
+  scene: "source.robbdd.scene",
+  scenex: "source.robbdd.scenex",
+  ktree: "source.robbdd.scenex",
+  bddx: "source.robbdd.bddx",
+};
+
+for (const folder of [join(process.cwd(), "test", "samples"), join(process.cwd(), "..", "examples")]) {
+  for (const file of readdirSync(folder, { recursive: true, encoding: "utf8" })) {
+    const scope = SCOPES[extname(file).slice(1)];
+    if (scope !== undefined) {
+      test(`every word of ${basename(folder)}/${file} has a colour`, async () => {
+        assert.deepEqual(await plainWords(scope, readFileSync(join(folder, file), "utf8")), []);
+      });
+    }
+  }
+}
+
+for (const [kind, scope] of Object.entries(SCOPES)) {
+  test(`every word of the snippets for .${kind} has a colour`, async () => {
+    const text = readFileSync(join(process.cwd(), "snippets", `${kind}.json`), "utf8");
+    const snippets = Object.values(JSON.parse(text) as Record<string, { body: string | string[] }>);
+    assert.ok(snippets.length > 0);
+    for (const { body } of snippets) {
+      assert.deepEqual(await plainWords(scope, expand([body].flat().join("\n"))), []);
+    }
+  });
+}
+
+/** What a snippet inserts when nobody fills in its places. */
+function expand(body: string): string {
+  return body
+    .replaceAll(/\$\{\d+\|([^,|]*)[^}]*\}/g, "$1")
+    .replaceAll(/\$\{\d+:([^{}]*)\}/g, "$1")
+    .replaceAll("$0", "")
+    .replaceAll(/\$\{\d+\}/g, "name");
+}
 
 /** Phrases such as `<object> is located at <workspace>` of one folder of the catalog. */
 function phrasesOf(kind: "predicates" | "behaviours"): string[] {
