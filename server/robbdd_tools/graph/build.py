@@ -54,6 +54,7 @@ class BuiltGraph:
     that already have an error or build on one that has; ``doubtful_nodes`` what these declare.
     """
 
+    uri: str
     graph: Graph
     sources: SourceMap
     names: Mapping[str, str]
@@ -70,6 +71,7 @@ def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
     bind_prefixes(sink.graph, _add_prefixes(sink, reached))
     uncertain = doubtful(reached)
     return BuiltGraph(
+        uri,
         sink.graph,
         sink.sources.build(),
         _names(reached),

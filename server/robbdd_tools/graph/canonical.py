@@ -32,7 +32,7 @@ def canonical(graph: Graph) -> Graph:
     else:
         mapping = {old: BNode(new) for old, new in labels.items()}
         triples = [(mapping.get(s, s), p, mapping.get(o, o)) for s, p, o in graph]
-    ordered = Graph(bind_namespaces="none")
+    ordered = Graph("SimpleMemory", bind_namespaces="none")
     for triple in sorted(triples, key=_triple_order):
         ordered.add(triple)
     return ordered

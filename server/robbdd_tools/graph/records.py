@@ -26,10 +26,15 @@ class Records:
         from rdflib.namespace import RDF
 
         self._literal = Literal
-        self._type, self._first, self._rest, self._nil = (str(term) for term in (RDF.type, RDF.first, RDF.rest, RDF.nil))
+        self._type, self._first, self._rest, self._nil = (
+            str(term) for term in (RDF.type, RDF.first, RDF.rest, RDF.nil)
+        )
         self._values: dict[str, dict[str, list[Node]]] = {}
+        self._instances: dict[str, list[Iri]] = {}
         for subject, predicate, value in sorted(graph, key=lambda triple: [sort_text(node) for node in triple]):
             self._values.setdefault(str(subject), {}).setdefault(str(predicate), []).append(value)
+            if predicate == RDF.type:
+                self._instances.setdefault(str(value), []).append(Iri(subject))
 
     def all(self, node: str, term: str) -> tuple[Node, ...]:
         """Return all values of a property."""
@@ -45,7 +50,7 @@ class Records:
 
     def instances(self, term: str) -> tuple[Iri, ...]:
         """Return the nodes of a class in alphabetical order."""
-        return tuple(Iri(node) for node in self._values if self.is_a(node, term))
+        return tuple(self._instances.get(expand(term), ()))
 
     def subjects(self, term: str) -> tuple[Iri, ...]:
         """Return the nodes that have a property, in alphabetical order."""
@@ -101,8 +106,10 @@ class Records:
         values = self.all(node, term)
         listed = self.all(node, list_term)
         items = (self.items(listed[0]) if listed else None) or ()
-        first = tuple(item for item in items if item in values)
-        return first + tuple(value for value in values if value not in first)
+        known = set(values)
+        first = tuple(item for item in items if item in known)
+        known.difference_update(first)
+        return first + tuple(value for value in values if value in known)
 
     def iris(self, nodes: Iterable[Node]) -> tuple[Iri, ...]:
         """Return those nodes that are no literals."""

@@ -26,7 +26,7 @@ class Sink:
         from rdflib import Graph
         from rdflib.namespace import RDF
 
-        self.graph: Graph = Graph(bind_namespaces="none")
+        self.graph: Graph = Graph("SimpleMemory", bind_namespaces="none")
         self.sources = SourceMapBuilder()
         self.claims: dict[URIRef, Location] = {}
         self.clashes: list[tuple[URIRef, Location, Location]] = []

@@ -1,0 +1,69 @@
+"""A graph with derived statements: what the shapes need and SHACL cannot find by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.records import Records
+from robbdd_tools.graph.vocabulary import WORKBENCH, expand
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+    from rdflib.term import Node
+
+Key = tuple[str, ...]
+"""A key of the source map."""
+
+
+def use_of(word: str) -> str:
+    """Return the class of clauses that use a word of the catalog."""
+    return f"{WORKBENCH}use-of-{word}"
+
+
+@dataclass(slots=True)
+class Derived:
+    """The graph to validate. ``anchors`` maps a derived node and a value of it (or ``""``) to source-map keys."""
+
+    graph: Graph
+    records: Records
+    anchors: dict[tuple[str, str], list[Key]] = field(default_factory=dict[tuple[str, str], list[Key]])
+    _nodes: int = 0
+
+    def new_node(self, types: Iterable[str]) -> Node:
+        """Make a derived node with its classes."""
+        from rdflib import BNode
+
+        self._nodes += 1
+        node = BNode(f"d{self._nodes}")
+        for type_ in types:
+            self.add(node, "rdf:type", expand(type_))
+        return node
+
+    def add(self, node: Node | str, term: str, value: Node | str | int | bool) -> None:
+        """State something derived; a text stands for an IRI."""
+        from rdflib import Literal, URIRef
+        from rdflib.term import Identifier
+
+        subject = node if isinstance(node, Identifier) else URIRef(str(node))
+        if isinstance(value, bool | int):
+            value = Literal(value)
+        elif not isinstance(value, Identifier):
+            value = URIRef(str(value))
+        self.graph.add((subject, URIRef(expand(term)), value))
+
+    def anchor(self, node: Node, value: str, *keys: Key) -> None:
+        """Say where a derived node's value (``""`` for the node itself) comes from."""
+        self.anchors.setdefault((str(node), value), []).extend(keys)
+
+
+def items_of(records: Records, node: str, term: str) -> tuple[Node, ...]:
+    """Return the items of a list property, none where there is no list."""
+    heads = records.all(node, term)
+    return (records.items(heads[0]) if len(heads) == 1 else None) or ()
+
+
+def elements_of(records: Records, set_: str) -> tuple[Node, ...]:
+    """Return the elements of a set in written order."""
+    return items_of(records, set_, "rbw:element-list") or records.all(set_, "bdd:elements")
