@@ -30,7 +30,7 @@ from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from rdflib import Graph, URIRef
-    from rdflib.term import Identifier
+    from rdflib.term import Node
 
     from robbdd_tools.names.project import Snapshot
 
@@ -130,7 +130,7 @@ def _add_constant_set(frame: Frame, declared: tree.ConstantSet) -> None:
     node = frame.claimed(declared.name.text, declared.name)
     if node is None:
         return
-    elements: list[Identifier] = []
+    elements: list[Node] = []
     for value in declared.values:
         target = frame.target(value) if isinstance(value, tree.Ref) else frame.sink.literal(value.value)
         if target is not None:

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rdflib import Graph
-    from rdflib.term import Identifier
+    from rdflib.term import Node
 
-    Triple = tuple[Identifier, Identifier, Identifier]
+    Triple = tuple[Node, Node, Node]
 
 
-def sort_text(node: Identifier) -> tuple[str, str, str]:
+def sort_text(node: Node) -> tuple[str, str, str]:
     """Return what nodes are sorted by: their kind, their text, and a literal's datatype or language."""
     detail = getattr(node, "datatype", None) or getattr(node, "language", None) or ""
     return (type(node).__name__, str(node), str(detail))
@@ -42,17 +42,17 @@ def _triple_order(triple: Triple) -> tuple[tuple[str, str, str], ...]:
     return tuple(sort_text(node) for node in triple)
 
 
-def _labels(graph: Graph) -> dict[Identifier, str] | None:
+def _labels(graph: Graph) -> dict[Node, str] | None:
     """Number the blank nodes by the order of the ways that lead to them; ``None`` when a way is not unique."""
     from rdflib import BNode
 
-    edges: dict[Identifier, list[tuple[Identifier, Identifier]]] = {}
-    blank: set[Identifier] = set()
+    edges: dict[Node, list[tuple[Node, Node]]] = {}
+    blank: set[Node] = set()
     for subject, predicate, value in graph:
         blank.update(node for node in (subject, value) if isinstance(node, BNode))
         if isinstance(value, BNode):
             edges.setdefault(subject, []).append((predicate, value))
-    labels: dict[Identifier, str] = {}
+    labels: dict[Node, str] = {}
     for root in sorted((subject for subject in edges if subject not in blank), key=sort_text):
         waiting = [root]
         while waiting:

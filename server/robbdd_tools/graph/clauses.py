@@ -14,7 +14,7 @@ from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from rdflib import URIRef
-    from rdflib.term import Identifier
+    from rdflib.term import Node
 
     from robbdd_tools.catalog.api import Slot
 
@@ -40,7 +40,7 @@ class ClauseWriter:
     def _sink(self) -> Sink:
         return self.frame.sink
 
-    def body(self, body: tree.Body, path: str = "") -> list[Identifier]:
+    def body(self, body: tree.Body, path: str = "") -> list[Node]:
         """Write Given, When or for all, Then and return their clauses in order."""
         nodes = self.top(body.given, "given", path)
         if body.when is not None:
@@ -50,7 +50,7 @@ class ClauseWriter:
             nodes += self._for_all(body.for_all, f"{path}.all")
         return nodes + self.top(body.then, "then", path)
 
-    def top(self, expression: tree.Expression | None, role: str, path: str = "") -> list[Identifier]:
+    def top(self, expression: tree.Expression | None, role: str, path: str = "") -> list[Node]:
         """Write the clauses of one role; an *and* around them is the list itself."""
         if expression is None:
             return []
@@ -60,9 +60,9 @@ class ClauseWriter:
             return self._each(expression.operands, role, path)
         return self._each([expression], role, path)
 
-    def occurrences(self, events: Sequence[tree.Occurrence], path: str = "") -> list[Identifier]:
+    def occurrences(self, events: Sequence[tree.Occurrence], path: str = "") -> list[Node]:
         """Write ``event <e> occurs``."""
-        nodes: list[Identifier] = []
+        nodes: list[Node] = []
         for index, occurrence in enumerate(events):
             node = self._generated("when-evt", f"{path}.when.{index}")
             if node is not None:
@@ -72,7 +72,7 @@ class ClauseWriter:
                 nodes.append(node)
         return nodes
 
-    def _each(self, expressions: Iterable[tree.Expression], role: str, path: str) -> list[Identifier]:
+    def _each(self, expressions: Iterable[tree.Expression], role: str, path: str) -> list[Node]:
         if path.count(".") > MOST_NESTED:
             return []
         written = [
@@ -150,7 +150,7 @@ class ClauseWriter:
             self._sink.add(node, "bdd:has-clause", self._sink.make_list(self._each(operands, role, path)))
         return node
 
-    def _for_all(self, for_all: tree.ForAll, path: str) -> list[Identifier]:
+    def _for_all(self, for_all: tree.ForAll, path: str) -> list[Node]:
         node = self._generated("forall", path)
         if node is None or path.count(".") > MOST_NESTED:
             return []
@@ -166,7 +166,7 @@ class ClauseWriter:
         self._sink.add(node, "bdd:ref-variable", variable, self.frame.at(name))
         self._sink.add(node, "bdd:in-set", self.frame.target(in_set), self.frame.at(in_set))
 
-    def _behaviour(self, use: tree.BehaviourUse, path: str) -> list[Identifier]:
+    def _behaviour(self, use: tree.BehaviourUse, path: str) -> list[Node]:
         behaviour = self.frame.node(f"{self.owner}.{use.name.text}")
         node = self._generated("when-bhv", f"{path}.when")
         scenario = self._sink.iri(self.scenario)

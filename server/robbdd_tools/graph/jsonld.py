@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.graph.canonical import sort_text
-from robbdd_tools.graph.libraries import Json, bundled_context
+from robbdd_tools.graph.libraries import Json, bundled_context, json_object
 from robbdd_tools.graph.lists import Lists
 from robbdd_tools.graph.vocabulary import PREFIXES, expand
 
 if TYPE_CHECKING:
     from rdflib import Graph
-    from rdflib.term import Identifier
+    from rdflib.term import Node
 
 
 def context_for(prefixes: Mapping[str, str]) -> Json:
@@ -49,19 +49,18 @@ def expanded(graph: Graph) -> list[Json]:
 
 def _rename(definition: Any, renamed: Mapping[str, str]) -> Any:
     if isinstance(definition, dict):
-        entries: dict[str, Any] = definition
-        return {key: _rename(value, renamed) for key, value in entries.items()}
+        return {key: _rename(value, renamed) for key, value in json_object(definition).items()}
     prefix, colon, local = str(definition).partition(":")
     return f"{renamed[prefix]}:{local}" if colon and prefix in renamed else definition
 
 
-def _name(node: Identifier) -> str:
+def _name(node: Node) -> str:
     from rdflib import BNode
 
     return f"_:{node}" if isinstance(node, BNode) else str(node)
 
 
-def _value(node: Identifier, lists: Lists) -> Json:
+def _value(node: Node, lists: Lists) -> Json:
     from rdflib import Literal
 
     items = lists.items(node)

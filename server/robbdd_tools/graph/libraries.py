@@ -43,10 +43,13 @@ def shacl_report(graph: Graph, shapes: Graph) -> Graph:
     """Return the SHACL validation report of a graph, without inference; the graph is left as it is."""
     import pyshacl
 
-    _, report, _ = pyshacl.validate(  # pyright: ignore[reportUnknownMemberType] -- pyshacl leaves **kwargs untyped
-        graph, shacl_graph=shapes, inference="none", inplace=True, allow_infos=False, allow_warnings=False
-    )
-    return cast("Graph", report)
+    outcome = cast(Any, pyshacl).validate(graph, shacl_graph=shapes, inference="none", inplace=True)
+    return cast("Graph", outcome[1])
+
+
+def json_object(value: Any) -> Json:
+    """Return a JSON value if it is an object, else an empty one."""
+    return cast(Json, value) if isinstance(value, dict) else {}
 
 
 @cache

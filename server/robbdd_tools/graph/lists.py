@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rdflib import Graph
-    from rdflib.term import Identifier
+    from rdflib.term import Node
 
 
 class Lists:
@@ -17,8 +17,8 @@ class Lists:
         from rdflib.namespace import RDF
 
         self._nil = RDF.nil
-        self._next: dict[Identifier, tuple[Identifier, Identifier]] = {}
-        uses: dict[Identifier, int] = {}
+        self._next: dict[Node, tuple[Node, Node]] = {}
+        uses: dict[Node, int] = {}
         for cell, rest in graph.subject_objects(RDF.rest):
             uses[rest] = uses.get(rest, 0) + 1
             outgoing = list(graph.predicate_objects(cell))
@@ -26,26 +26,26 @@ class Lists:
             if isinstance(cell, BNode) and len(outgoing) == 2 and len(first) == 1:
                 self._next[cell] = (first[0], rest)
         self._inner = {cell for cell in self._next if uses.get(cell)}
-        self._lists: dict[Identifier, tuple[Identifier, ...]] = {}
-        self._cells: set[Identifier] = set()
+        self._lists: dict[Node, tuple[Node, ...]] = {}
+        self._cells: set[Node] = set()
         for head in self._next:
             if head not in self._inner and self._is_used_once(graph, head):
                 self._read(head)
 
-    def items(self, head: Identifier) -> tuple[Identifier, ...] | None:
+    def items(self, head: Node) -> tuple[Node, ...] | None:
         """Return the items of a list by its head; ``None`` for what is no list."""
         return () if head == self._nil else self._lists.get(head)
 
-    def is_cell(self, node: Identifier) -> bool:
+    def is_cell(self, node: Node) -> bool:
         """Tell whether a node is only a link of a well-formed list."""
         return node in self._cells
 
-    def _is_used_once(self, graph: Graph, head: Identifier) -> bool:
+    def _is_used_once(self, graph: Graph, head: Node) -> bool:
         return sum(1 for _ in graph.subjects(None, head)) == 1
 
-    def _read(self, head: Identifier) -> None:
-        items: list[Identifier] = []
-        cells: list[Identifier] = []
+    def _read(self, head: Node) -> None:
+        items: list[Node] = []
+        cells: list[Node] = []
         cell = head
         while cell in self._next and cell not in cells[-1:]:
             cells.append(cell)

@@ -53,8 +53,8 @@ class _Reader:
 
     def story(self, node: Iri) -> Story:
         criteria = self.records.iris(self.records.ordered(node, "bdd:has-criteria", "rbw:criteria-list"))
-        narrative = (self.records.text(node, f"rbw:{part}") for part in ("role", "feature", "benefit"))
-        return Story(node, *narrative, tuple(self._complete(criteria)))
+        role, feature, benefit = (self.records.text(node, f"rbw:{part}") for part in ("role", "feature", "benefit"))
+        return Story(node, role, feature, benefit, tuple(self._complete(criteria)))
 
     def _complete(self, criteria: Iterable[Iri]) -> Iterator[Variant]:
         for node in criteria:

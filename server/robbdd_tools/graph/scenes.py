@@ -12,7 +12,7 @@ from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from rdflib import URIRef
-    from rdflib.term import Identifier
+    from rdflib.term import Node
 
 SET_TYPES = ("bdd:Set", "bdd:ConstantSet")
 _LINKED_SETS = {"ObjectSet": "object", "WorkspaceSet": "workspace", "AgentSet": "agent"}
@@ -60,7 +60,7 @@ class Scenes:
     def brought_in(self, frame: Frame, variation: tree.Table | tree.Product) -> Members:
         """Return the members of the element sets that a variation names (``obj set <…>``)."""
         links = (frame.target(link.reference) for link in _links(variation))
-        found = [self.sets[link] for link in links if link in self.sets]
+        found = [self.sets[link] for link in links if link is not None and link in self.sets]
         return {
             kind: _unique(member for its, members in found if its == kind for member in members)
             for kind in ELEMENT_TYPES
@@ -130,7 +130,7 @@ def add_similar_set(frame: Frame, scenes: Scenes, declared: tree.SimilarSet) -> 
     add_set(frame, node, declared.name, members)
 
 
-def add_set(frame: Frame, node: URIRef, name: tree.Name, elements: Iterable[Identifier]) -> None:
+def add_set(frame: Frame, node: URIRef, name: tree.Name, elements: Iterable[Node]) -> None:
     """State a set with its elements, once in any order and once in the written one."""
     ordered = list(elements)
     frame.sink.add_types(node, SET_TYPES, frame.at(name))

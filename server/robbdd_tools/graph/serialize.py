@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.graph.canonical import canonical
 from robbdd_tools.graph.jsonld import context_for, expanded
-from robbdd_tools.graph.libraries import compact, quads
+from robbdd_tools.graph.libraries import compact, json_object, quads
 from robbdd_tools.graph.prefixes import bind_prefixes, user_prefixes
 
 if TYPE_CHECKING:
@@ -76,8 +76,8 @@ def _parse_quads(graph: Graph, text: str) -> None:
 
 def _bind_context(graph: Graph, document: Any) -> None:
     """Keep the prefixes that a document's own context declares as such."""
-    context: Any = document.get("@context") if isinstance(document, dict) else None
-    for name, definition in context.items() if isinstance(context, dict) else ():
-        namespace: Any = definition.get("@id") if isinstance(definition, dict) else definition
+    context = json_object(json_object(document).get("@context"))
+    for name, definition in context.items():
+        namespace = json_object(definition).get("@id") if isinstance(definition, dict) else definition
         if isinstance(namespace, str) and namespace[-1:] in {"/", "#", ":"}:
-            graph.bind(str(name), namespace, override=True, replace=True)
+            graph.bind(name, namespace, override=True, replace=True)

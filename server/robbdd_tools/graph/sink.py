@@ -11,10 +11,11 @@ from robbdd_tools.graph.vocabulary import expand
 
 if TYPE_CHECKING:
     from rdflib import Graph, URIRef
-    from rdflib.term import Identifier
+    from rdflib.term import Node
 
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
-    from robbdd_tools.syntax.tree import Name, Node, Ref
+    from robbdd_tools.syntax.tree import Name, Ref
+    from robbdd_tools.syntax.tree import Node as TreeNode
 
 _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`\ud800-\udfff]*")
 
@@ -40,7 +41,7 @@ class Sink:
 
         return URIRef(text) if text is not None and _ABSOLUTE.fullmatch(text) else None
 
-    def literal(self, value: str | int | float | bool, datatype: str | None = None) -> Identifier:
+    def literal(self, value: str | int | float | bool, datatype: str | None = None) -> Node:
         """Return a literal: xsd:string, xsd:integer, xsd:double or xsd:boolean unless a datatype is named."""
         from rdflib import Literal, URIRef
 
@@ -65,7 +66,7 @@ class Sink:
         self.clashes.append((node, location, first))
         return False
 
-    def add_types(self, node: Identifier, types: Iterable[str], location: Location) -> None:
+    def add_types(self, node: Node, types: Iterable[str], location: Location) -> None:
         """Declare a node with its classes (CURIEs)."""
         from rdflib import URIRef
 
@@ -73,11 +74,11 @@ class Sink:
             self.graph.add((node, self._type, URIRef(expand(name))))
         self.mark_node(node, location)
 
-    def mark_node(self, node: Identifier, location: Location) -> None:
+    def mark_node(self, node: Node, location: Location) -> None:
         """Note where a node is declared."""
         self.sources.mark([(str(node),)], location)
 
-    def add(self, node: Identifier, term: str, value: Identifier | None, location: Location | None = None) -> None:
+    def add(self, node: Node, term: str, value: Node | None, location: Location | None = None) -> None:
         """State a property of a node; a value that is no node states nothing."""
         from rdflib import URIRef
 
@@ -87,16 +88,16 @@ class Sink:
         if location is not None:
             self.mark(node, term, value, location)
 
-    def mark(self, node: Identifier, term: str, value: Identifier, location: Location) -> None:
+    def mark(self, node: Node, term: str, value: Node, location: Location) -> None:
         """Note where a value of a property was written."""
         key = (str(node), expand(term))
         self.sources.mark([key, (*key, str(value))], location)
 
-    def mark_choice(self, variation: URIRef, variable: URIRef, value: Identifier, location: Location) -> None:
+    def mark_choice(self, variation: URIRef, variable: URIRef, value: Node, location: Location) -> None:
         """Note where a variation gives a variable a value."""
         self.sources.mark([(str(variation), str(variable), str(value))], location)
 
-    def make_list(self, items: Iterable[Identifier | None]) -> Identifier:
+    def make_list(self, items: Iterable[Node | None]) -> Node:
         """Add an RDF list of the items that are nodes and return its head."""
         from rdflib import BNode
         from rdflib.namespace import RDF
@@ -121,7 +122,7 @@ class Frame:
         self._definitions = file.definitions
         self._placed = placed
 
-    def at(self, node: Node) -> Location:
+    def at(self, node: TreeNode) -> Location:
         """Return the absolute place of a node of the declaration's tree."""
         return Location(self._uri, node.span.shifted(self._placed.offset))
 

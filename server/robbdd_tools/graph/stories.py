@@ -14,7 +14,7 @@ from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from rdflib import URIRef
-    from rdflib.term import Identifier
+    from rdflib.term import Node
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +93,9 @@ def _add_loose_members(sink: Sink, scene: URIRef, kind: str, members: tuple[URIR
     """State, as published, what a variation brings of a kind that its scene does not have at all."""
     _, term, ending = MEMBERSHIPS[kind]
     node = sink.iri(scene + ending)
-    for member in members if node is not None else ():
-        sink.add(node, term, member)
+    if node is not None:
+        for member in members:
+            sink.add(node, term, member)
 
 
 def _add_variation(
@@ -108,8 +109,8 @@ def _add_variation(
     kind = "bdd:TableVariation" if is_table else "bdd:CartesianProductVariation"
     sink.add_types(node, ["bdd:TaskVariation", kind], frame.at(variation))
     sink.add(place.node, "bdd:has-variation", node, frame.at(variation))
-    if template in known.tasks:
-        sink.add(node, "task:of-task", known.tasks[template])
+    if template is not None:
+        sink.add(node, "task:of-task", known.tasks.get(template))
     writer = _VariationWriter(frame, place, node)
     if isinstance(variation, tree.Table):
         writer.table(variation)
@@ -126,7 +127,7 @@ class _VariationWriter:
     def table(self, table: tree.Table) -> None:
         sink = self.frame.sink
         variables = self._variables(table.header)
-        rows: list[Identifier] = []
+        rows: list[Node] = []
         for row in table.rows:
             cells = [self._choice(cell) for cell in row.cells]
             for variable, cell, written in zip(variables, cells, row.cells, strict=False):
@@ -139,7 +140,7 @@ class _VariationWriter:
     def product(self, product: tree.Product) -> None:
         sink = self.frame.sink
         variables = self._variables([assignment.variable for assignment in product.assignments])
-        entries: list[Identifier | None] = []
+        entries: list[Node | None] = []
         for index, (variable, assignment) in enumerate(zip(variables, product.assignments, strict=True)):
             choices = assignment.choices
             if isinstance(choices, tree.Selection):
@@ -161,7 +162,7 @@ class _VariationWriter:
                 sink.mark(self.node, "bdd:variable-list", target, self.frame.at(ref))
         return targets
 
-    def _choice(self, piece: tree.Value | tree.SetExpression) -> Identifier | None:
+    def _choice(self, piece: tree.Value | tree.SetExpression) -> Node | None:
         match piece:
             case tree.Link():
                 return self.frame.target(piece.reference)
@@ -170,17 +171,17 @@ class _VariationWriter:
             case _:
                 return self._value(piece)
 
-    def _values(self, variable: URIRef | None, values: tree.ValueList) -> Identifier | None:
+    def _values(self, variable: URIRef | None, values: tree.ValueList) -> Node | None:
         entry = self._choice(values)
         self._mark(variable, values, entry)
         return entry
 
-    def _value(self, value: tree.Value) -> Identifier | None:
+    def _value(self, value: tree.Value) -> Node | None:
         if isinstance(value, tree.Ref):
             return self.frame.target(value)
         return self.frame.sink.literal(value.value)
 
-    def _mark(self, variable: URIRef | None, written: tree.Node, node: Identifier | None) -> None:
+    def _mark(self, variable: URIRef | None, written: tree.Node, node: Node | None) -> None:
         """Note where a variable gets a value, for the value and for each value in a list of them."""
         if variable is None or node is None:
             return

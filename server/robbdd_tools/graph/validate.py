@@ -119,7 +119,7 @@ class _Writer:
 
     def _related(self, result: _Result, location: Location) -> Iterator[Related]:
         """Point from a wrong value to its declaration, and from an assignment to its variable's."""
-        variable = next(iter(sorted(self.derived.graph.objects(result.focus, _term("rbw:variable")))), None)
+        variable = next(iter(self._derived(result.focus, "variable")), None)
         for node in (result.value, variable):
             declared = None if node is None else self.built.sources.node(str(node))
             if declared is not None and declared != location and str(node) in self.built.names:
@@ -132,19 +132,18 @@ class _Writer:
                 return "nothing" if result.value is None else self._name(result.value)
             if name == "focus":
                 return self._name(result.focus)
-            values = sorted(self.derived.graph.objects(result.focus, _term(f"rbw:{name}")))
+            values = self._derived(result.focus, name)
             return self._name(values[0]) if values else match[0]
 
         return _PLACEHOLDER.sub(fill, result.message)
 
+    def _derived(self, node: Node, name: str) -> list[Node]:
+        from rdflib import URIRef
+
+        return sorted(self.derived.graph.objects(node, URIRef(expand(f"rbw:{name}"))), key=str)
+
     def _name(self, node: Node | None) -> str:
         return self.built.names.get(str(node), str(node))
-
-
-def _term(curie: str) -> Node:
-    from rdflib import URIRef
-
-    return URIRef(expand(curie))
 
 
 def _clash(built: BuiltGraph, clash: Clash) -> Diagnostic:
