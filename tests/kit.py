@@ -6,10 +6,13 @@ the text above the carets: ``//   ^^^^ code`` with, optionally, words that its m
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -18,7 +21,9 @@ from robbdd_tools.base.document import Document, Span
 from robbdd_tools.names.project import Project, Snapshot
 
 FOLDER = "file:///fixture/"
-EXAMPLES = Path(__file__).parent.parent / "examples"
+ROOT = Path(__file__).parent.parent
+EXAMPLES = ROOT / "examples"
+DOCS = ROOT / "docs"
 
 SCENE = """ns env = 'https://example.org/env/'
 obj set (ns=env) parts { object bolt, object nut }
@@ -150,3 +155,12 @@ def corpus(*endings: str) -> list[Path]:
     if not folder:
         pytest.skip("ROBBDD_CORPUS is not set: no foreign models to read")
     return sorted(path for path in Path(folder, "current").rglob("*") if path.suffix in endings)
+
+
+def schema_errors(name: str, document: object) -> list[str]:
+    """Return what a document violates of one of the documented JSON Schemas."""
+    # jsonschema comes without types.
+    validator: Any = import_module("jsonschema").Draft202012Validator
+    schema = json.loads((DOCS / "schemas" / name).read_text(encoding="utf-8"))
+    as_sent = json.loads(json.dumps(document))
+    return [error.message for error in validator(schema).iter_errors(as_sent)]

@@ -1,9 +1,13 @@
 """Completion offers what the grammar accepts at the cursor, by kind and scope of names."""
 
+from pathlib import Path
+
 import pytest
 
 from kit import MODEL, fixture
+from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import Completion, complete
+from robbdd_tools.names.project import Project
 
 
 def at(text: str) -> list[Completion]:
@@ -85,8 +89,13 @@ def test_values_are_the_elements_of_imported_scenes() -> None:
     assert "parts" not in found
 
 
-def test_an_import_offers_the_models_beside_it(tmp_path: object) -> None:
-    assert labels('import "$0"') == []
+def test_an_import_offers_the_models_beside_it(tmp_path: Path) -> None:
+    for name in ("b.scene", "a.bdd", "notes.txt", "main.bdd"):
+        (tmp_path / name).touch()
+    uri = path_to_uri(tmp_path / "main.bdd")
+    project = Project()
+    project.open(uri, 1, 'import "')
+    assert [entry.label for entry in complete(project.snapshot(), uri, 8)] == ["a.bdd", "b.scene"]
 
 
 @pytest.mark.parametrize("text", ["// befo$0", 'const set (ns=t) s { "be$0" }', "const set (ns=t) s { 'be$0"])

@@ -1,5 +1,8 @@
 """Models become features whose steps the line map finds again."""
 
+from importlib import import_module
+from typing import Any
+
 import pytest
 
 from kit import MODEL, SCENE, fixture
@@ -132,14 +135,14 @@ def test_quantifiers_are_unrolled_over_their_sets() -> None:
         'Then "env:nut" is located at "any of [\'env:bench_ws\', \'env:tray_ws\']" after event "t:place-end"',
         'When "env:panda" picks "env:bolt" and places it at "[\'env:bench_ws\', \'env:tray_ws\']"',
         'Then "env:bolt" is located at "any of [\'env:bench_ws\', \'env:tray_ws\']" after event "t:place-end"',
-        "Then \"['env:nut', 'env:bolt']\" are sorted into \"['env:bench_ws', 'env:tray_ws']\" after event \"t:place-end\"",
+        "Then \"['env:nut', 'env:bolt']\" are sorted into \"['env:bench_ws', 'env:tray_ws']\""
+        ' after event "t:place-end"',
     ]
 
 
 @pytest.mark.parametrize("word", ['a "quoted" word', "a | pipe", "two\nlines"])
 def test_every_feature_is_read_by_behave(word: str) -> None:
-    from behave.parser import parse_feature
-
+    parse_feature: Any = import_module("behave.parser").parse_feature
     escaped = word.replace('"', '\\"')
     text = edited("{ <arms.panda> }", f'{{ "{escaped}" }}')
     parsed = parse_feature(feature(text))

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
 from rich.text import Text
 
 from robbdd_tools.monitor.verdict import Outcome
@@ -80,25 +79,28 @@ class Display:
         spec = scenario.spec
         outcome = scenario.verdict
         self._console.print(Text(f"{spec.name}  {values_words(spec)}", STYLES[outcome]))
-        table = Table(box=None, show_header=False, pad_edge=False, padding=(0, 1))
-        table.add_column(no_wrap=True)
-        table.add_column(overflow="fold")
-        table.add_column(justify="right", no_wrap=True)
-        for clause in spec.clauses:
-            judged = scenario.judged.get(clause.line)
-            if judged is not None:
-                table.add_row(*_clause_row(plain_sentence(clause.sentence), judged))
-        self._console.print(table)
+        rows = [
+            (judged, plain_sentence(clause.sentence))
+            for clause in spec.clauses
+            if (judged := scenario.judged.get(clause.line)) is not None
+        ]
+        width = max((len(sentence) for _, sentence in rows), default=0)
+        for judged, sentence in rows:
+            self._console.print(_clause_line(judged, sentence, width))
 
 
-def _clause_row(sentence: str, judged: ClauseJudged) -> tuple[Text, Text, Text]:
+def _clause_line(judged: ClauseJudged, sentence: str, width: int) -> Text:
     outcome = Outcome(judged.verdict)
-    shown = margin(judged.robustness, judged.unit)
-    if outcome is Outcome.VIOLATED and judged.at is not None:
-        shown += f"  at {judged.at:.2f} s"
-    reason = f"\n{judged.reason}" if judged.reason and outcome is not Outcome.HOLDS else ""
     style = STYLES[outcome]
-    return Text(f"  {SIGNS[outcome]}", style), Text(sentence + reason), Text(shown, style)
+    line = Text(f"  {SIGNS[outcome]} ", style)
+    line.append(sentence.ljust(width), "default")
+    line.append(f"  {margin(judged.robustness, judged.unit):>9}".rstrip())
+    if outcome is Outcome.VIOLATED and judged.at is not None:
+        line.append(f"  at {judged.at:.2f} s")
+    if judged.reason and outcome is not Outcome.HOLDS:
+        line.append(f"\n      {judged.reason}")
+    line.rstrip()
+    return line
 
 
 def _word(outcome: Outcome) -> str:

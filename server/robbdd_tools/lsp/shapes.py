@@ -14,6 +14,8 @@ from robbdd_tools.lsp.worker import LENGTH, Answer, Request, frame
 
 PAUSE = 0.25
 """Seconds without an edit before validation starts."""
+# Not "-m": the messages' classes must have the same module name in both processes.
+_WORKER = "from robbdd_tools.lsp.worker import main; main()"
 _LOG = logging.getLogger(__name__)
 
 
@@ -37,6 +39,7 @@ class ShapeValidator:
         self._newest[request.uri] = request.revision
         if self._task is None or self._task.done():
             self._task = asyncio.get_running_loop().create_task(self._work())
+            self._task.add_done_callback(_report)
 
     def forget(self, uri: str) -> None:
         """Drop requests and late answers for a closed file."""
@@ -81,7 +84,10 @@ class ShapeValidator:
 
     async def _running(self) -> Process:
         if self._process is None or self._process.returncode is not None:
-            self._process = await asyncio.create_subprocess_exec(
-                sys.executable, "-m", "robbdd_tools.lsp.worker", stdin=PIPE, stdout=PIPE
-            )
+            self._process = await asyncio.create_subprocess_exec(sys.executable, "-c", _WORKER, stdin=PIPE, stdout=PIPE)
         return self._process
+
+
+def _report(task: asyncio.Task[None]) -> None:
+    if not task.cancelled() and task.exception() is not None:
+        _LOG.error("validation stopped", exc_info=task.exception())

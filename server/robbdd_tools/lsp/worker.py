@@ -69,7 +69,3 @@ def _answer(project: Project, request: Request) -> Answer:
     except Exception as error:  # An error of ours must cost one answer, not the process.
         return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}")
     return Answer(request.revision, request.uri, tuple(found))
-
-
-if __name__ == "__main__":
-    main()

@@ -156,7 +156,7 @@ def decode(line: str) -> RunMessage:
     try:
         fields = json.loads(line)
         return _TYPES[fields.pop("type")](**fields)
-    except (KeyError, TypeError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ValueError(f"not a run message: {line[:200]!r}") from error
 
 

@@ -1,0 +1,204 @@
+"""The server as a client sees it: a real process over standard input and output."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import sys
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import pytest_lsp
+from lsprotocol import types
+from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
+
+from kit import EXAMPLES
+from robbdd_tools.base.files import path_to_uri
+
+PATIENCE = 60.0
+
+
+CLIENTS = pytest.mark.parametrize("client", ["visual-studio-code", "neovim", "emacs"], indirect=True)
+"""For tests whose answer depends on what the client can do."""
+
+
+# pytest-lsp leaves the types of its decorator open.
+@pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
+    config=ClientServerConfig(server_command=[sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio"]),
+)
+async def client(request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path) -> AsyncIterator[None]:
+    def ignore(_: object) -> None:
+        return None
+
+    lsp_client.feature(types.WORKSPACE_INLAY_HINT_REFRESH)(ignore)
+    lsp_client.feature("robbdd/runMessage")(ignore)
+    shutil.copytree(EXAMPLES / "pickplace", tmp_path / "pickplace")
+    parameters = types.InitializeParams(
+        capabilities=client_capabilities(getattr(request, "param", "visual-studio-code")),
+        workspace_folders=[types.WorkspaceFolder(uri=path_to_uri(tmp_path), name="test")],
+    )
+    await lsp_client.initialize_session(parameters)
+    yield
+    await lsp_client.shutdown_session()
+
+
+class Editor:
+    """A document open in a client."""
+
+    def __init__(self, client: LanguageClient, folder: Path) -> None:
+        self.client = client
+        self.path = folder / "pickplace" / "pickplace.bdd"
+        self.uri = path_to_uri(self.path)
+        self.text = self.path.read_text(encoding="utf-8")
+        self.version = 0
+
+    def open(self, text: str | None = None) -> None:
+        self.text = self.text if text is None else text
+        item = types.TextDocumentItem(uri=self.uri, language_id="bdd", version=self.version, text=self.text)
+        self.client.text_document_did_open(types.DidOpenTextDocumentParams(text_document=item))
+
+    def change(self, old: str, new: str) -> None:
+        assert old in self.text
+        start, end = self.position(old), self.position(old, after=True)
+        self.text = self.text.replace(old, new, 1)
+        self.version += 1
+        edit = types.TextDocumentContentChangePartial(range=types.Range(start=start, end=end), text=new)
+        document = types.VersionedTextDocumentIdentifier(uri=self.uri, version=self.version)
+        self.client.text_document_did_change(
+            types.DidChangeTextDocumentParams(text_document=document, content_changes=[edit])
+        )
+
+    def position(self, text: str, after: bool = False) -> types.Position:
+        offset = self.text.index(text) + (len(text) if after else 0)
+        line = self.text.count("\n", 0, offset)
+        column = offset - (self.text.rfind("\n", 0, offset) + 1)
+        return types.Position(line=line, character=column)
+
+    def at(self, text: str, after: bool = False) -> dict[str, Any]:
+        document = types.TextDocumentIdentifier(uri=self.uri)
+        return {"text_document": document, "position": self.position(text, after)}
+
+    def everything(self) -> types.Range:
+        end = types.Position(line=self.text.count("\n") + 1, character=0)
+        return types.Range(start=types.Position(line=0, character=0), end=end)
+
+    async def diagnostics(self, *codes: str) -> list[types.Diagnostic]:
+        """Wait until exactly these codes are published for the document."""
+        async with asyncio.timeout(PATIENCE):
+            while True:
+                found = list(self.client.diagnostics.get(self.uri, []))
+                if self.uri in self.client.diagnostics and sorted(str(entry.code) for entry in found) == sorted(codes):
+                    return found
+                await asyncio.sleep(0.02)
+
+
+@pytest.fixture
+def editor(client: LanguageClient, tmp_path: Path) -> Editor:
+    return Editor(client, tmp_path)
+
+
+@CLIENTS
+async def test_a_sound_example_has_no_diagnostic_and_an_error_comes_and_goes(editor: Editor) -> None:
+    editor.open()
+    await editor.diagnostics()
+    editor.change("template: <pick-place>", "template: <pick-plaice>")
+    (found,) = await editor.diagnostics("unknown-name")
+    assert "did you mean 'pick-place'" in found.message
+    assert found.range.start == editor.position("pick-plaice")
+    editor.change("<pick-plaice>", "<pick-place>")
+    await editor.diagnostics()
+
+
+async def test_shapes_are_reported_where_the_text_causes_them(editor: Editor) -> None:
+    editor.open()
+    await editor.diagnostics()
+    editor.change("    task: <pick-place-task>\n", "")
+    (found,) = [entry for entry in await _until_shape(editor) if str(entry.code).startswith("shacl-")]
+    assert found.severity is types.DiagnosticSeverity.Error
+
+
+async def _until_shape(editor: Editor) -> list[types.Diagnostic]:
+    async with asyncio.timeout(PATIENCE):
+        while True:
+            found = list(editor.client.diagnostics.get(editor.uri, []))
+            if any(str(entry.code).startswith("shacl-") for entry in found):
+                return found
+            await asyncio.sleep(0.02)
+
+
+@CLIENTS
+async def test_completion_and_definition_across_files(editor: Editor) -> None:
+    editor.open()
+    editor.change("agn set <arms>", "agn set <ar")
+    params = types.CompletionParams(**editor.at("agn set <ar", after=True))
+    items = await editor.client.text_document_completion_async(params)
+    assert isinstance(items, list)
+    assert [item.label for item in items] == ["arms"]
+    where = types.DefinitionParams(**editor.at("cubes.cube0", after=True))
+    found = await editor.client.text_document_definition_async(where)
+    assert isinstance(found, types.Location)
+    assert found.uri.endswith("bench.scene")
+
+
+async def test_the_quick_fix_mends_a_misspelt_name(editor: Editor) -> None:
+    editor.open(editor.text.replace("template: <pick-place>", "template: <pick-plaice>"))
+    (found,) = await editor.diagnostics("unknown-name")
+    context = types.CodeActionContext(diagnostics=[found], only=[types.CodeActionKind.QuickFix])
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    params = types.CodeActionParams(text_document=document, range=found.range, context=context)
+    actions = await editor.client.text_document_code_action_async(params) or []
+    assert [action.title for action in actions] == ["Change to 'pick-place'"]
+
+
+async def test_gherkin_is_written_beside_the_model(editor: Editor) -> None:
+    editor.open()
+    params = types.ExecuteCommandParams(command="robbdd.gherkin", arguments=[{"uri": editor.uri}])
+    answer = await editor.client.workspace_execute_command_async(params)
+    assert answer is not None
+    assert str(answer.files[0]).endswith("pickplace/features/tidy-bench.feature")
+    assert (editor.path.parent / "features" / "tidy-bench.feature").is_file()
+
+
+@CLIENTS
+@pytest.mark.physics
+async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(editor: Editor) -> None:
+    editor.open(editor.text.replace("<cubes.cube0>, <balls.ball0>", "<cubes.cube0>").replace(", <places.right_ws>", ""))
+    await editor.diagnostics()
+    lenses = await editor.client.text_document_code_lens_async(
+        types.CodeLensParams(text_document=types.TextDocumentIdentifier(uri=editor.uri))
+    )
+    assert lenses is not None
+    command = lenses[0].command
+    assert command is not None
+    assert command.title == "Run scenario part-to-bin"
+    params = types.ExecuteCommandParams(command=command.command, arguments=command.arguments)
+    await editor.client.workspace_execute_command_async(params)
+    hints = await editor.client.text_document_inlay_hint_async(
+        types.InlayHintParams(text_document=types.TextDocumentIdentifier(uri=editor.uri), range=editor.everything())
+    )
+    assert hints is not None
+    shown = {editor.text.split("\n")[hint.position.line].split(":")[0].strip(): str(hint.label) for hint in hints}
+    assert set(shown) == {"at-source", "in-hand", "at-goal", "goal-untouched"}
+    assert all(label.startswith("✔") for label in shown.values()), shown
+    assert "mm" in shown["at-goal"]
+
+
+async def test_a_run_of_a_broken_model_says_why_it_cannot_run(editor: Editor) -> None:
+    editor.open(editor.text.replace("task: <pick-place-task>", "task <pick-place-task>"))
+    params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
+    await editor.client.workspace_execute_command_async(params)
+    assert any("the model has errors" in message.message for message in editor.client.messages)
+
+
+@pytest.mark.parametrize("text", ["", "\0\1\2", "}" * 50, '"', "Scenario Template", "import 'gone.bdd'\n" * 3])
+async def test_any_text_is_answered(editor: Editor, text: str) -> None:
+    editor.open(text)
+    params = types.CompletionParams(
+        text_document=types.TextDocumentIdentifier(uri=editor.uri), position=types.Position(line=0, character=0)
+    )
+    await editor.client.text_document_completion_async(params)
+    async with asyncio.timeout(PATIENCE):
+        while editor.uri not in editor.client.diagnostics:
+            await asyncio.sleep(0.02)

@@ -1,0 +1,62 @@
+"""Messages and manifests survive the way to the other process."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    ClauseSpec,
+    ClauseStarted,
+    LogLine,
+    Manifest,
+    RunFinished,
+    RunMessage,
+    RunStarted,
+    ScenarioFinished,
+    ScenarioSpec,
+    ScenarioStarted,
+    SceneSpec,
+    decode,
+    encode,
+    read_manifest,
+    write_manifest,
+)
+
+MESSAGES = [
+    RunStarted(3, "mujoco"),
+    ScenarioStarted(0),
+    ClauseStarted(0, 12),
+    ClauseJudged(0, 12, "violated", -0.012, "m", 3.4, "pushed"),
+    ClauseJudged(0, 13, "unknown", None, "", None, "event t:end never occurred"),
+    ScenarioFinished(0, 9.5, 0.8, 0.5),
+    LogLine("warning", 'odd "text" ✗\nsecond line'),
+    RunFinished(True),
+]
+
+
+@pytest.mark.parametrize("message", MESSAGES, ids=lambda message: type(message).__name__)
+def test_a_message_is_one_line_and_comes_back_equal(message: RunMessage) -> None:
+    line = encode(message)
+    assert "\n" not in line
+    assert decode(line) == message
+
+
+@given(st.text())
+def test_anything_else_is_refused_as_a_value_error(line: str) -> None:
+    with pytest.raises(ValueError, match="not a run message"):
+        decode(line)
+
+
+def test_a_manifest_comes_back_equal(tmp_path: Path) -> None:
+    scene = SceneSpec(("e:a",), ("e:r",), {"e:w": ("e:t",)}, {"e:w": ("e:v",)}, {"e:a": "e:w"})
+    clause = ClauseSpec(9, "https://x/c", "c", "then", '"e:a" is located at "e:w" after event "e:e"')
+    values = {"e:var-x": "e:a", "e:var-n": 0.5, "e:var-s": ["e:a", "e:b"]}
+    scenario = ScenarioSpec(
+        "features/s.feature", 6, "e:v -- 1", "s", "v", 1, values, 7, scene, {"e:e": "pick-end"}, (clause,)
+    )
+    manifest = Manifest("m.bdd", 1, (scenario,))
+    write_manifest(tmp_path, manifest)
+    assert read_manifest(tmp_path) == manifest

@@ -1,0 +1,110 @@
+"""Messages add up to results, in words and as the documented JSON."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit import schema_errors
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    ClauseSpec,
+    Manifest,
+    RunFinished,
+    ScenarioFinished,
+    ScenarioSpec,
+    SceneSpec,
+)
+from robbdd_tools.run.report import margin, plain_sentence, values_words, verdict_words
+from robbdd_tools.run.results import RunResults
+
+CLAUSES = tuple(ClauseSpec(line, f"https://x/c{line}", f"c{line}", "then", f'"e:a" {line}') for line in (5, 6))
+SPEC = ScenarioSpec(
+    "features/s.feature", 3, "e:v -- 1", "https://x/s", "https://x/v", 1, {"e:var-x": "e:a", "e:var-s": ["e:a", 2]}, 7,
+    SceneSpec(), {}, CLAUSES,
+)  # fmt: skip
+
+
+def results(*outcomes: str) -> RunResults:
+    found = RunResults(Manifest("m.bdd", 1, (SPEC,)))
+    for clause, outcome in zip(CLAUSES, outcomes, strict=False):
+        found.apply(ClauseJudged(0, clause.line, outcome, 0.01, "m", 1.0, ""))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "verdict"),
+    [
+        (("holds", "holds"), Outcome.HOLDS),
+        (("holds", "violated"), Outcome.VIOLATED),
+        (("unknown", "holds"), Outcome.UNKNOWN),
+        (("unknown", "violated"), Outcome.VIOLATED),
+        (("holds",), Outcome.UNKNOWN),
+        ((), Outcome.UNKNOWN),
+    ],
+)
+def test_a_scenario_is_as_good_as_its_worst_clause(outcomes: tuple[str, ...], verdict: Outcome) -> None:
+    assert results(*outcomes).scenarios[0].verdict is verdict
+
+
+def test_what_a_crash_leaves_open_is_unknown_and_nothing_is_lost() -> None:
+    found = results("holds")
+    closed = found.close("the agent process ended unexpectedly")
+    assert [message.line for message in closed] == [6]
+    clauses = found.as_json()["scenarios"][0]["clauses"]
+    assert [(clause["verdict"], clause["reason"]) for clause in clauses] == [
+        ("holds", ""),
+        ("unknown", "the agent process ended unexpectedly"),
+    ]
+
+
+def test_results_follow_their_documented_schema() -> None:
+    found = results("holds", "violated")
+    found.apply(ScenarioFinished(0, 9.0, 1.0, 0.5))
+    found.apply(RunFinished(True))
+    for document in (found.as_json(), results().as_json()):
+        assert schema_errors("run.schema.json", document) == []
+
+
+@pytest.mark.parametrize(
+    ("robustness", "unit", "words"),
+    [
+        (0.0312, "m", "+31 mm"),
+        (-0.0012, "m", "−1.2 mm"),
+        (0.25, "m/s", "+0.2 m/s"),
+        (1.0, "", ""),
+        (None, "m", ""),
+    ],
+)
+def test_margins_are_read_in_everyday_units(robustness: float | None, unit: str, words: str) -> None:
+    assert margin(robustness, unit) == words
+
+
+@pytest.mark.parametrize(
+    ("sentence", "words"),
+    [
+        ('"e:a" is located at "e:w" after event "t:place-end"', "a is located at w after place-end"),
+        (
+            "\"['e:a', 'e:b']\" are sorted into \"any of ['e:w']\" after event \"t:e\"",
+            "[a, b] are sorted into any of [w] after e",
+        ),
+        (
+            '"e:r" has config "ee_speed" = "0.6" within 0.5 seconds before event "t:e"',
+            "r has config ee_speed = 0.6 within 0.5 seconds before e",
+        ),
+    ],
+)
+def test_sentences_are_shown_without_prefixes(sentence: str, words: str) -> None:
+    assert plain_sentence(sentence) == words
+
+
+def test_a_verdict_says_when_and_why() -> None:
+    assert verdict_words(ClauseJudged(0, 5, "holds", 0.031, "m", 2.0, "")) == "✔ +31 mm"
+    assert verdict_words(ClauseJudged(0, 5, "violated", -0.02, "m", 3.42, "")) == "✗ −20 mm at 3.42 s"
+    assert verdict_words(ClauseJudged(0, 5, "unknown", None, "", None, "event e never occurred")) == (
+        "? unknown: event e never occurred"
+    )
+
+
+def test_values_are_shown_by_their_short_names() -> None:
+    assert values_words(SPEC) == "x = a, s = {a, 2}"
