@@ -23,6 +23,13 @@ export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bdd
 const FILES = "**/*.{bdd,scene,scenex,bddx,ktree}";
 const STOP_TIMEOUT = 3000;
 
+/** Logs its errors and leaves it to us to speak to the user: two messages for one failure are one too many. */
+class DiscreetClient extends LanguageClient {
+  override error(message: string, data?: unknown): void {
+    super.error(message, data, false);
+  }
+}
+
 export class Server implements vscode.Disposable {
   private client: LanguageClient | undefined;
   private lookup: Lookup | undefined;
@@ -118,7 +125,7 @@ export class Server implements vscode.Disposable {
   private createClient(command: string): LanguageClient {
     const budget = new RestartBudget();
     let answered = false;
-    const client = new LanguageClient(
+    const client = new DiscreetClient(
       "robbdd",
       "RobBDD",
       { command, transport: TransportKind.stdio },

@@ -46,14 +46,22 @@ test("a run reads from its start to its summary", () => {
   assert.deepEqual(lines, [
     "▶ cell/fetch.bdd: 2 scenarios, mujoco 4.0.0",
     "  Scenario 1 of 2",
-    "    ✔ feature line 7 holds by +0.0312 m at 4.50 s",
+    "    ✔ feature line 7 holds by +31.2 mm at 4.50 s",
     "    passed after 9.00 s simulated, 0.51 s on the clock",
     "  Scenario 2 of 2",
-    "    ✗ feature line 7 violated by −0.00400 m at 3.20 s: the bin was pushed",
+    "    ✗ feature line 7 violated by −4.00 mm at 3.20 s: the bin was pushed",
     "    failed after 9.00 s simulated, 0.51 s on the clock",
     "■ cell/fetch.bdd: 1 of 2 scenarios passed, 1 failed.",
     "",
   ]);
+});
+
+test("a margin is given in a unit that reads well, and only where it has one", () => {
+  const line = (robustness: number, unit: string) => report(judged(0, "holds", { robustness, unit })).lines[0];
+  assert.equal(line(0.9994, "m"), "    ✔ feature line 7 holds by +999 mm");
+  assert.equal(line(1.5, "m"), "    ✔ feature line 7 holds by +1.50 m");
+  assert.equal(line(-0.25, "m/s"), "    ✔ feature line 7 holds by −0.250 m/s");
+  assert.equal(line(1, ""), "    ✔ feature line 7 holds");
 });
 
 test("a scenario with an unknown clause is undecided, not passed", () => {

@@ -99,16 +99,19 @@ function decide(verdicts: readonly ClauseJudged["verdict"][]): Outcome {
 }
 
 function describeClause(clause: ClauseJudged): string {
-  const margin = clause.robustness === null ? "" : ` by ${quantity(clause.robustness, clause.unit)}`;
   const instant = clause.at === null ? "" : ` at ${seconds(clause.at)}`;
   const reason = clause.reason === "" ? "" : `: ${clause.reason}`;
-  return `${SIGNS[clause.verdict]} feature line ${clause.line} ${clause.verdict}${margin}${instant}${reason}`;
+  return `${SIGNS[clause.verdict]} feature line ${clause.line} ${clause.verdict}${margin(clause)}${instant}${reason}`;
 }
 
-function quantity(value: number, unit: string): string {
-  const sign = value < 0 ? "−" : "+";
-  const digits = Math.abs(value).toPrecision(3);
-  return unit === "" ? sign + digits : `${sign}${digits} ${unit}`;
+/** The margin in a unit that reads well; without a unit it is but another word for the verdict. */
+function margin({ robustness, unit }: ClauseJudged): string {
+  if (robustness === null || unit === "") {
+    return "";
+  }
+  const short = unit === "m" && Math.abs(robustness) < 1;
+  const [value, shown] = short ? [robustness * 1000, "mm"] : [robustness, unit];
+  return ` by ${value < 0 ? "−" : "+"}${Math.abs(value).toPrecision(3)} ${shown}`;
 }
 
 function seconds(value: number): string {

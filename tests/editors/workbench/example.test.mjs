@@ -1,11 +1,16 @@
 // The example as its reader meets it: no complaint, a mistake is marked and goes again, a run puts verdicts beside clauses.
 import assert from "node:assert/strict";
+import { readFile, writeFile } from "node:fs/promises";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { EXAMPLES, LANGUAGE_SERVER, required } from "./harness/checkout.mjs";
 import { Session } from "./harness/session.mjs";
-import { PATIENCE, SCHEMES } from "./harness/workbench.mjs";
+import { SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "pickplace/pickplace.bdd";
+/** The example with its scenario repeated under other names: long enough to be cancelled while it runs. */
+const LONG_FILE = "pickplace/long.bdd";
+const REPETITIONS = 10;
 const RUN_LIMIT = 5 * 60_000;
 
 /** @type {Session} */
@@ -29,7 +34,13 @@ function step(name, body) {
 
 before(async () => {
   const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
-  session = await Session.open({ workspace: EXAMPLES, settings: { "robbdd.server.path": server } });
+  session = await Session.open({
+    workspace: EXAMPLES,
+    settings: { "robbdd.server.path": server },
+    prepare: async (workspace) => {
+      await writeFile(join(workspace, LONG_FILE), lengthened(await readFile(join(workspace, FILE), "utf8")));
+    },
+  });
   workbench = session.workbench;
 });
 
@@ -67,20 +78,20 @@ step("undoing the mistake takes both away", async () => {
 
 step("the Run code lens puts a verdict at every clause", async () => {
   await workbench.codeLens("Run").first().click();
-  await workbench.statusText(/RobBDD \d+\/\d+/);
-  await workbench.statusText(/RobBDD$/, RUN_LIMIT);
   const clauses = workbench.lines("holds(");
   const count = await clauses.count();
   assert.ok(count > 0);
   for (let index = 0; index < count; index += 1) {
-    await clauses.nth(index).filter({ hasText: /[✔✗]/ }).waitFor({ timeout: PATIENCE });
+    await clauses.nth(index).filter({ hasText: /[✔✗]/ }).waitFor({ timeout: RUN_LIMIT });
   }
 });
 
 step("the run is told in the output channel, with its summary at the end", async () => {
   await workbench.command("RobBDD: Show Runs");
-  const output = workbench.page.locator(".output-view-container .view-lines, .output-view .view-lines").first();
-  await output.filter({ hasText: /scenarios? passed/ }).waitFor();
+  const output = workbench.page.locator(".part.panel .view-lines");
+  await output.filter({ hasText: /\d+\sof\s\d+\sscenarios\spassed/ }).waitFor({ timeout: RUN_LIMIT });
+  await workbench.statusText(/RobBDD$/);
+  await workbench.screenshot("example-runs");
   await workbench.closePanel();
 });
 
@@ -98,6 +109,39 @@ step("the Gherkin code lens opens the feature that it wrote", async () => {
   await workbench.page.locator('.tab.active[data-resource-name$=".feature"]').waitFor();
   await workbench.lines("Scenario").first().waitFor();
 });
+
+step("a run can be cancelled, and says that it is not complete", async () => {
+  await workbench.openFile(LONG_FILE);
+  await workbench.codeLens("Run").first().waitFor();
+  await workbench.command("RobBDD: Run Scenarios of This File");
+  await workbench.statusText(/RobBDD \d+\/\d+/);
+  await workbench.command("RobBDD: Cancel Run");
+  await workbench.statusText(/RobBDD$/);
+  await workbench.command("RobBDD: Show Runs");
+  const output = workbench.page.locator(".part.panel .view-lines");
+  await output.filter({ hasText: /long\.bdd:\s\d+\sof\s\d+\sscenarios\spassed.*not\sfinished/ }).waitFor();
+});
+
+step("a restarted server marks mistakes again", async () => {
+  await workbench.command("RobBDD: Restart Language Server");
+  await workbench.command("RobBDD: Show Log");
+  // The old server is gone: whatever is marked from here on, the new one has marked.
+  const output = workbench.page.locator(".part.panel .view-lines");
+  await output.filter({ hasText: /Server\sprocess\sexited\ssuccessfully/ }).waitFor();
+  await workbench.focusEditor();
+  await workbench.goTo(1, 1);
+  await workbench.type("import 'no-such.scene' ");
+  await (await workbench.problem("no-such.scene")).first().waitFor();
+});
+
+/** Repeat the first scenario of a story under other names. */
+function lengthened(text) {
+  const block = /^ {8}Scenario (?<name>[\w-]+) \{\n[^]*?^ {8}\}\n/m.exec(text);
+  assert.ok(block !== null, `${FILE} has no scenario of the expected layout`);
+  const { name } = block.groups;
+  const copies = Array.from({ length: REPETITIONS }, (_, index) => block[0].replace(name, `${name}-${index}`));
+  return text.replace(block[0], copies.join(""));
+}
 
 /** Where the name of the first reference to an event stands in the example: line and column from 1. */
 async function firstReference() {

@@ -52,6 +52,25 @@ test("without a language server a message says how to install it and leads to th
   passed = true;
 });
 
+test("a server that ends at once is reported, with its last words in the log", async () => {
+  session = await Session.open({
+    workspace: SAMPLES,
+    searchPath: BARE_PATH,
+    prepare: (workspace) => bringServer(workspace, 'echo "ImportError: half an installation" >&2; exit 1'),
+  });
+  const { workbench } = session;
+  await workbench.openFile("sorting.bdd");
+  const message = await workbench.notification(".venv/bin/robbdd-lsp");
+  assert.equal(await workbench.notifications.count(), 1, "it is said once");
+  await message.hover();
+  await message.getByRole("button", { name: "Show Log" }).click();
+  const output = workbench.page.locator(".part.panel .view-lines");
+  await output.filter({ hasText: /ImportError:\shalf\san\sinstallation/ }).waitFor();
+  await workbench.screenshot("server-broken");
+  assert.equal(await workbench.notifications.count(), 0, "and nothing comes after it");
+  passed = true;
+});
+
 test("an untrusted workspace cannot bring its own server", async () => {
   const marker = (workspace) => join(workspace, "started");
   session = await Session.open({
@@ -59,10 +78,7 @@ test("an untrusted workspace cannot bring its own server", async () => {
     searchPath: BARE_PATH,
     trust: false,
     prepare: async (workspace) => {
-      const program = join(workspace, ".venv/bin/robbdd-lsp");
-      await mkdir(dirname(program), { recursive: true });
-      await writeFile(program, `#!/bin/sh\ntouch "${marker(workspace)}"\n`);
-      await chmod(program, 0o755);
+      const program = await bringServer(workspace, `touch "${marker(workspace)}"`);
       await mkdir(join(workspace, ".vscode"));
       await writeFile(join(workspace, ".vscode/settings.json"), JSON.stringify({ "robbdd.server.path": program }));
     },
@@ -73,3 +89,12 @@ test("an untrusted workspace cannot bring its own server", async () => {
   await assert.rejects(readFile(marker(workspace)), { code: "ENOENT" });
   passed = true;
 });
+
+/** Put a program in the place of the language server of a workspace's own environment; return its path. */
+async function bringServer(workspace, script) {
+  const program = join(workspace, ".venv/bin/robbdd-lsp");
+  await mkdir(dirname(program), { recursive: true });
+  await writeFile(program, `#!/bin/sh\n${script}\n`);
+  await chmod(program, 0o755);
+  return program;
+}

@@ -1,30 +1,33 @@
 #!/usr/bin/env bash
 # Install what the workbench tests need into a cache folder: code-server (VS Code in a browser) and playwright-core.
-#
-#   tests/editors/workbench/setup.sh [--system]
-#
-# --system also installs the Debian packages (needs root). ROBBDD_WORKBENCH_CACHE names the folder; without it
-# `.workbench/` at the top of the checkout is used. Nothing is done when the versions below are there already.
+# As root on Debian it also installs the packages that are missing; elsewhere it names them.
+# ROBBDD_WORKBENCH_CACHE names the folder; without it `.workbench/` at the top of the checkout is used.
+# Nothing is done when the versions below are there already.
 set -euo pipefail
 
 CODE_SERVER=4.100.3 # the newest that runs on Node 20
 PLAYWRIGHT=1.65.1
-DEBIAN=(chromium ripgrep gcc g++ make python3)
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cache=${ROBBDD_WORKBENCH_CACHE:-$(cd "$here/../../.." && pwd)/.workbench}
 
 say() { printf 'workbench: %s\n' "$*"; }
 
-if [[ ${1:-} == --system ]]; then
-    say "installing ${DEBIAN[*]}"
-    apt-get update -qq
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${DEBIAN[@]}" >/dev/null
-fi
-
-for tool in node npm chromium rg g++ make python3; do
-    command -v "$tool" >/dev/null || { say "$tool is missing; run $0 --system as root, or install it"; exit 1; }
+# Each tool with the Debian package that carries it, where the two differ in name.
+declare -A package=([rg]=ripgrep)
+missing=()
+for tool in chromium rg gcc g++ make python3; do
+    command -v "$tool" >/dev/null || missing+=("${package[$tool]:-$tool}")
 done
+if ((${#missing[@]})); then
+    if [[ $EUID -ne 0 ]] || ! command -v apt-get >/dev/null; then
+        say "please install ${missing[*]} and run this again"
+        exit 1
+    fi
+    say "installing ${missing[*]}"
+    apt-get update -qq
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+fi
 
 wanted="code-server $CODE_SERVER, playwright-core $PLAYWRIGHT, node $(node -p process.versions.modules)"
 if [[ -f $cache/installed && $(<"$cache/installed") == "$wanted" ]]; then
@@ -36,8 +39,8 @@ export npm_config_audit=false npm_config_fund=false npm_config_update_notifier=f
 export npm_config_yes=true # node-pty's build asks for node-gyp
 export PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1
 
-rm -rf "$cache"
 mkdir -p "$cache"
+rm -rf "$cache"/{node_modules,package.json,package-lock.json,installed}
 echo '*' >"$cache/.gitignore" # the folder lies in the checkout by default
 cd "$cache"
 echo '{ "name": "robbdd-workbench-cache", "private": true }' >package.json

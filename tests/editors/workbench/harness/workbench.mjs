@@ -8,7 +8,8 @@ export const PATIENCE = 60_000;
 /** Colour schemes and the class that the window wears in each. */
 export const SCHEMES = { dark: "vs-dark", light: "vs" };
 
-const EDITOR = ".editor-instance .monaco-editor";
+const GROUP = ".editor-group-container.active";
+const EDITOR = `${GROUP} .editor-instance .monaco-editor`;
 
 export class Workbench {
   /** @param {import("playwright-core").Page} page */
@@ -34,7 +35,7 @@ export class Workbench {
     const name = path.split("/").at(-1);
     await this.page.locator(".quick-input-list .monaco-list-row.focused", { hasText: name }).waitFor();
     await this.page.keyboard.press("Enter");
-    await this.page.locator(`.tab.active[data-resource-name="${name}"]`).waitFor();
+    await this.page.locator(`${GROUP} .tab.active[data-resource-name="${name}"]`).waitFor();
     await this.page.locator(`${EDITOR} .view-line`).first().waitFor();
   }
 
