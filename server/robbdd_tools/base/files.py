@@ -34,18 +34,26 @@ def uri_to_path(uri: str) -> Path | None:
     return Path(path)
 
 
+def too_large(name: str, size: int) -> Unreadable | None:
+    """Refuse a text of more than ``LARGEST_FILE`` (``size`` in bytes, or code points of an open document)."""
+    if size <= LARGEST_FILE:
+        return None
+    return Unreadable(
+        "file-too-large",
+        f"'{name}' has {size / 1048576:.1f} MiB; the limit is {LARGEST_FILE // 1048576} MiB: "
+        "split the model into several files and import them",
+    )
+
+
 def read_text(path: Path) -> str | Unreadable:
     """Return the text of a UTF-8 file (a byte-order mark is dropped) or the reason why there is none."""
     try:
         if path.is_dir():
             return Unreadable("file-is-folder", f"'{path.name}' is a folder; name a file in it")
         size = path.stat().st_size
-        if size > LARGEST_FILE:
-            return Unreadable(
-                "file-too-large",
-                f"'{path.name}' has {size / 1048576:.1f} MiB; the limit is {LARGEST_FILE // 1048576} MiB: "
-                "split the model into several files and import them",
-            )
+        refused = too_large(path.name, size)
+        if refused is not None:
+            return refused
         data = path.read_bytes()
     except FileNotFoundError:
         return Unreadable("file-missing", f"there is no file '{path.name}' in {path.parent}")

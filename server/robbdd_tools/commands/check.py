@@ -8,9 +8,8 @@ from pathlib import Path
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.commands import FAILED, FINDINGS, OK
-from robbdd_tools.commands.models import diagnostic_json, load, model_files, print_diagnostic
+from robbdd_tools.commands.models import diagnostic_json, load, model_files, not_a_model, print_diagnostic
 from robbdd_tools.features.diagnostics import all_diagnostics
-from robbdd_tools.names.index import language_of
 
 
 def check(paths: Sequence[Path], as_json: bool) -> int:
@@ -19,9 +18,9 @@ def check(paths: Sequence[Path], as_json: bool) -> int:
     if not files:
         print(f"robbdd: there is no .bdd or .scene file in {', '.join(map(str, paths))}", file=sys.stderr)
         return FAILED
-    strangers = [path for path in files if path.exists() and not path.is_dir() and not language_of(path.name)]
-    if strangers:
-        print(f"robbdd: {strangers[0]} is not a model: its name must end in .bdd or .scene", file=sys.stderr)
+    stranger = not_a_model(files)
+    if stranger is not None:
+        print(stranger, file=sys.stderr)
         return FAILED
     snapshot, uris = load(files)
     found: dict[Diagnostic, None] = {}

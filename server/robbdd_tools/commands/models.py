@@ -12,7 +12,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.diagnostics import all_diagnostics
-from robbdd_tools.names.index import FileIndex
+from robbdd_tools.names.index import FileIndex, language_of
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.syntax.parse import LANGUAGES
 
@@ -38,8 +38,20 @@ def model_files(paths: Iterable[Path]) -> list[Path]:
     return list(files)
 
 
+def not_a_model(paths: Iterable[Path]) -> str | None:
+    """Return what to say when one of some files cannot be a model by its name; ``None`` when all can."""
+    for path in paths:
+        if not language_of(path.name) and not path.is_dir():
+            return f"robbdd: {path} is not a model: its name must end in .bdd or .scene"
+    return None
+
+
 def sound_model(path: Path) -> Snapshot | None:
     """Load one model for a command that needs it whole; prints its errors and returns ``None`` if it has any."""
+    stranger = not_a_model([path])
+    if stranger is not None:
+        print(stranger, file=sys.stderr)
+        return None
     snapshot, (uri,) = load([path])
     errors = [found for found in all_diagnostics(snapshot, uri) if found.severity is Severity.ERROR]
     for error in errors:

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 def run(path: Path, seed: int | None, names: Sequence[str] | None, report: Path | None, output: Path | None) -> int:
     """Run a model; returns the exit code. ``names`` selects scenario variants by name."""
+    if report is not None and not report.absolute().parent.is_dir():
+        print(f"robbdd: cannot write {report}: there is no folder {report.parent}", file=sys.stderr)
+        return FAILED
     model = _model(path)
     if model is None:
         return FAILED

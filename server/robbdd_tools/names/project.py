@@ -8,7 +8,7 @@ from functools import cached_property
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity, sort_key
 from robbdd_tools.base.document import Document, Span
-from robbdd_tools.base.files import Unreadable, read_text, uri_to_path
+from robbdd_tools.base.files import Unreadable, read_text, too_large, uri_to_path
 from robbdd_tools.names.analysis import Definition, FileAnalysis, ImportLink, PlacedDeclaration
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 from robbdd_tools.names.resolve import Scope, resolve
@@ -21,13 +21,14 @@ class Project:
     """Open documents over files on disk; every change makes the next snapshot a new revision."""
 
     revision: int = 0
-    _open: dict[str, FileIndex] = field(default_factory=dict[str, FileIndex])
+    _open: dict[str, Source] = field(default_factory=dict[str, Source])
     _disk: dict[str, Source] = field(default_factory=dict[str, Source])
     _analyses: dict[str, tuple[Scope, FileAnalysis]] = field(default_factory=dict[str, tuple[Scope, FileAnalysis]])
 
     def open(self, uri: str, version: int, text: str) -> None:
         """Set the text of a document that an editor holds (also on every change)."""
-        self._open[uri] = index_file(Document(uri, version, text))
+        refused = too_large(uri.rsplit("/", 1)[-1], len(text))
+        self._open[uri] = refused or index_file(Document(uri, version, text))
         self.revision += 1
 
     def close(self, uri: str) -> None:
@@ -42,7 +43,8 @@ class Project:
 
     def texts(self) -> dict[str, tuple[int, str]]:
         """Return version and text of every open document."""
-        return {uri: (index.document.version, index.document.text) for uri, index in self._open.items()}
+        documents = (source.document for source in self._open.values() if isinstance(source, FileIndex))
+        return {document.uri: (document.version, document.text) for document in documents}
 
     def replace(self, texts: Mapping[str, tuple[int, str]]) -> None:
         """Make exactly these documents the open ones, and read every other file afresh."""
@@ -50,7 +52,7 @@ class Project:
             del self._open[uri]
         for uri, (version, text) in texts.items():
             known = self._open.get(uri)
-            if known is None or known.document.text != text:
+            if not isinstance(known, FileIndex) or known.document.text != text:
                 self.open(uri, version, text)
         self._disk.clear()
 

@@ -11,6 +11,8 @@ from robbdd_tools.syntax.symbols import references, salvage, symbols
 from robbdd_tools.syntax.textx import Expectation, Rejected, parse_chunk
 
 CACHED_CHUNKS = 20_000
+LONGEST_WORD = 40
+"""Letters of the user's text that a message repeats."""
 LANGUAGES = ("bdd", "scene")
 
 _RULE_WORDS = {
@@ -49,7 +51,7 @@ def _path_words(rule: str) -> str:
 
 def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     span = _token(text, rejected.offset)
-    found = text[span.start : span.end]
+    found = _shown(text, span)
     if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
         return SyntaxFault(span, f"'{found}' does not begin a declaration")
     words = expected_words(rejected.expected)
@@ -61,7 +63,12 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
 
 def _trailing(text: str, offset: int) -> SyntaxFault:
     token = _token(text, offset)
-    return SyntaxFault(token, f"unexpected '{text[token.start : token.end]}' after the end of the declaration")
+    return SyntaxFault(token, f"unexpected '{_shown(text, token)}' after the end of the declaration")
+
+
+def _shown(text: str, span: Span) -> str:
+    word = text[span.start : span.end]
+    return word if len(word) <= LONGEST_WORD else word[: LONGEST_WORD - 1] + "…"
 
 
 def _token(text: str, offset: int) -> Span:

@@ -1,0 +1,30 @@
+"""``namespace-iri``: a namespace whose string cannot begin an IRI; what it names would be missing from the graph."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.syntax.tree import Namespace
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import FileAnalysis
+
+# RFC 3987: a scheme, then anything but the characters that no IRI may hold.
+_IRI = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\s<>\"{}|\\^`]*")
+
+
+def namespace_iri(analysis: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report each namespace that is not an absolute IRI."""
+    for placed in analysis.declarations:
+        root = placed.declaration.tree
+        if isinstance(root, Namespace) and not _IRI.fullmatch(root.iri.value):
+            yield Diagnostic(
+                analysis.document.uri,
+                root.iri.span.shifted(placed.offset),
+                Severity.ERROR,
+                "namespace-iri",
+                f"'{root.iri.value}' is no absolute IRI: write one such as 'https://example.org/{root.name.text}/'",
+            )
