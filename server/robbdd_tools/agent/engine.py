@@ -20,13 +20,11 @@ def version() -> str:
     return f"MuJoCo {mujoco.__version__}"
 
 
-def keep_quiet() -> None:
-    """Stop the engine from writing its warnings to a file in the working folder.
+def _ignore(_warning: object) -> None:
+    """Take a warning of the engine, which it would else write to a file in the working folder.
 
-    What they warn of (a state that is not a number) is found by the execution itself.
+    What they warn of (a state that is not a number) is found by the simulation itself.
     """
-    mujoco.set_mju_user_warning(_ignore)
 
 
-def _ignore(_text: object) -> None:
-    return
+mujoco.set_mju_user_warning(_ignore)

@@ -47,7 +47,8 @@ class Timing:
 class Execution:
     """A scenario in execution: the world, settled, at time 0, and the behaviours that will be executed in turn.
 
-    ``completed`` counts the behaviours that went through. Raises ``SceneError`` when the scene cannot be set up.
+    ``completed`` counts the behaviours that went through; ``simulation`` is for those who want to look at the world.
+    Raises ``SceneError`` when the scene cannot be set up.
     """
 
     def __init__(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing | None = None) -> None:
@@ -57,7 +58,7 @@ class Execution:
         self._names = _names_of(spec.events)
         actor = self._calls[0].arguments.get("agent") if self._calls else None
         world = build_world(spec.scene, spec.seed, actor)
-        self._simulation = Simulation(world)
+        self.simulation = Simulation(world)
         self._controllers: dict[str, PickPlace] = {}
         self._events: list[EventStamp] = []
         self._remark = ""
@@ -72,17 +73,17 @@ class Execution:
     @property
     def simulated(self) -> float:
         """Simulated time so far, s."""
-        return self._simulation.time
+        return self.simulation.time
 
     @property
     def stepping(self) -> float:
         """Wall time spent in the engine's step so far, s."""
-        return self._simulation.stepping
+        return self.simulation.stepping
 
     @property
     def trace(self) -> Trace:
         """What happened so far."""
-        return self._simulation.trace(tuple(self._events), self._finished, self._remark)
+        return self.simulation.trace(tuple(self._events), self._finished, self._remark)
 
     def advance_until(self, satisfied: Callable[[Trace], bool]) -> Trace:
         """Run on until a trace satisfies a condition or the execution is finished; returns the trace."""
@@ -102,7 +103,7 @@ class Execution:
     def _tick(self) -> None:
         try:
             next(self._script)
-            self._simulation.tick()
+            self.simulation.tick()
         except StopIteration:
             self._finished = True
             return
@@ -144,17 +145,17 @@ class Execution:
 
     def _controller(self, call: Call) -> PickPlace:
         agent = call.arguments["agent"]
-        if agent not in self._simulation.robots:
+        if agent not in self.simulation.robots:
             raise SceneError(f"the scene has no agent '{agent}'")
         if agent not in self._controllers:
-            self._controllers[agent] = PickPlace(self._simulation, agent, self._emit)
+            self._controllers[agent] = PickPlace(self.simulation, agent, self._emit)
         return self._controllers[agent]
 
     def _settle(self) -> None:
         for call in self._calls:
             self._controller(call)
         try:
-            self._simulation.settle()
+            self.simulation.settle()
             if self._calls and self._calls[0].behaviour == "place":
                 self._hand_over(self._calls[0])
         except SimulationError as error:
@@ -165,11 +166,11 @@ class Execution:
         self._muted = True
         try:
             for _ in self._controller(call).pick(call.arguments["object"]):
-                self._simulation.tick()
+                self.simulation.tick()
         except BehaviourError as error:
             raise SceneError(f"'{call.arguments['object']}' cannot be put into the gripper: {error}") from error
         self._muted = False
-        self._simulation.restart()
+        self.simulation.restart()
 
     def _emit(self, emitter: str) -> None:
         if not self._muted:

@@ -9,12 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from robbdd_tools.agent.channel import current_channel
-from robbdd_tools.agent.engine import keep_quiet
-from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.session import Session
 from robbdd_tools.run.protocol import MANIFEST, read_manifest
-
-ROLES = ("given", "when", "then")
 
 
 def before_all(context: Any) -> None:
@@ -22,7 +18,6 @@ def before_all(context: Any) -> None:
     folder = Path(context.config.base_dir).resolve().parent
     if not (folder / MANIFEST).is_file():
         raise OSError(f"there is no {MANIFEST} in {folder}: run a folder that 'robbdd run' has written")
-    keep_quiet()
     context.session = Session(folder, read_manifest(folder), current_channel())
 
 
@@ -31,11 +26,7 @@ def before_scenario(context: Any, scenario: Any) -> None:
     # A failed clause says nothing about the others: each gets its verdict.
     scenario.continue_after_failed_step = True
     texts = [(int(step.line), str(step.step_type), str(step.name)) for step in scenario.all_steps]
-    try:
-        context.session.start(Path(scenario.filename), int(scenario.line), texts)
-    except SceneError as error:
-        # The steps say so one by one; an error in a hook would be reported with less.
-        print(error)
+    context.session.start(Path(scenario.filename), int(scenario.line), texts)
 
 
 def after_scenario(context: Any, _scenario: Any) -> None:

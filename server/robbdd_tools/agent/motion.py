@@ -28,7 +28,7 @@ TURNING = 2.0
 """Largest speed of the tool about the vertical, rad/s."""
 MARGIN = 0.7
 """Share of a joint's speed limit that a motion may use; the servo needs the rest."""
-SPACING = 0.02
+SPACING = 0.03
 """Distance between the points of a path for which joint positions are computed, m."""
 PEAK_SPEED, PEAK_ACCELERATION = 1.875, 5.774
 """Peaks of the minimum-jerk profile over unit distance and time."""

@@ -93,7 +93,7 @@ class PickPlace:
         yield from self._open()
         try:
             yield from self._move(self._at_travel(present_pose(self._arm, self._joints)))
-        except Unreachable:
+        except BehaviourError:
             return
 
     def _choose_grasp(self, name: str) -> tuple[Grasp, ToolPose, ToolPose]:
@@ -157,7 +157,13 @@ class PickPlace:
         return ToolPose(pose.radius, pose.bearing, height, pose.turn)
 
     def _move(self, goal: ToolPose) -> Step:
-        motion = plan(self._arm, self._joints, goal, self._limits)
+        try:
+            motion = plan(self._arm, self._joints, goal, self._limits)
+        except Unreachable as error:
+            where = f"at {self._simulation.time:.2f} s, {error}"
+            raise BehaviourError(
+                f"{self._robot.name} cannot follow its path within its joint limits {where}"
+            ) from error
         missing = 0
         for joints, velocities in zip(motion.joints, motion.velocities, strict=True):
             self._joints = joints

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 LEAD = 0.5
 """Seconds between the scenario's start and its first behaviour, at least."""
+STRANGER = "the manifest of this run knows no such scenario; was the feature changed?"
 
 
 class ScenarioRun:
@@ -142,18 +143,19 @@ class Session:
         self._present: tuple[int, ScenarioRun] | None = None
 
     def start(self, feature: Path, line: int, texts: Sequence[tuple[int, str, str]]) -> None:
-        """Begin the scenario whose heading stands there; raises ``SceneError`` when the manifest has none there."""
+        """Begin the scenario whose heading stands there; without one in the manifest, its steps will fail."""
         self._present = None
         index = self._indices.get((feature.resolve(), line))
         if index is None:
-            raise SceneError(f"{feature.name}:{line}: the manifest of this run knows no scenario here")
+            self._channel.send(LogLine("error", f"{feature.name}:{line}: {STRANGER}"))
+            return
         self._present = (index, ScenarioRun(index, self._manifest.scenarios[index], texts, self._channel))
 
     @property
     def scenario(self) -> ScenarioRun:
         """The scenario at hand; raises ``SceneError`` when the manifest does not know it."""
         if self._present is None:
-            raise SceneError("the manifest of this run does not know this scenario")
+            raise SceneError(STRANGER)
         return self._present[1]
 
     def finish(self) -> None:

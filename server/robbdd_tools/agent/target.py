@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.agent.errors import BehaviourError
-from robbdd_tools.agent.placement import HAND_GAP, Pose, field_before, footprint
+from robbdd_tools.agent.placement import BEARING, HAND_GAP, Pose, bearing, field_before, footprint
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.simulation import Robot, Simulation
@@ -70,11 +70,12 @@ def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, reg
     shares = np.linspace(-1.0, 1.0, GRID)
     others = _others(simulation, name, carrier)
     wanted = footprint(simulation.world.cast.objects[name]) + HAND_GAP
-    points = [(cx + sx * hx, cy + sy * hy) for sx in shares for sy in shares]
+    grid = [(float(cx + sx * hx), float(cy + sy * hy)) for sx in shares for sy in shares]
+    points = [point for point in grid if abs(bearing(robot.base, *point)) <= BEARING]
     roomy = [point for point in points if _room(*point, others) >= wanted]
     surface = float(position[2]) + region.center[2] - region.half[2]
     for x, y in sorted(roomy or points, key=lambda point: hypot(point[0] - cx, point[1] - cy)):
-        yield Target((float(x), float(y), surface), ONTO_TABLE, None)
+        yield Target((x, y, surface), ONTO_TABLE, None)
 
 
 def _others(simulation: Simulation, name: str, carrier: str) -> list[tuple[float, float, float]]:

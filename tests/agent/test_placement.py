@@ -1,0 +1,101 @@
+"""Where things stand at the start."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+from math import hypot
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from agent.worlds import BALL, BENCH_WS, BIN, BIN_WS, CUBE, OTHER_BIN, SCENE
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.placement import TABLE_TOP, Pose, arrange, footprint, mounts
+from robbdd_tools.agent.scene import PEDESTAL, cast_scene
+from robbdd_tools.run.protocol import SceneSpec
+
+MANY = replace(SCENE, objects=(*SCENE.objects, *(f"env:cube{number}" for number in range(2, 6)), "env:ball2"))
+
+
+def places(scene: SceneSpec, seed: int = 1) -> dict[str, Pose]:
+    cast = cast_scene(scene)
+    base = next(iter(mounts(cast).values()), Pose((0.0, 0.0, 0.0)))
+    return arrange(scene, cast, base, np.random.default_rng(seed))
+
+
+def test_the_seed_decides() -> None:
+    assert places(SCENE, 5) == places(SCENE, 5)
+    assert places(SCENE, 5)[CUBE] != places(SCENE, 6)[CUBE]
+    assert places(SCENE, 5)[BIN] == places(SCENE, 6)[BIN]
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=60, deadline=None)
+def test_things_lie_apart_before_the_robot_and_clear_of_the_bins(seed: int) -> None:
+    cast, poses = cast_scene(MANY), places(MANY, seed)
+    things = [name for name, model in cast.objects.items() if model.graspable]
+    for name in things:
+        x, y, z = poses[name].position
+        assert 0.25 <= x <= 0.60
+        assert -0.40 <= y <= 0.40
+        assert z == pytest.approx(TABLE_TOP + cast.objects[name].rest_height)
+        for other in (BIN, OTHER_BIN):
+            assert abs(y - poses[other].position[1]) > 0.10 + footprint(cast.objects[name])
+    for one, other in combinations(things, 2):
+        (ax, ay, _), (bx, by, _) = poses[one].position, poses[other].position
+        assert hypot(ax - bx, ay - by) > footprint(cast.objects[one]) + footprint(cast.objects[other])
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=30, deadline=None)
+def test_a_thing_lies_in_the_bin_that_the_scene_names(seed: int) -> None:
+    scene = replace(SCENE, places={CUBE: BIN_WS, BALL: BENCH_WS})
+    poses = places(scene, seed)
+    assert abs(poses[CUBE].position[0] - poses[BIN].position[0]) < 0.1
+    assert abs(poses[CUBE].position[1] - poses[BIN].position[1]) < 0.06
+    assert abs(poses[BALL].position[1]) <= 0.4
+
+
+def test_without_a_table_things_stand_on_a_pedestal() -> None:
+    poses = places(SceneSpec(objects=(CUBE, BIN), agents=("env:panda",), workspaces={BIN_WS: (BIN,)}))
+    assert poses.keys() == {PEDESTAL, CUBE, BIN}
+    assert poses[PEDESTAL].position[2] == TABLE_TOP
+
+
+def test_a_bin_stands_on_the_table_whose_workspace_holds_its_own() -> None:
+    scene = SceneSpec(
+        objects=("env:table1", "env:table2", BIN),
+        workspaces={"env:t1_ws": ("env:table1",), "env:t2_ws": ("env:table2",), BIN_WS: (BIN,)},
+        contains={"env:t2_ws": (BIN_WS,)},
+    )
+    poses = places(scene)
+    assert poses[BIN].position[0] < 0 < poses["env:table1"].position[0]
+
+
+def test_a_second_robot_faces_the_first_across_the_table() -> None:
+    scene = replace(SCENE, agents=("env:panda1", "env:panda2"))
+    first, second = mounts(cast_scene(scene)).values()
+    assert first.position[0] < places(scene)["env:bench"].position[0] < second.position[0]
+
+
+@pytest.mark.parametrize(
+    ("scene", "message"),
+    [
+        (replace(SCENE, objects=("env:gizmo",)), "no model for object 'env:gizmo': .* one of ball, bench, bin, "),
+        (replace(SCENE, agents=("env:hal",)), "no model for agent 'env:hal': .* one of franka, panda"),
+        (replace(SCENE, agents=("t:panda1", "t:panda2", "t:panda3")), "room for two agents"),
+        (replace(SCENE, places={CUBE: "env:void_ws"}), "'env:cube1' is to be at 'env:void_ws', but nothing"),
+        (replace(SCENE, workspaces={BIN_WS: ("env:bin9",)}), "carried by 'env:bin9', which is not in the scene"),
+        (
+            replace(SCENE, objects=(*SCENE.objects, "t:bin3", "t:bin4", "t:bin5")),
+            "room for 4 objects of the kind 'bin'",
+        ),
+        (replace(SCENE, objects=(*SCENE.objects, *(f"t:ball{n}" for n in range(200)))), "no room left for 't:ball"),
+    ],
+)
+def test_a_scene_that_cannot_be_is_explained(scene: SceneSpec, message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        places(scene)

@@ -1,0 +1,97 @@
+"""Evaluators on worlds made by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from monitor.traces import heights, still, trace_of
+from robbdd_tools.catalog.api import Arguments, Region
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.monitor.judge import judge
+from robbdd_tools.monitor.time import During
+from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.monitor.verdict import Outcome, Verdict
+
+REGIONS = {
+    "tray_ws": (("tray", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),),
+    "far_ws": (("far", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),),
+    "both_ws": (
+        ("tray", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),
+        ("far", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),
+    ),
+}
+
+
+def judged(predicate: str, trace: Trace, **arguments: str | tuple[str, ...]) -> Verdict:
+    whole = During("start", "end")
+    words: Arguments = arguments
+    return judge(load_catalog().predicates[predicate], words, whole, trace, REGIONS)
+
+
+def world(count: int = 2, **paths: list[list[float]]) -> Trace:
+    bodies = {"tray": still(count), "far": still(count, (1.0, 0.0, 0.0)), **paths}
+    return trace_of(bodies, {"start": 0.0, "end": (count - 1) * 0.1}, {"arm": {"ball": [1.0] * count}})
+
+
+@pytest.mark.parametrize(
+    ("place", "margin"),
+    [
+        ((0.0, 0.0, 0.05), 0.05),
+        ((0.19, 0.0, 0.1), 0.01),
+        ((0.0, 0.13, 0.1), -0.03),
+        ((0.23, 0.14, 0.1), -0.05),
+        ((0.0, 0.0, -0.02), -0.02),
+    ],
+)
+def test_located_at_is_the_distance_to_the_nearest_face(place: tuple[float, float, float], margin: float) -> None:
+    found = judged("located-at", world(ball=still(2, place)), object="ball", workspace="tray_ws")
+    assert found.robustness == pytest.approx(margin)
+
+
+def test_located_at_follows_the_object_that_carries_the_workspace() -> None:
+    moved = world(tray=[[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]], ball=still(2, (0.0, 0.0, 0.1)))
+    assert judged("located-at", moved, object="ball", workspace="tray_ws").robustness == pytest.approx(-0.3)
+
+
+def test_located_at_a_workspace_of_two_regions_is_in_either() -> None:
+    found = judged("located-at", world(ball=still(2, (1.0, 0.0, 0.1))), object="ball", workspace="both_ws")
+    assert found.outcome is Outcome.HOLDS
+
+
+def test_located_at_an_unknown_workspace_is_unknown() -> None:
+    found = judged("located-at", world(ball=still(2)), object="ball", workspace="nowhere_ws")
+    assert found.outcome is Outcome.UNKNOWN
+
+
+def test_held_by_needs_the_grip_throughout() -> None:
+    assert judged("held-by", world(ball=still(2)), object="ball", agent="arm").robustness == 1.0
+    assert judged("held-by", world(ball=still(2)), object="tray", agent="arm").robustness == -1.0
+
+
+def test_does_not_collide_adds_up_the_way_that_the_target_moves() -> None:
+    shaken = world(3, tray=[[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    assert judged("does-not-collide", shaken, agent="arm", target="tray").robustness == pytest.approx(0.01)
+    assert judged("does-not-collide", shaken, agent="arm", target="tray_ws").robustness == pytest.approx(0.01)
+    assert judged("does-not-collide", shaken, agent="arm", target="far_ws").robustness == pytest.approx(0.05)
+
+
+def test_does_not_collide_is_violated_when_the_way_is_too_long() -> None:
+    pushed = world(3, tray=[[0.0, 0.0, 0.0], [0.04, 0.0, 0.0], [0.08, 0.0, 0.0]])
+    found = judged("does-not-collide", pushed, agent="arm", target="both_ws")
+    assert found.outcome is Outcome.VIOLATED
+    assert found.at == pytest.approx(0.2)
+
+
+def test_sorted_into_asks_every_object_for_some_workspace() -> None:
+    trace = world(ball=still(2, (0.0, 0.0, 0.1)), cube=still(2, (1.0, 0.0, 0.1)), nut=heights([0.1, 0.3]))
+    both = ("tray_ws", "far_ws")
+    assert judged("sorted-into", trace, objects=("ball", "cube"), workspaces=both).outcome is Outcome.HOLDS
+    assert judged("sorted-into", trace, objects=("ball", "cube"), workspaces=("tray_ws",)).outcome is Outcome.VIOLATED
+    assert judged("sorted-into", trace, objects=("ball", "nut"), workspaces=both).robustness == pytest.approx(-0.1)
+
+
+@pytest.mark.parametrize("name", ["has-config", "can-reach", "does-not-drop"])
+def test_what_cannot_be_judged_yet_is_unknown(name: str) -> None:
+    predicate = load_catalog().predicates[name]
+    words = {slot.name: "tray" for slot in predicate.slots}
+    assert judged(name, world(), **words).outcome is Outcome.UNKNOWN

@@ -1,0 +1,88 @@
+"""Judging a predicate on a trace: outcome, margin and instant."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from monitor.traces import heights, still, trace_of
+from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
+from robbdd_tools.monitor.judge import judge
+from robbdd_tools.monitor.time import After, Before, During
+from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+
+def height(evidence: Evidence, arguments: Arguments) -> FloatArray:
+    return evidence.position(str(arguments["thing"]))[:, 2]
+
+
+ABOVE = Predicate("above", "<thing> is above", "x:Above", (Slot("thing", Kind.OBJECT, "x:thing"),), "", "m", "", height)
+ALL = During("start", "end")
+
+
+def judged(values: list[float], thing: str = "ball") -> Verdict:
+    trace = trace_of({"ball": heights(values)}, {"start": 0.0, "end": (len(values) - 1) * 0.1})
+    return judge(ABOVE, {"thing": thing}, ALL, trace, {})
+
+
+def test_holds_with_the_smallest_margin_and_its_instant() -> None:
+    found = judged([0.3, 0.1, 0.2])
+    assert (found.outcome, found.robustness, found.unit) == (Outcome.HOLDS, 0.1, "m")
+    assert found.at == pytest.approx(0.1)
+
+
+def test_violated_with_the_smallest_margin_at_the_first_offending_sample() -> None:
+    found = judged([0.3, -0.1, -0.4, 0.2])
+    assert (found.outcome, found.robustness, found.unit) == (Outcome.VIOLATED, -0.4, "m")
+    assert found.at == pytest.approx(0.1)
+
+
+def test_a_margin_of_zero_holds() -> None:
+    assert judged([0.0]).outcome is Outcome.HOLDS
+
+
+def test_only_the_window_counts() -> None:
+    trace = trace_of({"ball": heights([-1.0, 0.5, -1.0])}, {"now": 0.1})
+    assert judge(ABOVE, {"thing": "ball"}, Before("now"), trace, {}).outcome is Outcome.HOLDS
+    assert judge(ABOVE, {"thing": "ball"}, After("now", 0.1), trace, {}).outcome is Outcome.VIOLATED
+
+
+def test_what_the_trace_does_not_hold_is_unknown() -> None:
+    assert judged([1.0], "cube") == unknown("the trace has no record of 'cube'")
+
+
+def test_a_predicate_without_evaluator_is_unknown() -> None:
+    mute = replace(ABOVE, evaluate=None)
+    found = judge(mute, {"thing": "ball"}, ALL, trace_of({"ball": still(1)}), {})
+    assert found == unknown("there is no evaluator for 'above'")
+
+
+def test_a_missing_event_is_unknown() -> None:
+    found = judge(ABOVE, {"thing": "ball"}, After("never"), trace_of({"ball": still(1)}), {})
+    assert found.outcome is Outcome.UNKNOWN
+
+
+def test_a_margin_that_is_not_a_number_is_unknown() -> None:
+    assert judged([1.0, float("nan")]).outcome is Outcome.UNKNOWN
+
+
+@given(st.lists(st.floats(-10, 10), min_size=1, max_size=30))
+def test_robustness_is_the_minimum_and_its_sign_the_outcome(values: list[float]) -> None:
+    found = judged(values)
+    assert found.robustness == min(values)
+    assert (found.outcome is Outcome.HOLDS) == (min(values) >= 0)
+
+
+@given(st.lists(st.floats(-10, 10), min_size=1, max_size=20), st.floats(-10, 10))
+def test_one_more_sample_never_raises_robustness(values: list[float], extra: float) -> None:
+    shorter, longer = judged(values).robustness, judged([*values, extra]).robustness
+    assert shorter is not None
+    assert longer is not None
+    assert longer <= shorter

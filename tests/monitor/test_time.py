@@ -1,0 +1,120 @@
+"""Windows of time constraints: which samples each one selects, and why there may be none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from monitor.traces import STEP, still, trace_of
+from robbdd_tools.monitor.time import After, Before, During, NoWindow, TimeConstraint, Window, window
+
+COUNT = 21
+
+
+def a_window(constraint: TimeConstraint, **events: float) -> Window | NoWindow:
+    return window(constraint, trace_of({"a": still(COUNT)}, events))
+
+
+@pytest.mark.parametrize(
+    ("constraint", "expected"),
+    [
+        (Before("e"), Window(10, 10)),
+        (After("e"), Window(10, 10)),
+        (Before("late"), Window(15, 15)),
+        (After("late"), Window(16, 16)),
+        (Before("e", 0.3), Window(7, 10)),
+        (After("e", 0.3), Window(10, 13)),
+        (Before("late", 0.2), Window(14, 15)),
+        (After("late", 0.2), Window(16, 17)),
+        (During("e", "late"), Window(10, 15)),
+        (During("e", "e"), Window(10, 10)),
+    ],
+)
+def test_selects_the_samples_of_the_definition(constraint: TimeConstraint, expected: Window) -> None:
+    assert a_window(constraint, e=1.0, late=1.55) == expected
+
+
+@pytest.mark.parametrize(
+    ("constraint", "reason"),
+    [
+        (Before("never"), "event never never occurred"),
+        (After("never"), "event never never occurred"),
+        (During("e", "never"), "event never never occurred"),
+        (During("never", "e"), "event never never occurred"),
+        (During("late", "e"), "event e occurred before event late"),
+        (Before("e", 1.5), "event e occurred at 1.00 s, less than 1.5 s after the execution began"),
+        (After("e", 1.5), "the execution ended at 2.00 s, before 2.50 s when the window closes"),
+        (During("late", "late"), "no sample was taken in the window"),
+    ],
+)
+def test_says_why_there_is_no_window(constraint: TimeConstraint, reason: str) -> None:
+    assert a_window(constraint, e=1.0, late=1.55) == NoWindow(reason, open=False)
+
+
+@pytest.mark.parametrize("constraint", [Before("never"), After("never"), During("e", "never"), After("e", 1.5)])
+def test_a_window_may_still_close_while_the_execution_goes_on(constraint: TimeConstraint) -> None:
+    found = window(constraint, trace_of({"a": still(COUNT)}, {"e": 1.0}, finished=False))
+    assert isinstance(found, NoWindow)
+    assert found.open
+
+
+def test_the_remark_of_the_execution_explains_a_missing_event() -> None:
+    found = window(After("placed"), trace_of({"a": still(3)}, remark="gripper lost cube at 0.10 s"))
+    assert isinstance(found, NoWindow)
+    assert found.reason == "event placed never occurred: gripper lost cube at 0.10 s"
+
+
+def test_an_event_after_the_last_sample_has_no_sample_after_it() -> None:
+    found = a_window(After("e"), e=2.05)
+    assert isinstance(found, NoWindow)
+
+
+def test_a_trace_without_samples_has_no_window() -> None:
+    empty = trace_of({}, {"e": 0.0})
+    for constraint in (Before("e"), After("e"), During("e", "e")):
+        assert isinstance(window(constraint, empty), NoWindow)
+
+
+def test_the_first_occurrence_counts() -> None:
+    trace = trace_of({"a": still(COUNT)}, {"e": 0.5})
+    twice = type(trace)(trace.names, trace.times, trace.positions, trace.orientations, {}, trace.events * 2)
+    assert window(Before("e"), twice) == Window(5, 5)
+
+
+@given(
+    event=st.floats(0.0, 2.0),
+    horizon=st.one_of(st.none(), st.floats(0.0, 2.0)),
+    forward=st.booleans(),
+)
+def test_a_window_holds_exactly_the_samples_within_its_bounds(
+    event: float, horizon: float | None, forward: bool
+) -> None:
+    trace = trace_of({"a": still(COUNT)}, {"e": event})
+    found = window(After("e", horizon) if forward else Before("e", horizon), trace)
+    if isinstance(found, NoWindow):
+        assert horizon is not None
+        return
+    low, high = (event, event + (horizon or 0.0)) if forward else (event - (horizon or 0.0), event)
+    times = trace.times
+    if horizon is None:
+        assert found.first == found.last
+        nearest = np.flatnonzero(times >= event - 1e-9)[0] if forward else np.flatnonzero(times <= event + 1e-9)[-1]
+        assert found.first == nearest
+        return
+    inside = np.flatnonzero((times >= low - 1e-9) & (times <= high + 1e-9))
+    assert (found.first, found.last) == (inside[0], inside[-1])
+
+
+@given(start=st.floats(0.0, 2.0), length=st.floats(0.0, 2.0))
+def test_an_interval_grows_with_its_end(start: float, length: float) -> None:
+    end = min(start + length, 2.0)
+    shorter = a_window(During("a", "b"), a=start, b=end)
+    longer = a_window(During("a", "b"), a=start, b=2.0)
+    if isinstance(shorter, Window):
+        assert isinstance(longer, Window)
+        assert longer.first == shorter.first
+        assert longer.last >= shorter.last
+    elif isinstance(longer, Window):
+        assert end - start < STEP + 1e-9
