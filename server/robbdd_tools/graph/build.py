@@ -27,6 +27,7 @@ from robbdd_tools.graph.sink import Frame, Sink, namespace_of
 from robbdd_tools.graph.source_map import Location, SourceMap
 from robbdd_tools.graph.stories import Known, add_story
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from rdflib import Graph, URIRef
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.names.project import Snapshot
 
+TEMPLATE_PARTS = ("-scene", "-scenario", "-scenario-given", "-scenario-when", "-scenario-then")
 SCENARIO_PARTS = {"given": "bdd:Given", "when": "bdd:When", "then": "bdd:Then"}
 
 
@@ -69,21 +71,30 @@ def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
     sink = Sink()
     _add_foundations(sink, reached)
     bind_prefixes(sink.graph, _add_prefixes(sink, reached))
-    uncertain = doubtful(reached)
+    clashes = tuple(Clash(str(node), location, first) for node, location, first in sink.clashes)
+    uncertain = doubtful(reached, [clash.location for clash in clashes])
     return BuiltGraph(
         uri,
         sink.graph,
         sink.sources.build(),
         _names(reached),
-        tuple(Clash(str(node), location, first) for node, location, first in sink.clashes),
+        clashes,
         tuple(Location(entry.uri, entry.placed.span) for entry in uncertain),
-        frozenset(
-            definition.iri
-            for entry in uncertain
-            for definition in entry.file.definitions.values()
-            if definition.iri is not None and entry.holds(definition)
-        ),
+        frozenset(node for entry in uncertain for node in _nodes_of(entry)),
     )
+
+
+def _nodes_of(entry: Reached) -> Iterator[str]:
+    """Yield what a declaration stands for in the graph, the parts of a template included, but not its variables.
+
+    Templates of one namespace share variables, so that an error in one says nothing of a variable in another.
+    """
+    variables = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
+    for definition in entry.file.definitions.values():
+        if definition.iri is not None and definition.kind not in variables and entry.holds(definition):
+            yield definition.iri
+            if definition.kind is SymbolKind.TEMPLATE:
+                yield from (definition.iri + part for part in TEMPLATE_PARTS)
 
 
 def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:

@@ -107,6 +107,7 @@ def _add_enclosed(derived: Derived) -> None:
                 waiting += inside.get(workspace, {})
         for workspace in found:
             derived.add(composition, "rbw:encloses", workspace)
+            derived.anchor(composition, workspace, (composition, expand("env:of-workspace")))
 
 
 def _add_template_scene(derived: Derived, variant: Iri) -> None:

@@ -24,7 +24,7 @@ def use_of(word: str) -> str:
 
 @dataclass(slots=True)
 class Derived:
-    """The graph to validate. ``anchors`` maps a derived node and a value of it (or ``""``) to source-map keys."""
+    """The graph to validate. ``anchors`` maps a node and a derived value of it (or ``""``) to source-map keys."""
 
     graph: Graph
     records: Records
@@ -53,8 +53,8 @@ class Derived:
             value = URIRef(str(value))
         self.graph.add((subject, URIRef(expand(term)), value))
 
-    def anchor(self, node: Node, value: str, *keys: Key) -> None:
-        """Say where a derived node's value (``""`` for the node itself) comes from."""
+    def anchor(self, node: Node | str, value: str, *keys: Key) -> None:
+        """Say where a derived value of a node (``""`` for a derived node itself) comes from."""
         self.anchors.setdefault((str(node), value), []).extend(keys)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.graph.source_map import Location
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -41,8 +42,12 @@ class Reached:
 
     def holds(self, definition: Definition) -> bool:
         """Tell whether a definition is part of it."""
+        return self.covers(Location(definition.uri, definition.span))
+
+    def covers(self, location: Location) -> bool:
+        """Tell whether a place is inside it."""
         span = self.placed.span
-        return definition.uri == self.uri and span.start <= definition.span.start < span.end
+        return location.uri == self.uri and span.start <= location.span.start < span.end
 
 
 def reach(closure: Sequence[FileAnalysis]) -> tuple[Reached, ...]:
@@ -52,22 +57,23 @@ def reach(closure: Sequence[FileAnalysis]) -> tuple[Reached, ...]:
     found = {entry.key for entry in every if entry.own}
     waiting = [entry for entry in every if entry.own]
     while waiting:
-        for user in index.uses(waiting.pop()):
-            if user.key not in found:
-                found.add(user.key)
-                waiting.append(user)
+        for used in index.uses(waiting.pop()):
+            if used.key not in found:
+                found.add(used.key)
+                waiting.append(used)
     order = {file.document.uri: position for position, file in enumerate(reversed(closure))}
     return tuple(sorted((entry for entry in every if entry.key in found), key=lambda e: (order[e.uri], e.key[1])))
 
 
-def doubtful(reached: Sequence[Reached]) -> tuple[Reached, ...]:
+def doubtful(reached: Sequence[Reached], left_out: Iterable[Location]) -> tuple[Reached, ...]:
     """Return the declarations about which no further finding can be trusted.
 
-    These are the ones with an error, and those that use one of which something is missing: a broken one, or a set,
-    composition or scene with an error. An error inside a template or story says nothing about its users.
+    These are the ones with an error or of which something was left out, and those that use one of which something
+    is missing: a broken one, or a set, composition or scene with an error. An error inside a template or story says
+    nothing about its users.
     """
-    index = _Index(reached)
-    suspect = [entry for entry in reached if _has_error(entry)]
+    places = tuple(left_out)
+    suspect = [entry for entry in reached if _has_error(entry) or any(map(entry.covers, places))]
     spreading = [entry for entry in suspect if not isinstance(entry.tree, tree.Template | tree.Story)]
     index = _Index(reached)
     users: dict[_Key, list[Reached]] = {}
@@ -112,8 +118,5 @@ def _has_error(entry: Reached) -> bool:
         reference.ref not in entry.placed.targets for reference in entry.placed.declaration.references
     ):
         return True
-    span = entry.placed.span
-    return any(
-        fault.severity is Severity.ERROR and span.start <= fault.span.start < span.end
-        for fault in entry.file.diagnostics
-    )
+    errors = (fault for fault in entry.file.diagnostics if fault.severity is Severity.ERROR)
+    return any(entry.covers(Location(fault.uri, fault.span)) for fault in errors)
