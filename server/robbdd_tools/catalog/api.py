@@ -153,8 +153,9 @@ class ObjectModel:
 
     Chosen for a scene object whose local name starts with one of ``prefixes``. ``mass`` in kg, ``friction`` the
     sliding coefficient. A ``free`` object can move (a bin can be pushed), any other is fixed where it stands;
-    a ``graspable`` one is small enough for a gripper and is placed at random unless the scene says where. ``rest_height`` is the height (m) of its origin above the
-    surface it stands on. ``region`` is the workspace it carries, if any. ``color`` is RGBA in [0, 1].
+    a ``graspable`` one is small enough for a gripper and is placed at random unless the scene says where.
+    ``rest_height`` is the height (m) of its origin above the surface it stands on. ``region`` is the workspace it
+    carries, if any. ``color`` is RGBA in [0, 1].
     """
 
     name: str

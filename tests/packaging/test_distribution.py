@@ -1,0 +1,61 @@
+"""The built wheel and sdist work where there is no checkout."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tarfile
+import venv
+from pathlib import Path
+
+import pytest
+
+from kit import MODEL, ROOT, SCENE
+
+pytestmark = pytest.mark.packaging
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("dist")
+    subprocess.run([sys.executable, "-m", "build", "--outdir", folder, ROOT], check=True, capture_output=True)
+    return folder
+
+
+def test_an_installed_wheel_finds_its_grammars_metamodels_and_robots(built: Path, tmp_path: Path) -> None:
+    """The wheel goes into a fresh environment that borrows only the libraries of this one."""
+    environment = tmp_path / "fresh"
+    venv.create(environment, with_pip=True)
+    scripts = environment / ("Scripts" if sys.platform == "win32" else "bin")
+    python = scripts / "python"
+    (wheel,) = built.glob("*.whl")
+    subprocess.run([python, "-m", "pip", "install", "--quiet", "--no-deps", wheel], check=True)
+    code = "import sysconfig; print(sysconfig.get_path('purelib'))"
+    site = Path(subprocess.run([python, "-c", code], check=True, capture_output=True, text=True).stdout.strip())
+    borrowed = "\n".join(path for path in sys.path if path.endswith("site-packages"))
+    (site / "borrowed.pth").write_text(borrowed + "\n", encoding="utf-8")
+    (tmp_path / "main.bdd").write_text(MODEL, encoding="utf-8")
+    (tmp_path / "lab.scene").write_text(SCENE, encoding="utf-8")
+
+    where = [python, "-c", "import robbdd_tools; print(robbdd_tools.__file__)"]
+    assert subprocess.run(where, check=True, capture_output=True, text=True).stdout.startswith(str(environment))
+    checked = subprocess.run([scripts / "robbdd", "check", tmp_path], capture_output=True, encoding="utf-8")
+    assert (checked.returncode, checked.stdout) == (0, "2 files: 0 errors, 0 other remarks\n"), checked.stderr
+    graph = subprocess.run(
+        [scripts / "robbdd", "graph", tmp_path / "main.bdd", "--format", "json-ld"], check=True, capture_output=True
+    )
+    assert b"UserStory" in graph.stdout
+    robots = "from robbdd_tools.catalog.registry import load_catalog as c; import robbdd_tools.catalog.robots as r\n"
+    robots += "from pathlib import Path\nprint([(Path(r.__path__[0]) / m.mjcf).is_file() for m in c().robots.values()])"
+    found = subprocess.run([python, "-c", robots], check=True, capture_output=True, text=True).stdout
+    assert "True" in found
+    assert "False" not in found
+
+
+def test_the_source_distribution_holds_what_a_build_needs(built: Path) -> None:
+    (archive,) = built.glob("*.tar.gz")
+    with tarfile.open(archive) as tar:
+        names = {name.partition("/")[2] for name in tar.getnames()}
+    assert {"grammar/bdd.tx", "pyproject.toml", "LICENSE", "examples/pickplace/pickplace.bdd"} <= names
+    assert any(name.startswith("metamodels/") and name.endswith(".ttl") for name in names)
+    assert not any("node_modules" in name for name in names)
