@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.agent.engine import TICK
-from robbdd_tools.agent.kinematics import Unreachable
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.kinematics import Arm
@@ -142,6 +141,3 @@ def _between(start: ToolPose, goal: ToolPose, share: float) -> ToolPose:
 def _length(start: ToolPose, goal: ToolPose) -> float:
     around = (start.radius + goal.radius) / 2 * (goal.bearing - start.bearing)
     return float(np.linalg.norm([goal.radius - start.radius, around, goal.height - start.height]))
-
-
-__all__ = ["Motion", "ToolPose", "Unreachable", "frame_of", "plan", "present_pose", "tool_pose"]
