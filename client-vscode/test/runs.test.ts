@@ -9,6 +9,7 @@ const judged = (index: number, verdict: "holds" | "violated" | "unknown", more: 
   type: "ClauseJudged",
   index,
   line: 7,
+  sentence: "cube is located at bin",
   verdict,
   robustness: null,
   unit: "",
@@ -16,7 +17,12 @@ const judged = (index: number, verdict: "holds" | "violated" | "unknown", more: 
   reason: "",
   ...more,
 });
-const started = (index: number): RunMessage => ({ type: "ScenarioStarted", index });
+const started = (index: number): RunMessage => ({
+  type: "ScenarioStarted",
+  index,
+  name: "t:fetch -- 1",
+  values: "part = cube",
+});
 const finished = (index: number): RunMessage => ({
   type: "ScenarioFinished",
   index,
@@ -45,11 +51,11 @@ test("a run reads from its start to its summary", () => {
   );
   assert.deepEqual(lines, [
     "▶ cell/fetch.bdd: 2 scenarios, mujoco 4.0.0",
-    "  Scenario 1 of 2",
-    "    ✔ feature line 7 holds by +31.2 mm at 4.50 s",
+    "  Scenario 1 of 2: t:fetch -- 1  part = cube",
+    "    ✔ cube is located at bin: holds by +31.2 mm at 4.50 s",
     "    passed after 9.00 s simulated, 0.51 s on the clock",
-    "  Scenario 2 of 2",
-    "    ✗ feature line 7 violated by −4.00 mm at 3.20 s: the bin was pushed",
+    "  Scenario 2 of 2: t:fetch -- 1  part = cube",
+    "    ✗ cube is located at bin: violated by −4.00 mm at 3.20 s: the bin was pushed",
     "    failed after 9.00 s simulated, 0.51 s on the clock",
     "■ cell/fetch.bdd: 1 of 2 scenarios passed, 1 failed.",
     "",
@@ -58,10 +64,10 @@ test("a run reads from its start to its summary", () => {
 
 test("a margin is given in a unit that reads well, and only where it has one", () => {
   const line = (robustness: number, unit: string) => report(judged(0, "holds", { robustness, unit })).lines[0];
-  assert.equal(line(0.9994, "m"), "    ✔ feature line 7 holds by +999 mm");
-  assert.equal(line(1.5, "m"), "    ✔ feature line 7 holds by +1.50 m");
-  assert.equal(line(-0.25, "m/s"), "    ✔ feature line 7 holds by −0.250 m/s");
-  assert.equal(line(1, ""), "    ✔ feature line 7 holds");
+  assert.equal(line(0.9994, "m"), "    ✔ cube is located at bin: holds by +999 mm");
+  assert.equal(line(1.5, "m"), "    ✔ cube is located at bin: holds by +1.50 m");
+  assert.equal(line(-0.25, "m/s"), "    ✔ cube is located at bin: holds by −0.250 m/s");
+  assert.equal(line(1, ""), "    ✔ cube is located at bin: holds");
 });
 
 test("a scenario with an unknown clause is undecided, not passed", () => {
@@ -125,6 +131,9 @@ test("a notification of another shape is not taken for a run message", () => {
   }
 });
 
+// What the language server says for readers beside the fields of its protocol with the agent.
+const WORDS = ["name", "values", "sentence"];
+
 test("the messages have the fields of the server's protocol", () => {
   const protocol = readFileSync(join(process.cwd(), "..", "server", "robbdd_tools", "run", "protocol.py"), "utf8");
   const samples: RunMessage[] = [
@@ -140,6 +149,7 @@ test("the messages have the fields of the server's protocol", () => {
     const body = new RegExp(String.raw`^class ${type}:\n((?: {4}.*\n|\n)+)`, "m").exec(protocol)?.[1];
     assert.ok(body !== undefined, `${type} is not in the protocol`);
     const declared = [...body.matchAll(/^ {4}(\w+): /gm)].map((match) => match[1]);
-    assert.deepEqual(Object.keys(fields).sort(), declared.sort(), type);
+    const sent = Object.keys(fields).filter((name) => !WORDS.includes(name));
+    assert.deepEqual(sent.sort(), declared.sort(), type);
   }
 });

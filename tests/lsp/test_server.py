@@ -24,16 +24,27 @@ CLIENTS = pytest.mark.parametrize("client", ["visual-studio-code", "neovim", "em
 """For tests whose answer depends on what the client can do."""
 
 
+@pytest.fixture
+def run_messages() -> list[Any]:
+    """What the server says about runs, in order."""
+    return []
+
+
 # pytest-lsp leaves the types of its decorator open.
 @pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
     config=ClientServerConfig(server_command=[sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio"]),
 )
-async def client(request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path) -> AsyncIterator[None]:
+async def client(
+    request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path, run_messages: list[Any]
+) -> AsyncIterator[None]:
     def ignore(*_: object) -> None:
         return None
 
+    def keep(message: Any) -> None:
+        run_messages.append(message.message)
+
     lsp_client.feature(types.WORKSPACE_INLAY_HINT_REFRESH)(ignore)
-    lsp_client.feature("robbdd/runMessage")(ignore)
+    lsp_client.feature("robbdd/runMessage")(keep)
     shutil.copytree(EXAMPLES / "pickplace", tmp_path / "pickplace")
     parameters = types.InitializeParams(
         capabilities=client_capabilities(getattr(request, "param", "visual-studio-code")),
@@ -162,7 +173,9 @@ async def test_gherkin_is_written_beside_the_model(editor: Editor) -> None:
 
 @CLIENTS
 @pytest.mark.physics
-async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(editor: Editor) -> None:
+async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(
+    editor: Editor, run_messages: list[Any]
+) -> None:
     editor.open(editor.text.replace("<cubes.cube0>, <balls.ball0>", "<cubes.cube0>").replace(", <places.right_ws>", ""))
     await editor.diagnostics()
     lenses = await editor.client.text_document_code_lens_async(
@@ -182,6 +195,28 @@ async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(editor: 
     assert set(shown) == {"at-source", "in-hand", "at-goal", "goal-untouched"}
     assert all(label.startswith("✔") for label in shown.values()), shown
     assert "mm" in shown["at-goal"]
+    started = next(message for message in run_messages if message.type == "ScenarioStarted")
+    assert (started.name, started.values.split(",")[0]) == ("crit:part-to-bin -- 1", "thing = cube0")
+    sentences = [message.sentence for message in run_messages if message.type == "ClauseJudged"]
+    assert "cube0 is located at left_ws after evt-place-end" in sentences
+    assert (run_messages[-1].type, run_messages[-1].ok) == ("RunFinished", True)
+
+
+@pytest.mark.physics
+async def test_a_cancelled_run_leaves_its_open_clauses_unknown(editor: Editor, run_messages: list[Any]) -> None:
+    editor.open()
+    await editor.diagnostics()
+    params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
+    running = asyncio.ensure_future(editor.client.workspace_execute_command_async(params))
+    async with asyncio.timeout(PATIENCE):
+        while not any(message.type == "ScenarioFinished" for message in run_messages):
+            await asyncio.sleep(0.01)
+    await editor.client.workspace_execute_command_async(types.ExecuteCommandParams(command="robbdd.cancel"))
+    await running
+    assert (run_messages[-1].type, run_messages[-1].ok) == ("RunFinished", False)
+    judged = [message for message in run_messages if message.type == "ClauseJudged"]
+    assert {message.verdict for message in judged if message.reason == "the run was cancelled"} == {"unknown"}
+    assert len(judged) == 20
 
 
 async def test_a_run_of_a_broken_model_says_why_it_cannot_run(editor: Editor) -> None:

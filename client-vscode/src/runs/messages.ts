@@ -10,6 +10,10 @@ export interface ScenarioStarted {
   readonly type: "ScenarioStarted";
   /** Number of the scenario, from 0. */
   readonly index: number;
+  /** The scenario's name in its feature. */
+  readonly name: string;
+  /** The values of its variables, in words. */
+  readonly values: string;
 }
 
 export interface ClauseStarted {
@@ -23,6 +27,8 @@ export interface ClauseJudged {
   readonly type: "ClauseJudged";
   readonly index: number;
   readonly line: number;
+  /** What the clause says, with its values. */
+  readonly sentence: string;
   readonly verdict: "holds" | "violated" | "unknown";
   /** Signed margin in `unit`, positive when the clause holds. */
   readonly robustness: number | null;
@@ -77,11 +83,12 @@ const isVerdict: Check = (value) => value === "holds" || value === "violated" ||
 
 const FIELDS: Record<RunMessage["type"], Record<string, Check>> = {
   RunStarted: { total: isNumber, simulator: isText },
-  ScenarioStarted: { index: isNumber },
+  ScenarioStarted: { index: isNumber, name: isText, values: isText },
   ClauseStarted: { index: isNumber, line: isNumber },
   ClauseJudged: {
     index: isNumber,
     line: isNumber,
+    sentence: isText,
     verdict: isVerdict,
     robustness: isNumberOrNull,
     unit: isText,

@@ -41,7 +41,7 @@ export class RunReport {
         return [`▶ ${this.name}: ${scenarios(message.total)}, ${message.simulator}`];
       case "ScenarioStarted":
         this.verdicts.set(message.index, []);
-        return [`  Scenario ${message.index + 1} of ${this.total}`];
+        return [`  Scenario ${message.index + 1} of ${this.total}: ${message.name}  ${message.values}`.trimEnd()];
       case "ClauseStarted":
         return [];
       case "ClauseJudged":
@@ -101,7 +101,7 @@ function decide(verdicts: readonly ClauseJudged["verdict"][]): Outcome {
 function describeClause(clause: ClauseJudged): string {
   const instant = clause.at === null ? "" : ` at ${seconds(clause.at)}`;
   const reason = clause.reason === "" ? "" : `: ${clause.reason}`;
-  return `${SIGNS[clause.verdict]} feature line ${clause.line} ${clause.verdict}${margin(clause)}${instant}${reason}`;
+  return `${SIGNS[clause.verdict]} ${clause.sentence}: ${clause.verdict}${margin(clause)}${instant}${reason}`;
 }
 
 /** The margin in a unit that reads well; without a unit it is but another word for the verdict. */

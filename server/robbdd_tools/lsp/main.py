@@ -31,6 +31,8 @@ def _log_to(file: Path | None) -> None:
     handler = logging.StreamHandler(sys.stderr) if file is None else logging.FileHandler(file, encoding="utf-8")
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
     logging.getLogger().addHandler(handler)
+    # pygls warns of every cancelled request that was answered already, which is what editors do all the time.
+    logging.getLogger("pygls").setLevel(logging.ERROR)
     logging.getLogger("robbdd_tools").setLevel(logging.WARNING if file is None else logging.DEBUG)
 
 

@@ -21,8 +21,16 @@ from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.names.project import Snapshot
 from robbdd_tools.run.launch import Agent
 from robbdd_tools.run.prepare import RunRequest, prepare, write_features
-from robbdd_tools.run.protocol import ClauseJudged, RunMessage, ScenarioFinished
-from robbdd_tools.run.report import values_words, verdict_words
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    ClauseSpec,
+    ClauseStarted,
+    RunFinished,
+    RunMessage,
+    ScenarioFinished,
+    ScenarioStarted,
+)
+from robbdd_tools.run.report import plain_sentence, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
 
 if TYPE_CHECKING:
@@ -106,6 +114,7 @@ async def _follow(ls: RobbddServer, run: ActiveRun) -> None:
     if not run.results.complete:
         for judged in run.results.close(run.agent.ending()):
             await _take(ls, run, judged)
+        ls.protocol.notify(RUN_MESSAGE, _for_client(run, RunFinished(False)))
     holding = run.results.count(Outcome.HOLDS)
     summary = f"{holding} of {len(run.results.scenarios)} scenarios hold"
     ls.work_done_progress.end(run.token, types.WorkDoneProgressEnd(message=summary))
@@ -125,15 +134,32 @@ async def _take(ls: RobbddServer, run: ActiveRun, message: RunMessage) -> None:
 
 
 def _for_client(run: ActiveRun, message: RunMessage) -> dict[str, Any]:
-    return {"uri": run.uri, "message": {"type": type(message).__name__, **asdict(message)}}
+    """Return a message with the words that a reader needs beside its numbers."""
+    fields: dict[str, Any] = {"type": type(message).__name__, **asdict(message)}
+    match message:
+        case ScenarioStarted(index):
+            spec = run.results.scenarios[index].spec
+            fields |= {"name": spec.name, "values": values_words(spec)}
+        case ClauseStarted(index, line) | ClauseJudged(index, line):
+            clause = _clause(run, index, line)
+            if clause is not None:
+                fields |= {"clause": clause.iri, "sentence": plain_sentence(clause.sentence)}
+        case _:
+            pass
+    return {"uri": run.uri, "message": fields}
+
+
+def _clause(run: ActiveRun, index: int, line: int) -> ClauseSpec | None:
+    clauses = run.results.scenarios[index].spec.clauses
+    return next((clause for clause in clauses if clause.line == line), None)
 
 
 async def _judged(ls: RobbddServer, run: ActiveRun, message: ClauseJudged) -> None:
     """Put a judgement where its clause stands."""
-    spec = run.results.scenarios[message.index].spec
-    clause = next((entry for entry in spec.clauses if entry.line == message.line), None)
+    clause = _clause(run, message.index, message.line)
     if clause is None:
         return
+    spec = run.results.scenarios[message.index].spec
     outcome = Outcome(message.verdict)
     rank = _BADNESS[outcome] + (message.robustness or 0.0)
     label = verdict_words(message).partition(":")[0]
