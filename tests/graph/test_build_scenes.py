@@ -91,6 +91,7 @@ def second_variant(**changes: str) -> str:
 
 def test_two_variants_with_the_same_members_share_the_membership_nodes() -> None:
     graph = built(EVENTS + TEMPLATE + second_variant()).graph
+    assert of(graph, "lab:bench_scene-scene-has-obj") == of(built(MODEL).graph, "lab:bench_scene-scene-has-obj")
     expected = "bdd:has-scene lab:bench_scene-scene-has-obj"
     assert expected in of(graph, "t:bench-to-tray")
     assert expected in of(graph, "t:second")

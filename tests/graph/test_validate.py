@@ -269,7 +269,7 @@ def test_one_value_is_no_set_and_a_set_is_no_value() -> None:
             | <fetch.part> | <fetch.robot> | <fetch.goal> | <fetch.goals> |
             |---|
             | obj set <parts> | <arms.panda> | { <places.tray_ws> } | <places.bench_ws> |
-//                   ^^^^^ shacl-set-for-single takes one value in each scenario
+//                     ^^^^^ shacl-set-for-single takes one value in each scenario
 //                                             ^^^^^^^^^^^^^^^^^^^^ shacl-set-for-single takes one value
 //                                                                     ^^^^^^^^^^^^^^^ shacl-single-for-set needs a set
 """,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
@@ -27,16 +27,21 @@ def compact(expanded: list[Json], context: Json) -> Json:
     return cast(Json, jsonld.compact(expanded, {"@context": context}, options))
 
 
-def quads(document: Any) -> str:
-    """Return a JSON-LD document as N-Quads; raises ``UnknownContext`` or ``ValueError``."""
+def triples(document: Any) -> Iterator[tuple[Json, Json, Json]]:
+    """Yield the triples of a JSON-LD document, of all its graphs, as ``{type, value, datatype, language}`` objects.
+
+    Raises ``UnknownContext`` or ``ValueError``.
+    """
     jsonld = _jsonld()
     try:
-        return cast(str, jsonld.to_rdf(document, {"documentLoader": _no_network, "format": "application/n-quads"}))
+        dataset = cast("dict[str, list[Json]]", jsonld.to_rdf(document, {"documentLoader": _no_network}))
     except jsonld.JsonLdError as error:
         cause = _unknown_context(error)
         if cause is not None:
             raise cause from error
         raise ValueError(str(error).partition("\n")[0]) from error
+    for graph in dataset.values():
+        yield from ((triple["subject"], triple["predicate"], triple["object"]) for triple in graph)
 
 
 def shacl_report(graph: Graph, shapes: Graph) -> Graph:

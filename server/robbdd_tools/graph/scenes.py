@@ -80,20 +80,25 @@ class Memberships:
         """Return the node that makes ``members`` members of a template's scene, stating it where it is new."""
         from rdflib import URIRef
 
-        type_, term, ending = MEMBERSHIPS[kind]
         known = self._known.setdefault((scene, kind), [])
-        if (template_scene, members) not in known:
+        is_new = (template_scene, members) not in known
+        if is_new:
             known.append((template_scene, members))
         number = known.index((template_scene, members)) + 1
-        node = URIRef(scene + ending + (f"-{number}" if number > 1 else ""))
+        node = URIRef(scene + MEMBERSHIPS[kind][2] + (f"-{number}" if number > 1 else ""))
+        if is_new:
+            self._state(node, kind, scene, template_scene, members)
+        return node
+
+    def _state(
+        self, node: URIRef, kind: str, scene: URIRef, template_scene: URIRef, members: tuple[URIRef, ...]
+    ) -> None:
+        type_, term, _ = MEMBERSHIPS[kind]
+        self.sink.add_types(node, [type_], self.sink.claims[scene])
         self.sink.add(node, "bdd:of-scene", template_scene)
-        place = self.sink.claims.get(scene)
-        if place is not None:
-            self.sink.add_types(node, [type_], place)
         for member in members:
             self.sink.add(node, term, member)
         self.sink.add(node, "rbw:member-list", self.sink.make_list(members))
-        return node
 
 
 def add_element_set(frame: Frame, scenes: Scenes, declared: tree.ElementSet) -> None:

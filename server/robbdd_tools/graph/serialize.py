@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.graph.canonical import canonical
 from robbdd_tools.graph.jsonld import context_for, expanded
-from robbdd_tools.graph.libraries import compact, json_object, quads
+from robbdd_tools.graph.libraries import Json, compact, json_object, triples
 from robbdd_tools.graph.prefixes import bind_prefixes, user_prefixes
+from robbdd_tools.graph.vocabulary import expand
 
 if TYPE_CHECKING:
     from rdflib import Graph
+    from rdflib.term import Node
 
 FORMATS = {"ttl": "turtle", "json-ld": "json-ld", "nt": "nt", "xml": "xml"}
 """Our name of a format → rdflib's."""
@@ -51,7 +53,8 @@ def parse(text: str, format: str) -> Graph:
     try:
         if format == "json-ld":
             document: Any = json.loads(text)
-            _parse_quads(graph, quads(document))
+            for subject, predicate, value in triples(document):
+                graph.add((_node(subject), _node(predicate), _node(value)))
             _bind_context(graph, document)
         else:
             graph.parse(data=text, format=FORMATS[format])
@@ -65,13 +68,18 @@ def _check_format(format: str) -> None:
         raise ValueError(f"'{format}' is no graph format; there are {', '.join(FORMATS)}")
 
 
-def _parse_quads(graph: Graph, text: str) -> None:
-    from rdflib import Dataset
+def _node(term: Json) -> Node:
+    from rdflib import BNode, Literal, URIRef
 
-    dataset = Dataset()
-    dataset.parse(data=text, format="nquads")
-    for subject, predicate, value, _ in dataset.quads():
-        graph.add((subject, predicate, value))
+    value = str(term["value"])
+    if term["type"] == "blank node":
+        return BNode(value.removeprefix("_:"))
+    if term["type"] == "IRI":
+        return URIRef(value)
+    datatype = term.get("datatype")
+    if term.get("language"):
+        return Literal(value, lang=term["language"])
+    return Literal(value) if datatype in (None, expand("xsd:string")) else Literal(value, datatype=URIRef(datatype))
 
 
 def _bind_context(graph: Graph, document: Any) -> None:
