@@ -41,6 +41,6 @@ def term(graph: Graph, node: Node) -> str:
     if isinstance(node, Literal):
         return node.n3()
     for prefix, namespace in SHORT.items():
-        if node.startswith(namespace):
-            return f"{prefix}:{node.removeprefix(namespace)}"
+        if str(node).startswith(namespace):
+            return f"{prefix}:{str(node).removeprefix(namespace)}"
     return f"<{node}>"

@@ -39,6 +39,10 @@ def variant(name: str) -> Variant:
     return next(entry for story in model().stories for entry in story.variants if entry.iri.endswith(f"/{name}"))
 
 
+def n(name: str) -> Iri:
+    return Iri(T + name)
+
+
 def t(*names: str) -> tuple[Iri, ...]:
     return tuple(Iri(T + name) for name in names)
 
@@ -69,7 +73,7 @@ def test_clauses_come_back_as_they_were_written() -> None:
     at, either, neither, config, text, first, second, behaviour, some = template.clauses
     assert (template.start, template.end) == t("start", "end")
     assert at == Fluent(
-        *t("at"),
+        n("at"),
         "given",
         "located-at",
         {"object": T + "var-part", "workspace": T + "var-goal"},
@@ -80,7 +84,7 @@ def test_clauses_come_back_as_they_were_written() -> None:
     held, fine = either.operands
     assert isinstance(held, Fluent)
     assert held.time == Before(T + "end", 0.25)
-    assert fine == TextClause(*t("text-fetch.given.1.1"), "given", 'looks "fine"', After(T + "start"))
+    assert fine == TextClause(n("text-fetch.given.1.1"), "given", 'looks "fine"', After(T + "start"))
     assert isinstance(neither, Junction)
     assert neither.operator == "not"
     (both,) = neither.operands
@@ -90,20 +94,21 @@ def test_clauses_come_back_as_they_were_written() -> None:
     assert config.arguments == {"target": T + "var-robot", "name": "speed", "value": T + "var-speed"}
     assert not isinstance(config.arguments["name"], Iri)
     assert text == TextFluent(
-        *t("text"), "given", "{p} & {r}", {"p": T + "var-part", "r": T + "var-robot"}, After(T + "end", 1.0)
+        n("text"), "given", "{p} & {r}", {"p": n("var-part"), "r": n("var-robot")}, After(T + "end", 1.0)
     )
     assert [first, second] == [
-        EventClause(*t("when-evt-fetch.when.0", "start")),
-        EventClause(*t("when-evt-fetch.when.1"), Iri("https://example.org/taken/elsewhere")),
+        EventClause(n("when-evt-fetch.when.0"), n("start")),
+        EventClause(n("when-evt-fetch.when.1"), Iri("https://example.org/taken/elsewhere")),
     ]
     assert behaviour == BehaviourClause(
-        *t("when-bhv-fetch.when"),
+        n("when-bhv-fetch.when"),
         "pick-place",
         {"agent": T + "var-robot", "object": T + "var-part", "workspace": T + "var-goal"},
-        *t("pick-start", "place-end"),
+        n("pick-start"),
+        n("place-end"),
     )
     assert isinstance(some, Exists)
-    assert (some.role, some.variable, some.in_set) == ("then", *t("var-y", "var-goals"))
+    assert (some.role, some.variable, some.in_set) == ("then", n("var-y"), n("var-goals"))
     clear = some.clauses[1]
     assert isinstance(clear, Fluent)
     assert clear.time == During(T + "start", T + "end")
@@ -114,7 +119,7 @@ def test_quantifiers_nest() -> None:
     assert isinstance(outer, ForAll)
     _, inner = outer.clauses
     assert isinstance(inner, ForAll)
-    assert (inner.variable, inner.in_set) == (*t("var-b"), *lab("places"))
+    assert (inner.variable, inner.in_set) == (n("var-b"), lab("places")[0])
     behaviour, taken = inner.clauses
     assert isinstance(behaviour, BehaviourClause)
     assert behaviour.behaviour == "pick"

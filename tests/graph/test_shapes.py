@@ -1,0 +1,210 @@
+"""Each shape finds what it is there for: a sound graph is damaged in one way, and the shape must say so.
+
+Text reaches only some of these; a graph from elsewhere, or a mistake of ours in building one, reaches all.
+"""
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+from rdflib import BNode, Graph, Literal, URIRef
+from rdflib.collection import Collection
+from rdflib.namespace import RDF, SH
+from rdflib.term import Node
+
+from graph.models import EVERYTHING
+from graph.statements import built
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.graph.build import BuiltGraph
+from robbdd_tools.graph.shapes import load_shapes
+from robbdd_tools.graph.validate import validate
+from robbdd_tools.graph.vocabulary import SHAPES, expand
+
+NAMES = {"t": "https://example.org/t/", "lab": "https://example.org/env/", "o": "https://example.org/other/"}
+TABLE = "o:tv-table-zz-first.table"
+PRODUCT = "o:tv-cart_prod-zz-first.product"
+EXECUTION = [
+    "+ t:run a bdd:ScenarioExecution",
+    "+ t:run bdd:of-variant o:table",
+    "+ t:run bdd:has-behaviour-implementation t:server",
+    "+ t:server a bdd:BehaviourImplementation",
+    "+ t:run obs:has-policy t:watch",
+    "+ t:watch a obs:ObservationPolicy",
+    "+ t:watch bdd:of-clause t:at",
+]
+DAMAGE: dict[str, list[str]] = {
+    "after-one-event": ["- t:taken time:after-event"],
+    "after-only": ["+ t:taken time:before-event t:end"],
+    "agent-members": ["- lab:bench_scene-scene-has-agn agn:has-agent"],
+    "agent-value": [f"set {TABLE} bdd:rows ((lab:nut lab:nut lab:tray_ws 1 ()))"],
+    "before-one-event": ["- t:seen time:before-event"],
+    "before-only": ["+ t:seen time:after-event t:end"],
+    "composition-contents": ["- lab:tray_comp env:has-object"],
+    "composition-cycle": ["+ lab:tray_comp env:has-workspace lab:bench_ws"],
+    "composition-objects": ["+ lab:tray_comp env:has-object lab:panda"],
+    "composition-workspace": ["+ lab:tray_comp env:of-workspace lab:bench_ws"],
+    "composition-workspaces": ["+ lab:bench_comp env:has-workspace lab:nut"],
+    "condition-role": ["- t:at bdd:clause-of", "+ t:at bdd:clause-of t:fetch-scenario-when"],
+    "during-end": ["- t:drop time:before-event"],
+    "during-start": ["- t:drop time:after-event"],
+    "element-value": [f"set {TABLE} bdd:rows ((lab:nut 7 lab:tray_ws 1 ()))"],
+    "empty-duration": ["- t:drop time:after-event", "+ t:drop time:after-event t:end"],
+    "event-type-after": ["- t:taken time:after-event", "+ t:taken time:after-event t:task"],
+    "event-type-before": ["- t:seen time:before-event", "+ t:seen time:before-event t:task"],
+    "execution-behaviour": [*EXECUTION, "- t:server rdf:type"],
+    "execution-policies": [*EXECUTION, "+ t:watch bdd:of-clause t:seen"],
+    "execution-variant": [*EXECUTION, "+ t:run bdd:of-variant o:product"],
+    "fluent-predicate": ["+ t:at a bdd:CanReach"],
+    "for-all-role": ["+ t:forall-sort.all bdd:clause-of t:sort-scenario-then"],
+    "horizon": ["- t:held time:horizon-seconds", "+ t:held time:horizon-seconds -1"],
+    "junction-operands": ["set t:not-fetch.given.2 rbw:operands ()"],
+    "membership-scene": ["+ lab:bench_scene-scene-has-obj bdd:of-scene t:fetch-scene", "+ t:fetch-scene a bdd:Scene",
+                         "+ lab:bench_scene-scene-has-obj bdd:of-scene t:sort-scene"],
+    "object-members": ["+ lab:bench_scene-scene-has-obj env:has-object lab:panda"],
+    "object-value": [f"set {TABLE} bdd:rows ((lab:panda lab:panda lab:tray_ws 1 ()))"],
+    "policy-clause": [*EXECUTION, "- t:watch bdd:of-clause"],
+    "product-sets": [f"- {PRODUCT} bdd:of-sets"],
+    "quantifier-clauses": ["set t:forall-sort.all.all bdd:has-clause ()"],
+    "quantifier-set": ["- t:forall-sort.all bdd:in-set", "+ t:forall-sort.all bdd:in-set t:var-robot"],
+    "quantifier-variable": ["+ t:forall-sort.all bdd:ref-variable t:var-robot"],
+    "row-width": [f"set {TABLE} bdd:rows ((lab:nut))"],
+    "scenario-behaviour": ["- t:sort-scenario bhv:of-behaviour"],
+    "scenario-given": ["- t:sort-scenario bdd:given"],
+    "scenario-task": ["- t:sort-scenario task:of-task"],
+    "scenario-then": ["- t:sort-scenario bdd:then"],
+    "scenario-when": ["- t:sort-scenario bdd:when"],
+    "scene-entries": ["set lab:bench_scene rbw:entries ()"],
+    "selection-length": ["- o:comb-zz-first.product.0 bdd:length"],
+    "selection-size": ["- o:comb-zz-first.product.0 bdd:repetition-allowed", "- o:comb-zz-first.product.0 bdd:length",
+                       "+ o:comb-zz-first.product.0 bdd:length 3"],
+    "selection-source": ["- o:comb-zz-first.product.0 bdd:from", "+ o:comb-zz-first.product.0 bdd:from t:var-parts"],
+    "set-elements": ["- lab:furniture bdd:elements"],
+    "set-for-single": [f"set {TABLE} bdd:rows ((lab:parts lab:panda lab:tray_ws 1 ()))"],
+    "similar-count": ["- lab:washers rbw:count", "+ lab:washers rbw:count 0"],
+    "single-for-set": [f"set {TABLE} bdd:rows ((lab:nut lab:panda lab:tray_ws 1 lab:tray_ws))"],
+    "story-criteria": ["- t:aa-second bdd:has-criteria"],
+    "table-rows": [f"set {TABLE} bdd:rows ()"],
+    "template-clauses": ["set t:sort bdd:has-clause ()"],
+    "template-duration": ["- t:sort time:after-event"],
+    "template-duration-end": ["- t:sort time:before-event"],
+    "template-scenario": ["- t:sort bdd:of-scenario"],
+    "template-scene": ["+ t:sort bdd:has-scene t:fetch-scene"],
+    "text-clause-text": ["- t:text-fetch.given.1.1 rbw:text"],
+    "text-predicate-names": ["- t:text bdd:argument-names"],
+    "text-predicate-text": ["- t:text bdd:template-string"],
+    "text-predicate-variables": ["- t:text bdd:argument-variables"],
+    "timed-once": ["+ t:at a time:AfterEventConstraint"],
+    "variable-empty": [f"set {PRODUCT} bdd:of-sets (() () ())"],
+    "variable-foreign": ["set t:sort rbw:variables (t:var-parts t:var-bins)"],
+    "variable-missing": ["set t:sort rbw:variables (t:var-parts t:var-bins t:var-robot t:var-goal)"],
+    "variable-repeated": [f"set {PRODUCT} bdd:variable-list (t:var-parts t:var-bins t:var-robot t:var-robot)"],
+    "variant-members": ["- t:chosen bdd:has-scene"],
+    "variant-scene": ["+ t:chosen bdd:has-scene lab:bench_scene-scene-has-obj"],
+    "variant-template": ["+ t:chosen bdd:of-template t:fetch"],
+    "variant-variation": ["- t:chosen bdd:has-variation"],
+    "variation-task": [f"+ {TABLE} task:of-task t:start"],
+    "variation-variables": [f"- {TABLE} bdd:variable-list"],
+    "when-behaviour": ["- t:when-bhv-fetch.when rdf:type", "+ t:when-bhv-fetch.when a bdd:WhenBehaviour"],
+    "when-behaviour-one": ["- t:when-bhv-fetch.when bhv:of-behaviour"],
+    "when-behaviour-role": ["- t:when-bhv-fetch.when bdd:clause-of"],
+    "when-event-event": ["- t:when-evt-fetch.when.0 rbw:event"],
+    "when-event-role": ["- t:when-evt-fetch.when.0 bdd:clause-of"],
+    "workspace-members": ["+ lab:bench_scene-scene-has-ws env:has-workspace lab:panda"],
+    "workspace-value": [f"set {TABLE} bdd:rows ((lab:nut lab:panda lab:nut 1 ()))"],
+}  # fmt: skip
+
+
+@cache
+def sound() -> BuiltGraph:
+    return built(EVERYTHING)
+
+
+def node(text: str) -> Node:
+    if text.lstrip("-").isdigit():
+        return Literal(int(text))
+    prefix, _, local = text.partition(":")
+    return URIRef(NAMES[prefix] + local if prefix in NAMES else expand(text))
+
+
+def damaged(edits: list[str]) -> BuiltGraph:
+    graph = Graph()
+    for triple in sound().graph:
+        graph.add(triple)
+    for edit in edits:
+        action, subject, term, *values = edit.split(" ", 3)
+        predicate = RDF.type if term == "a" else URIRef(expand(term))
+        if action == "-":
+            assert (node(subject), predicate, None) in graph, edit
+            graph.remove((node(subject), predicate, None))
+        elif action == "+":
+            graph.add((node(subject), predicate, node(values[0])))
+        else:
+            assert (node(subject), predicate, None) in graph, edit
+            graph.set((node(subject), predicate, nested_list(graph, values[0])))
+    return replace(sound(), graph=graph)
+
+
+def nested_list(graph: Graph, text: str) -> Node:
+    stack: list[list[Node]] = [[]]
+    for token in text.replace("(", " ( ").replace(")", " ) ").split():
+        if token == "(":
+            stack.append([])
+        elif token == ")":
+            items = stack.pop()
+            stack[-1].append(Collection(graph, BNode(), list(items)).uri if items else RDF.nil)
+        else:
+            stack[-1].append(node(token))
+    return stack[0][0]
+
+
+def codes(graph: BuiltGraph, shapes: Graph | None = None) -> set[str]:
+    return {entry.code.removeprefix("shacl-") for entry in validate(graph, shapes)}
+
+
+def test_the_model_with_every_construct_is_sound() -> None:
+    assert codes(sound()) == set()
+
+
+@pytest.mark.parametrize("shape", DAMAGE)
+def test_a_shape_finds_its_damage(shape: str) -> None:
+    assert shape in codes(damaged(DAMAGE[shape]))
+
+
+def word_slots() -> list[tuple[str, str]]:
+    catalog = load_catalog()
+    words = (*catalog.predicates.values(), *catalog.behaviours.values())
+    return [(word.name, slot.name) for word in words for slot in word.slots]
+
+
+def test_no_shape_is_without_a_test() -> None:
+    shapes = load_shapes()
+    named = {str(name).removeprefix(SHAPES) for name in shapes.subjects(RDF.type, SH.PropertyShape)}
+    with_message = {str(name).removeprefix(SHAPES) for name in shapes.subjects(SH.message)}
+    assert named | with_message == set(DAMAGE) | {f"{word}-{slot}" for word, slot in word_slots()}
+
+
+@pytest.mark.parametrize(("word", "slot"), word_slots())
+def test_each_slot_of_the_catalog_has_a_shape_that_wants_it_filled_once(word: str, slot: str) -> None:
+    catalog = load_catalog()
+    found = catalog.predicates.get(word) or catalog.behaviours[word]
+    subject, behaviour = URIRef("https://example.org/t/clause"), URIRef("https://example.org/t/behaviour")
+    graph = Graph()
+    if word in catalog.behaviours:
+        graph.add((subject, RDF.type, URIRef(expand("bdd:WhenBehaviour"))))
+        graph.add((subject, URIRef(expand("bhv:of-behaviour")), behaviour))
+        for kind in catalog.behaviours[word].rdf_types:
+            graph.add((behaviour, RDF.type, URIRef(expand(kind))))
+    else:
+        graph.add((subject, RDF.type, URIRef(expand("bdd:FluentClause"))))
+        graph.add((subject, RDF.type, URIRef(expand(catalog.predicates[word].rdf_type))))
+    for filled in found.slots:
+        if filled.name != slot:
+            graph.add((subject, URIRef(expand(filled.property)), URIRef("https://example.org/t/value")))
+    assert f"{word}-{slot}" in codes(replace(sound(), graph=graph))
+
+
+@pytest.mark.parametrize("name", sorted(DAMAGE))
+def test_every_message_is_a_sentence_about_robots_and_not_about_rdf(name: str) -> None:
+    (message,) = (str(text) for text in load_shapes().objects(URIRef(SHAPES + name), SH.message))
+    assert not {"node", "triple", "SHACL", "IRI", "RDF", "property"} & set(message.split())
+    assert len(list(load_shapes().objects(URIRef(SHAPES + name), SH.severity))) == 1
