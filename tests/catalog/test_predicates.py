@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from monitor.traces import heights, still, trace_of
 from robbdd_tools.catalog.api import Arguments, Region
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge
-from robbdd_tools.monitor.time import During
-from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.monitor.time import Before, During
+from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict
 
 REGIONS = {
@@ -90,8 +93,55 @@ def test_sorted_into_asks_every_object_for_some_workspace() -> None:
     assert judged("sorted-into", trace, objects=("ball", "nut"), workspaces=both).robustness == pytest.approx(-0.1)
 
 
-@pytest.mark.parametrize("name", ["has-config", "can-reach", "does-not-drop"])
-def test_what_cannot_be_judged_yet_is_unknown(name: str) -> None:
+def dropped(held: list[float], path: list[list[float]]) -> Verdict:
+    count = len(path)
+    bodies = {"tray": still(count), "far": still(count, (1.0, 0.0, 0.0)), "ball": path}
+    trace = trace_of(bodies, {"start": 0.0, "end": (count - 1) * 0.1}, {"arm": {"ball": held}})
+    return judged("does-not-drop", trace, agent="arm", object="ball")
+
+
+def test_what_is_held_or_at_rest_on_a_workspace_is_not_dropped() -> None:
+    assert dropped([1.0] * 3, heights([0.5, 0.3, 0.7])).robustness == pytest.approx(0.05)
+    assert dropped([0.0] * 3, still(3, (0.0, 0.0, 0.02))).robustness == pytest.approx(0.02)
+    assert dropped([0.0, 1.0, 1.0], heights([0.02, 0.02, 0.5])).outcome is Outcome.HOLDS
+
+
+def test_what_is_let_go_of_close_to_a_workspace_is_not_dropped() -> None:
+    released = heights([0.05, 0.05, 0.03, 0.02, 0.02, 0.02, 0.02])
+    found = dropped([1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], released)
+    assert found.robustness == pytest.approx(0.02)
+
+
+def test_what_falls_is_dropped_from_the_sample_on_at_which_it_has_fallen_too_far() -> None:
+    found = dropped([1.0, 1.0, 0.0, 0.0, 0.0], heights([0.3, 0.3, 0.27, 0.2, 0.02]))
+    assert found.outcome is Outcome.VIOLATED
+    assert found.robustness == pytest.approx(0.05 - 0.28)
+    assert found.at == pytest.approx(0.3)
+
+
+def test_what_rests_beside_every_workspace_is_dropped() -> None:
+    found = dropped([0.0] * 3, still(3, (0.5, 0.0, 0.02)))
+    assert (found.outcome, found.robustness) == (Outcome.VIOLATED, pytest.approx(-0.3))
+
+
+def test_a_moment_without_contact_is_no_drop() -> None:
+    assert dropped([1.0, 0.0, 1.0, 1.0], still(4, (0.5, 0.5, 0.3))).outcome is Outcome.HOLDS
+
+
+def test_can_reach_is_the_margin_that_was_measured() -> None:
+    margins = np.array([0.4, 0.2, np.nan])
+    trace = replace(world(3), reaches={("arm", "tray"): margins}, events=(EventStamp("e", 0.1),))
+    predicate = load_catalog().predicates["can-reach"]
+    words = {"agent": "arm", "object": "tray"}
+    assert judge(predicate, words, Before("e"), trace, REGIONS).robustness == pytest.approx(0.2)
+    beyond = replace(trace, reaches={("arm", "tray"): np.array([0.4, -3.14, np.nan])})
+    assert judge(predicate, words, Before("e"), beyond, REGIONS).outcome is Outcome.VIOLATED
+    late = replace(trace, events=(EventStamp("e", 0.2),))
+    assert judge(predicate, words, Before("e"), late, REGIONS).outcome is Outcome.UNKNOWN
+
+
+@pytest.mark.parametrize("name", ["has-config", "can-reach"])
+def test_what_was_not_recorded_is_unknown(name: str) -> None:
     predicate = load_catalog().predicates[name]
     words = {slot.name: "tray" for slot in predicate.slots}
     assert judged(name, world(), **words).outcome is Outcome.UNKNOWN

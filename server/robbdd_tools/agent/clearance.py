@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 
 class Clearance:
-    """Collision checks of one robot with the world as it is when this is made; nothing is stepped."""
+    """Collision checks of one robot with the world as it is in ``state`` when this is made; nothing is stepped."""
 
-    def __init__(self, simulation: Simulation, robot: Robot, spare: str) -> None:
+    def __init__(self, simulation: Simulation, robot: Robot, spare: str, state: Any) -> None:
         """Leave contacts with the object ``spare`` out: it is the one to be gripped."""
         self._model: Any = simulation.model
         self._data: Any = mujoco.MjData(self._model)
-        self._data.qpos[:] = simulation.data.qpos
+        self._data.qpos[:] = state.qpos
         self._robot = robot
         self._simulation = simulation
         trees = self._model.body_rootid

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -11,11 +11,15 @@ from typing import TYPE_CHECKING
 from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.errors import BehaviourError, SceneError, SimulationError
 from robbdd_tools.agent.pick_place import PickPlace
+from robbdd_tools.agent.quantities import wanting
+from robbdd_tools.agent.reach import ReachSampler
 from robbdd_tools.agent.simulation import Simulation
 from robbdd_tools.agent.world import build_world
+from robbdd_tools.monitor.time import Window, window
 from robbdd_tools.monitor.trace import EventStamp, Trace
 
 if TYPE_CHECKING:
+    from robbdd_tools.agent.sentences import Clause
     from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.run.protocol import ScenarioSpec
 
@@ -59,6 +63,7 @@ class Execution:
         actor = self._calls[0].arguments.get("agent") if self._calls else None
         world = build_world(spec.scene, spec.seed, actor)
         self.simulation = Simulation(world)
+        self._reaches = ReachSampler(self.simulation)
         self._controllers: dict[str, PickPlace] = {}
         self._events: list[EventStamp] = []
         self._remark = ""
@@ -94,6 +99,18 @@ class Execution:
             trace = self.trace
         self.wall += perf_counter() - began
         return trace
+
+    def measured(self, clause: Clause, trace: Trace) -> Trace:
+        """Return a trace with the quantities that a clause needs in its windows and that cost time to measure."""
+        began = perf_counter()
+        for fluent, arguments in wanting(clause, "reach"):
+            agent, name = arguments["agent"], arguments["object"]
+            selected = window(fluent.time, trace)
+            known = agent in self.simulation.robots and name in self.simulation.world.cast.objects
+            if known and isinstance(selected, Window):
+                self._reaches.sample(agent, name, range(selected.first, selected.last + 1))
+        self.wall += perf_counter() - began
+        return replace(trace, reaches=self._reaches.record(len(trace.times)))
 
     def run_behaviour(self, index: int) -> bool:
         """Run on until behaviour number ``index`` is over; returns whether it went through."""

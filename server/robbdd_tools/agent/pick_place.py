@@ -13,17 +13,16 @@ import numpy as np
 from robbdd_tools.agent.clearance import Clearance
 from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.errors import BehaviourError
-from robbdd_tools.agent.grasp import Grasp, grasps
 from robbdd_tools.agent.kinematics import Unreachable, arm_of
-from robbdd_tools.agent.motion import ToolPose, frame_of, plan, present_pose, tool_pose
+from robbdd_tools.agent.motion import ToolPose, plan, present_pose, tool_pose
+from robbdd_tools.agent.reach import TRAVEL, Approach, approaches, at_travel, joints_at
 from robbdd_tools.agent.target import Target, targets
 
 if TYPE_CHECKING:
+    from robbdd_tools.agent.grasp import Grasp
     from robbdd_tools.agent.simulation import Simulation
     from robbdd_tools.catalog.api import FloatArray
 
-TRAVEL = 0.30
-"""Height in the world frame at which the tool travels, m (paper)."""
 CLOSING = 0.05
 """Speed of one finger, m/s."""
 SQUEEZE = 10
@@ -59,13 +58,13 @@ class PickPlace:
     def pick(self, name: str) -> Step:
         """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``."""
         self._emit("pick-start")
-        grasp, above, at = self._choose_grasp(name)
+        best = self._choose_grasp(name)
         yield from self._open()
-        yield from self._move(above)
-        yield from self._move(at)
+        yield from self._move(best.above)
+        yield from self._move(best.at)
         yield from self._close(name)
-        self._held, self._grasp = name, grasp
-        yield from self._move(self._at_travel(at))
+        self._held, self._grasp = name, best.grasp
+        yield from self._move(self._at_travel(best.at))
         self._emit("pick-end")
 
     def place(self, name: str, workspace: str) -> Step:
@@ -96,33 +95,18 @@ class PickPlace:
         except BehaviourError:
             return
 
-    def _choose_grasp(self, name: str) -> tuple[Grasp, ToolPose, ToolPose]:
-        """Return the grasp with the most room for the hand, the tool pose above it and that at it."""
-        simulation, robot = self._simulation, self._robot
-        if name not in simulation.world.cast.objects:
-            raise BehaviourError(f"there is no {name} in the scene")
-        model = simulation.world.cast.objects[name]
-        position, rotation = simulation.pose(name)
-        clearance = Clearance(simulation, robot, name)
-        best: tuple[tuple[float, float], Grasp, ToolPose, ToolPose] | None = None
-        for grasp in grasps(name, model, position, rotation, robot.model.stroke):
-            at = tool_pose(robot.base, grasp.position, grasp.closing)
-            above = self._at_travel(at)
-            try:
-                joints = self._reach(above, at)
-            except Unreachable:
-                continue
-            rank = (round(clearance.depth(joints), 4), abs(at.turn))
-            if best is None or rank < best[0]:
-                best = (rank, grasp, above, at)
+    def _choose_grasp(self, name: str) -> Approach:
+        """Return the grasp with the most room for the hand."""
+        found = approaches(self._simulation, self._robot, name)
+        best = min(found, key=lambda one: (round(one.depth, 4), abs(one.at.turn)), default=None)
         if best is None:
-            raise BehaviourError(f"{robot.name} cannot reach {name}")
-        return best[1:]
+            raise BehaviourError(f"{self._robot.name} cannot reach {name}")
+        return best
 
     def _choose_target(self, name: str, workspace: str, grasp: Grasp) -> ToolPose:
         """Return the lowest tool pose over the first target that the arm reaches without hitting anything."""
         simulation, robot = self._simulation, self._robot
-        clearance = Clearance(simulation, robot, name)
+        clearance = Clearance(simulation, robot, name, simulation.data)
         for target in targets(simulation, robot, name, workspace):
             pose = self._lower_onto(target, grasp, clearance)
             if pose is not None:
@@ -138,7 +122,7 @@ class PickPlace:
         while height <= top:
             pose = tool_pose(robot.base, np.array([x, y, height]), closing)
             try:
-                joints = self._reach(self._at_travel(pose), pose)
+                joints = joints_at(self._arm, self._at_travel(pose), pose)
             except Unreachable:
                 return None
             if clearance.depth(joints) == 0.0:
@@ -146,15 +130,8 @@ class PickPlace:
             height += 0.02
         return None
 
-    def _reach(self, above: ToolPose, at: ToolPose) -> FloatArray:
-        """Return the joint positions at a pose that is come to from above; raises ``Unreachable``."""
-        position, rotation = frame_of(above)
-        start = self._arm.solve(self._arm.towards(position), position, rotation)
-        return self._arm.solve(start, *frame_of(at))
-
     def _at_travel(self, pose: ToolPose) -> ToolPose:
-        height = max(TRAVEL - self._robot.base.position[2], pose.height)
-        return ToolPose(pose.radius, pose.bearing, height, pose.turn)
+        return at_travel(self._robot.base, pose)
 
     def _move(self, goal: ToolPose) -> Step:
         try:

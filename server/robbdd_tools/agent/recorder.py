@@ -16,10 +16,14 @@ ROWS = 1024
 
 
 class Recorder:
-    """Samples of ``names`` (bodies) and of what each agent grips. Rows are only ever appended."""
+    """Samples of ``names`` (bodies) and of what each agent grips. Rows are only ever appended.
 
-    def __init__(self, names: tuple[str, ...], agents: tuple[str, ...]) -> None:
+    With them goes the engine's own state of ``width`` numbers, to come back to an instant later.
+    """
+
+    def __init__(self, names: tuple[str, ...], agents: tuple[str, ...], width: int) -> None:
         self._names = names
+        self._width = width
         self._agents = agents
         self.clear()
 
@@ -31,11 +35,22 @@ class Recorder:
         self._positions: FloatArray = np.empty((ROWS, size, 3))
         self._orientations: FloatArray = np.empty((ROWS, size, 4))
         self._grips: dict[str, FloatArray] = {agent: np.empty((ROWS, size)) for agent in self._agents}
+        self._states: FloatArray = np.empty((ROWS, self._width))
+
+    @property
+    def states(self) -> FloatArray:
+        """The engine's joint positions at each sample, shape (n, width)."""
+        return self._states[: self._rows]
 
     def append(
-        self, time: float, positions: FloatArray, orientations: FloatArray, grips: Mapping[str, FloatArray]
+        self,
+        time: float,
+        positions: FloatArray,
+        orientations: FloatArray,
+        grips: Mapping[str, FloatArray],
+        state: FloatArray,
     ) -> None:
-        """Append a sample: positions (m, 3), orientations (m, 4) and, per agent, what it grips (m,)."""
+        """Append a sample: positions (m, 3), orientations (m, 4), per agent what it grips (m,), the state (width,)."""
         if self._rows == len(self._times):
             self._grow()
         row = self._rows
@@ -43,6 +58,7 @@ class Recorder:
         self._times[row] = time
         self._positions[row] = positions
         self._orientations[row] = orientations
+        self._states[row] = state
         for agent, held in grips.items():
             self._grips[agent][row] = held
 
@@ -64,6 +80,7 @@ class Recorder:
         self._times = _doubled(self._times)
         self._positions = _doubled(self._positions)
         self._orientations = _doubled(self._orientations)
+        self._states = _doubled(self._states)
         self._grips = {agent: _doubled(held) for agent, held in self._grips.items()}
 
 

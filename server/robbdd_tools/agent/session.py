@@ -59,7 +59,7 @@ class ScenarioRun:
         def verdict(execution: Execution) -> Verdict:
             events = self._spec.events.keys()
             trace = execution.advance_until(lambda trace: is_closed(clause, trace, events))
-            return decide(clause, trace, execution.regions, events)
+            return decide(clause, execution.measured(clause, trace), execution.regions, events)
 
         return self._judged(line, verdict)
 

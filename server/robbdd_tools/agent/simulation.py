@@ -76,7 +76,7 @@ class Simulation:
         self._orientations: FloatArray = np.zeros((len(names), 4))
         self._pads = {name: robot.pads for name, robot in self.robots.items()}
         self.grips: dict[str, FloatArray] = {name: np.zeros(len(names)) for name in self.robots}
-        self.recorder = Recorder(names, tuple(self.robots))
+        self.recorder = Recorder(names, tuple(self.robots), int(self.model.nq))
         self._go_home()
         for name in world.cast.tables:
             body = self.data.body(name)
@@ -126,7 +126,7 @@ class Simulation:
             column = self._column[robot.name]
             self._positions[column] = self.data.site_xpos[robot.tool]
             mujoco.mju_mat2Quat(self._orientations[column], self.data.site_xmat[robot.tool])
-        self.recorder.append(self.time, self._positions, self._orientations, self.grips)
+        self.recorder.append(self.time, self._positions, self._orientations, self.grips, qpos)
 
     def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
         """Return what was recorded so far, without copying it."""

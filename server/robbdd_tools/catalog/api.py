@@ -78,8 +78,21 @@ class Evidence(Protocol):
         """The regions that make up a workspace, each with the object whose frame it is given in."""
         ...
 
+    @property
+    def workspaces(self) -> Sequence[str]:
+        """The workspaces of the scene that something carries."""
+        ...
+
     def gripped(self, agent: str, name: str) -> FloatArray:
         """1.0 where the agent's gripper holds the object by its gripping faces, else 0.0, shape (n,)."""
+        ...
+
+    def reach(self, agent: str, name: str) -> FloatArray:
+        """Joint-limit distance (rad) of the agent's best clear grasp of the object, -π without any, shape (n,)."""
+        ...
+
+    def setting(self, target: str, name: str) -> str:
+        """A configuration value of an element as the world that was set up has it."""
         ...
 
 
@@ -97,7 +110,8 @@ class Predicate:
     ``phrase`` is the surface form, slots in ``<…>`` (a reference), ``$…`` (a bare name) or as words;
     ``sentence`` the Gherkin form with ``{slot}`` placeholders. ``unit`` is the SI unit of the margin (``""`` when
     the margin is ±1). ``evaluate`` is ``None`` for what this installation can state but not judge yet: such a
-    clause is *unknown*, never a pass.
+    clause is *unknown*, never a pass. ``quantities`` are those that the evaluator needs beside poses and grips
+    (``reach``): they cost time and are sampled only in the windows of clauses that ask.
     """
 
     name: str
@@ -108,6 +122,7 @@ class Predicate:
     unit: str
     doc: str
     evaluate: Evaluator | None = None
+    quantities: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Arguments, FloatArray, Predicate, Region
     from robbdd_tools.monitor.trace import Trace
 
+T = TypeVar("T")
 Regions = Mapping[str, Sequence[tuple[str, "Region"]]]
 """Workspace → the regions that make it up, each with the object whose frame it is given in."""
 
@@ -25,7 +26,7 @@ class WindowEvidence:
 
     trace: Trace
     window: Window
-    workspaces: Regions
+    regions_of: Regions
 
     @property
     def _rows(self) -> slice:
@@ -46,11 +47,31 @@ class WindowEvidence:
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
         """Regions of a workspace; raises ``KeyError`` when the scene gives it none."""
-        return self.workspaces[workspace]
+        return self.regions_of[workspace]
+
+    @property
+    def workspaces(self) -> Sequence[str]:
+        """Names of the workspaces that have regions."""
+        return tuple(self.regions_of)
 
     def gripped(self, agent: str, name: str) -> FloatArray:
         """1.0 where ``agent`` grips ``name``, shape (n,); raises ``KeyError``."""
         return self.trace.grips[agent][self._rows, self.trace.column(name)]
+
+    def reach(self, agent: str, name: str) -> FloatArray:
+        """Reach margins, rad, shape (n,), not a number where none was sampled; raises ``KeyError``."""
+        return self._of_pair(self.trace.reaches, agent, name)[self._rows]
+
+    def setting(self, target: str, name: str) -> str:
+        """Return a configuration value that was read back; raises ``KeyError``."""
+        return self._of_pair(self.trace.settings, target, name)
+
+    @staticmethod
+    def _of_pair(record: Mapping[tuple[str, str], T], first: str, second: str) -> T:
+        try:
+            return record[first, second]
+        except KeyError:
+            raise KeyError(f"{first} {second}") from None
 
 
 def judge(

@@ -38,7 +38,9 @@ class Trace:
     ``times`` (n,) s, increasing; ``positions`` (n, len(names), 3) m in the world frame; ``orientations``
     (n, len(names), 4) unit quaternions (w, x, y, z); ``grips`` maps an agent to an (n, len(names)) array with 1
     where its gripping faces hold that body. ``finished`` tells that nothing will be appended; ``remark`` is the
-    execution's own last word on what went wrong ("gripper lost env:cube1 at 3.42 s").
+    execution's own last word on what went wrong ("gripper lost env:cube1 at 3.42 s"). ``reaches`` maps agent and
+    object to reach margins (n,) rad, not a number where none was sampled; ``settings`` maps an element and the name
+    of a configuration to its value.
     """
 
     names: tuple[str, ...]
@@ -49,6 +51,8 @@ class Trace:
     events: tuple[EventStamp, ...] = ()
     finished: bool = True
     remark: str = ""
+    reaches: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
+    settings: Mapping[tuple[str, str], str] = field(default_factory=dict[tuple[str, str], str])
 
     @property
     def end(self) -> float:

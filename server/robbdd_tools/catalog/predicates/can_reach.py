@@ -1,6 +1,19 @@
 """An agent can reach an object."""
 
-from robbdd_tools.catalog.api import Kind, Predicate, Slot
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+
+def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
+    """Distance (rad) of the best clear grasp of the object to the nearest joint limit, -π without any, shape (n,)."""
+    return evidence.reach(str(arguments["agent"]), str(arguments["object"]))
+
 
 CAN_REACH = Predicate(
     name="can-reach",
@@ -11,6 +24,8 @@ CAN_REACH = Predicate(
         Slot("object", Kind.OBJECT, "bdd:ref-object"),
     ),
     sentence='"{agent}" can reach "{object}"',
-    unit="",
+    unit="rad",
     doc="The agent has a collision-free grasp pose for the object within its joint limits.",
+    evaluate=margin,
+    quantities=("reach",),
 )
