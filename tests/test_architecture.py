@@ -28,6 +28,7 @@ LAYERS: tuple[frozenset[str], ...] = (
 AGENT_MAY = {"base", "catalog", "catalog.api", "monitor", "run.protocol", "agent"}
 HOMES = {
     "textx": {"syntax"},
+    "rapidfuzz": {"names"},
     "rdflib": {"graph"},
     "pyshacl": {"graph"},
     "pyld": {"graph"},

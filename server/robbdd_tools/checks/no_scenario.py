@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 def no_scenario(analysis: FileAnalysis) -> Iterator[Diagnostic]:
     """Tell once, at the start of the file, that there is nothing to run."""
     uri = analysis.document.uri
-    kinds = {definition.kind for definition in analysis.definitions.values()}
-    if language_of(uri) == "bdd" and SymbolKind.VARIANT not in kinds:
+    if language_of(uri) == "bdd" and not _has_variant(analysis):
         first_line = analysis.document.line_text(0)
         yield Diagnostic(
             uri,
@@ -27,3 +26,9 @@ def no_scenario(analysis: FileAnalysis) -> Iterator[Diagnostic]:
             "no-scenario",
             "this file has no scenario to run: a 'User Story' with a 'Scenario' would make one",
         )
+
+
+def _has_variant(analysis: FileAnalysis) -> bool:
+    """Look from the end of the file, where the stories usually stand."""
+    symbols = (symbol for placed in reversed(analysis.declarations) for symbol in placed.declaration.symbols)
+    return any(symbol.kind is SymbolKind.VARIANT for symbol in symbols)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.cursor import Cursor, cursor_at
 from robbdd_tools.names.index import language_of
-from robbdd_tools.names.resolve import ROLE_KINDS
+from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.syntax.parse import LANGUAGES
 from robbdd_tools.syntax.textx import Expectation, Parsed, grammar_text, parse_chunk
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 from urllib.parse import quote, urljoin
 
 from robbdd_tools.base.document import Document, Span
+from robbdd_tools.names.table import Entry, NameTable, make_table, update_table
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.parse import LANGUAGES, parse_declaration
-from robbdd_tools.syntax.split import split
+from robbdd_tools.syntax.split import Chunk, resplit, split
 
 if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration, Symbol
@@ -48,10 +48,20 @@ class FileIndex:
     """What a file says without looking at any other; a function of its document only."""
 
     document: Document
+    chunks: tuple[Chunk, ...]
     declarations: tuple[Placed, ...]
-    declared: Mapping[str, Declared]
-    repeated: tuple[Declared, ...]
+    names: NameTable
     imports: tuple[ImportPath, ...]
+
+    def declared(self, path: str) -> Iterator[Declared]:
+        """Yield the declarations of a qualified name in the order of the text."""
+        for entry in self.names.entries.get(path, ()):
+            yield self.at(entry)
+
+    def at(self, entry: Entry) -> Declared:
+        """Return what an entry of the name table stands for."""
+        placed = self.declarations[entry.declaration]
+        return Declared(placed.declaration.symbols[entry.symbol], placed.offset)
 
 
 def language_of(uri: str) -> str:
@@ -60,26 +70,22 @@ def language_of(uri: str) -> str:
     return ending if ending in LANGUAGES else ""
 
 
-def index_file(document: Document) -> FileIndex:
-    """Split and parse a document; unchanged chunks come from the cache."""
+def index_file(document: Document, previous: FileIndex | None = None) -> FileIndex:
+    """Split and parse a document; what an edit left alone is taken over from the ``previous`` revision."""
     language = language_of(document.uri)
-    chunks = split(language, document.text) if language else ()
+    if not language:
+        chunks: tuple[Chunk, ...] = ()
+    elif previous is None:
+        chunks = split(language, document.text)
+    else:
+        chunks = resplit(language, previous.document.text, previous.chunks, document.text)
     declarations = tuple(Placed(parse_declaration(language, chunk.text), chunk.offset) for chunk in chunks)
-    declared: dict[str, Declared] = {}
-    repeated: list[Declared] = []
-    for placed in declarations:
-        for symbol in placed.declaration.symbols:
-            entry = Declared(symbol, placed.offset)
-            first = declared.setdefault(symbol.path, entry)
-            if first is not entry and not _same_variable(first, entry):
-                repeated.append(entry)
-    return FileIndex(document, declarations, declared, tuple(repeated), _imports(document, declarations))
-
-
-def _same_variable(first: Declared, second: Declared) -> bool:
-    """Tell whether two quantifiers of one declaration use one variable name, which is no clash."""
-    variable = first.symbol.kind is second.symbol.kind is SymbolKind.VARIABLE
-    return variable and first.offset == second.offset and second.symbol.span == second.symbol.extent
+    parsed = [placed.declaration for placed in declarations]
+    if previous is None:
+        names = make_table(parsed)
+    else:
+        names = update_table(previous.names, [placed.declaration for placed in previous.declarations], parsed)
+    return FileIndex(document, chunks, declarations, names, _imports(document, declarations))
 
 
 def _imports(document: Document, declarations: tuple[Placed, ...]) -> tuple[ImportPath, ...]:

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity, sort_key
-from robbdd_tools.base.document import Document, Span
+from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text, too_large, uri_to_path
-from robbdd_tools.names.analysis import Definition, FileAnalysis, ImportLink, PlacedDeclaration
+from robbdd_tools.names.analyse import Resolved, analyse, syntax_errors
+from robbdd_tools.names.analysis import FileAnalysis, ImportLink
 from robbdd_tools.names.index import FileIndex, index_file, language_of
-from robbdd_tools.names.resolve import Scope, resolve
+from robbdd_tools.names.scope import Scope
 
 Source = FileIndex | Unreadable
 
@@ -23,12 +24,14 @@ class Project:
     revision: int = 0
     _open: dict[str, Source] = field(default_factory=dict[str, Source])
     _disk: dict[str, Source] = field(default_factory=dict[str, Source])
-    _analyses: dict[str, tuple[Scope, FileAnalysis]] = field(default_factory=dict[str, tuple[Scope, FileAnalysis]])
+    _analyses: dict[str, Resolved] = field(default_factory=dict[str, Resolved])
 
     def open(self, uri: str, version: int, text: str) -> None:
         """Set the text of a document that an editor holds (also on every change)."""
         refused = too_large(uri.rsplit("/", 1)[-1], len(text))
-        self._open[uri] = refused or index_file(Document(uri, version, text))
+        known = self._open.get(uri)
+        previous = known if isinstance(known, FileIndex) else None
+        self._open[uri] = refused or index_file(Document(uri, version, text), previous)
         self.revision += 1
 
     def close(self, uri: str) -> None:
@@ -91,7 +94,7 @@ class Snapshot:
 
     revision: int
     sources: Mapping[str, Source]
-    _analyses: dict[str, tuple[Scope, FileAnalysis]]
+    _analyses: dict[str, Resolved]
 
     @cached_property
     def _scopes(self) -> dict[str, Scope]:
@@ -103,11 +106,11 @@ class Snapshot:
             return None
         scope = self.scope(uri)
         kept = self._analyses.get(uri)
-        if kept is not None and kept[0] == scope:
-            return kept[1]
-        analysis = self._analyse(scope)
-        self._analyses[uri] = (scope, analysis)
-        return analysis
+        if kept is None or kept.scope != scope:
+            imports = self._imports(scope.files[0])
+            kept = analyse(scope, imports, self._on_import_lines(scope.files[0], imports), kept)
+            self._analyses[uri] = kept
+        return kept.analysis
 
     def unreadable(self, uri: str) -> Unreadable | None:
         """Return why a file has no text, ``None`` when it has."""
@@ -149,26 +152,17 @@ class Snapshot:
                 unread.append(current)
         return Scope(tuple(order), tuple(unread))
 
-    def _analyse(self, scope: Scope) -> FileAnalysis:
-        index = scope.files[0]
-        diagnostics = [*_syntax(index), *_repeated(scope, index)]
-        placed: list[PlacedDeclaration] = []
-        for entry in index.declarations:
-            targets, problems = resolve(scope, entry)
-            placed.append(PlacedDeclaration(entry.declaration, entry.offset, targets))
-            diagnostics += problems
-        definitions = {path: scope.define(index, declared) for path, declared in index.declared.items()}
-        imports = tuple(
-            ImportLink(link.span, link.uri, self._import_problem(index, link.uri)) for link in index.imports
-        )
-        diagnostics += [
-            Diagnostic(index.document.uri, link.span, Severity.ERROR, "import", link.problem)
+    def _imports(self, index: FileIndex) -> tuple[ImportLink, ...]:
+        return tuple(ImportLink(link.span, link.uri, self._import_problem(index, link.uri)) for link in index.imports)
+
+    def _on_import_lines(self, index: FileIndex, imports: tuple[ImportLink, ...]) -> list[Diagnostic]:
+        uri = index.document.uri
+        unusable = [
+            Diagnostic(uri, link.span, Severity.ERROR, "import", link.problem)
             for link in imports
             if link.problem is not None
         ]
-        diagnostics += self._broken_imports(index, imports)
-        diagnostics.sort(key=sort_key)
-        return FileAnalysis(index.document, tuple(placed), imports, definitions, tuple(diagnostics))
+        return unusable + self._broken_imports(index, imports)
 
     def _import_problem(self, index: FileIndex, uri: str) -> str | None:
         if uri == index.document.uri:
@@ -197,7 +191,7 @@ class Snapshot:
         """Syntax errors and unreadable imports of a file and all it imports."""
         faults: list[Related] = []
         for index in self.scope(uri).files:
-            faults += [Related(error.uri, error.span, error.message) for error in _syntax(index)]
+            faults += [Related(error.uri, error.span, error.message) for error in syntax_errors(index)]
             for link in index.imports:
                 problem = self._import_problem(index, link.uri)
                 if problem is not None:
@@ -207,23 +201,3 @@ class Snapshot:
 
 def _errors(count: int) -> str:
     return "an error" if count == 1 else f"{count} errors"
-
-
-def _syntax(index: FileIndex) -> list[Diagnostic]:
-    uri = index.document.uri
-    return [
-        Diagnostic(uri, fault.span.shifted(placed.offset), Severity.ERROR, "syntax", fault.message)
-        for placed in index.declarations
-        for fault in placed.declaration.faults
-    ]
-
-
-def _repeated(scope: Scope, index: FileIndex) -> list[Diagnostic]:
-    found: list[Diagnostic] = []
-    for declared in index.repeated:
-        first: Definition = scope.define(index, index.declared[declared.symbol.path])
-        span: Span = declared.symbol.span.shifted(declared.offset)
-        message = f"'{declared.symbol.path}' is already declared: give one of the two another name"
-        related = (Related(first.uri, first.span, "the first declaration"),)
-        found.append(Diagnostic(first.uri, span, Severity.ERROR, "duplicate-name", message, related))
-    return found

@@ -67,9 +67,12 @@ class SyntaxFault:
     message: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Declaration:
-    """One chunk: its tree (``None`` when broken), names, references and faults; a function of its text only."""
+    """One chunk: its tree (``None`` when broken), names, references and faults; a function of its text only.
+
+    Compared by identity: the cache gives the same object for the same text, and a keystroke asks for hundreds.
+    """
 
     text: str
     tree: DeclarationTree | None

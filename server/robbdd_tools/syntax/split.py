@@ -7,6 +7,7 @@ line is: a missing closing brace then costs one declaration, not the rest of the
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -50,6 +51,47 @@ def split(language: str, text: str) -> tuple[Chunk, ...]:
     return tuple(Chunk(start, text[start:end]) for start, end in pairwise((*starts, len(text))))
 
 
+def resplit(language: str, old: str, chunks: tuple[Chunk, ...], new: str) -> tuple[Chunk, ...]:
+    """Return ``split(language, new)``, given the chunks of ``old``: only the text around the edit is looked at.
+
+    At the start of a chunk the splitter knows nothing of what came before. So it may begin again at a chunk before
+    the edit (the one before the edited chunk, whose end the edit may have moved) and stop where, behind the edit,
+    it meets a start that it has met before.
+    """
+    prefix = _common(old, new)
+    suffix = _common(old[prefix:][::-1], new[prefix:][::-1])
+    first = bisect_left(chunks, prefix, key=lambda chunk: chunk.offset) - 2
+    if first < 0:
+        return split(language, new)
+    shift = len(new) - len(old)
+    behind = {chunk.offset + shift: index for index, chunk in enumerate(chunks) if chunk.offset >= len(old) - suffix}
+    begin = chunks[first].offset
+    starts = [begin]
+    rest: tuple[Chunk, ...] = ()
+    for start in _starts(language, new, begin):
+        if start == begin:
+            continue
+        if start in behind:
+            rest = tuple(Chunk(chunk.offset + shift, chunk.text) for chunk in chunks[behind[start] :])
+            break
+        starts.append(start)
+    end = rest[0].offset if rest else len(new)
+    between = (Chunk(start, new[start:stop]) for start, stop in pairwise((*starts, end)))
+    return (*chunks[:first], *between, *rest)
+
+
+def _common(one: str, other: str) -> int:
+    """Return the length of the longest common prefix, by comparing ever finer slices."""
+    low, high = 0, min(len(one), len(other))
+    while low < high:
+        middle = (low + high + 1) // 2
+        if one[low:middle] == other[low:middle]:
+            low = middle
+        else:
+            high = middle - 1
+    return low
+
+
 _LEAD = re.compile(r"\A(?:\s|\ufeff|//[^\n]*)+")
 
 
@@ -61,9 +103,8 @@ def _scanner(language: str) -> re.Pattern[str]:
     return re.compile(rf"//[^\n]*|(?P<start>(?<![\w\-.<])(?:{starters}))|{string}|(?P<open>[{{(])|(?P<close>[}})])")
 
 
-def _starts(language: str, text: str) -> Iterator[int]:
+def _starts(language: str, text: str, position: int = 0) -> Iterator[int]:
     depth = 0
-    position = 0
     scan = _scanner(language).search
     while match := scan(text, position):
         position = match.end()

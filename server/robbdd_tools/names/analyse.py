@@ -1,0 +1,77 @@
+"""Puts together what is known of one file in one revision."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
+from robbdd_tools.names.analysis import Definition, FileAnalysis, ImportLink, PlacedDeclaration
+from robbdd_tools.names.problems import repeated, unresolved
+from robbdd_tools.names.resolve import Resolution, Targets, resolve_file
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.index import FileIndex
+    from robbdd_tools.names.scope import Scope
+
+
+class Definitions(Mapping[str, Definition]):
+    """What a file itself declares, by qualified name (the first declaration of each), made when asked for."""
+
+    def __init__(self, scope: Scope) -> None:
+        self._scope = scope
+        self._names = scope.files[0].names.entries
+
+    def __getitem__(self, path: str) -> Definition:
+        file = self._scope.files[0]
+        return self._scope.define(file, file.at(self._names[path][0]))
+
+    def __contains__(self, path: object) -> bool:
+        return path in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+@dataclass(frozen=True, slots=True)
+class Resolved:
+    """A file's analysis, with what its successor may take over."""
+
+    scope: Scope
+    resolutions: tuple[Resolution, ...]
+    analysis: FileAnalysis
+
+
+def analyse(
+    scope: Scope, imports: tuple[ImportLink, ...], broken: list[Diagnostic], before: Resolved | None
+) -> Resolved:
+    """Analyse a scope's own file; ``broken`` are the findings on its import lines."""
+    index = scope.files[0]
+    known = () if before is None else before.resolutions
+    resolutions = resolve_file(scope, before and before.scope, known)
+    placed = tuple(
+        PlacedDeclaration(entry.declaration, entry.offset, Targets(scope, resolution.targets))
+        for entry, resolution in zip(index.declarations, resolutions, strict=True)
+    )
+    diagnostics = [*syntax_errors(index), *repeated(scope), *broken]
+    for entry, resolution in zip(index.declarations, resolutions, strict=True):
+        if resolution.unresolved:
+            diagnostics += unresolved(scope, resolution, entry.offset)
+    diagnostics.sort(key=sort_key)
+    analysis = FileAnalysis(index.document, placed, imports, Definitions(scope), tuple(diagnostics))
+    return Resolved(scope, resolutions, analysis)
+
+
+def syntax_errors(index: FileIndex) -> list[Diagnostic]:
+    """Return the syntax errors of a file."""
+    uri = index.document.uri
+    return [
+        Diagnostic(uri, fault.span.shifted(placed.offset), Severity.ERROR, "syntax", fault.message)
+        for placed in index.declarations
+        if placed.declaration.faults
+        for fault in placed.declaration.faults
+    ]

@@ -1,0 +1,99 @@
+"""Says what is wrong with names: unknown, of the wrong kind, declared twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Related, Severity
+from robbdd_tools.names.index import language_of
+from robbdd_tools.names.resolve import define
+from robbdd_tools.names.roles import ROLE_KINDS, SCENE_KINDS
+from robbdd_tools.names.suggest import closest
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.index import Declared
+    from robbdd_tools.names.resolve import Resolution, Unresolved
+    from robbdd_tools.names.scope import Scope
+    from robbdd_tools.syntax.declaration import Reference
+
+
+def unresolved(scope: Scope, resolution: Resolution, offset: int) -> Iterator[Diagnostic]:
+    """Yield a diagnostic for each reference of a declaration (at ``offset``) that leads nowhere."""
+    for problem in resolution.unresolved:
+        if problem.other is not None:
+            yield _wrong_kind(scope, problem, offset)
+            continue
+        found = _unknown(scope, problem.reference, offset)
+        if found.fixes or not _could_be_unread(scope, problem.reference):
+            yield found
+
+
+def repeated(scope: Scope) -> Iterator[Diagnostic]:
+    """Yield a diagnostic for each name of the scope's own file that is declared again."""
+    file = scope.files[0]
+    uri = file.document.uri
+    for path, _ in file.names.repeated():
+        first, *others = file.declared(path)
+        for other in others:
+            if _same_variable(first, other):
+                continue
+            span = first.symbol.span.shifted(first.offset)
+            message = f"'{path}' is already declared: give one of the two another name"
+            related = (Related(uri, span, "the first declaration"),)
+            place = other.symbol.span.shifted(other.offset)
+            yield Diagnostic(uri, place, Severity.ERROR, "duplicate-name", message, related)
+
+
+def _same_variable(first: Declared, second: Declared) -> bool:
+    """Tell whether two quantifiers of one declaration use one variable name, which is no clash."""
+    variable = first.symbol.kind is second.symbol.kind is SymbolKind.VARIABLE
+    return variable and first.offset == second.offset and second.symbol.span == second.symbol.extent
+
+
+def _could_be_unread(scope: Scope, reference: Reference) -> bool:
+    """Tell whether an import that could not be read may declare the name; its own error is enough then."""
+    kinds = set(ROLE_KINDS[reference.ref.role])
+    languages = {language_of(uri) for uri in scope.unread}
+    return bool(kinds & SCENE_KINDS and "scene" in languages) or "bdd" in languages
+
+
+def _wrong_kind(scope: Scope, problem: Unresolved, offset: int) -> Diagnostic:
+    assert problem.other is not None
+    found = define(scope, problem.other)
+    ref = problem.reference.ref
+    return Diagnostic(
+        scope.files[0].document.uri,
+        ref.span.shifted(offset),
+        Severity.ERROR,
+        "wrong-kind",
+        f"'{ref.path}' is {_a(found.kind)}, but {_wanted(ref.role)} belongs here",
+        (Related(found.uri, found.span, f"'{ref.path}' is declared here"),),
+    )
+
+
+def _unknown(scope: Scope, reference: Reference, offset: int) -> Diagnostic:
+    ref = reference.ref
+    uri = scope.files[0].document.uri
+    span = ref.span.shifted(offset)
+    close, any_known = closest(scope.tables, ROLE_KINDS[ref.role], reference.scopes, ref.path)
+    message = f"there is no {_wanted(ref.role, article=False)} '{ref.path}'"
+    if close:
+        message += f"; did you mean '{close[0]}'?"
+    elif not any_known:
+        message += ": none is declared here or in an imported file"
+    fixes = tuple(Fix(f"Change to '{name}'", (Edit(uri, span, name),)) for name in close)
+    return Diagnostic(uri, span, Severity.ERROR, "unknown-name", message, fixes=fixes)
+
+
+def _wanted(role: str, article: bool = True) -> str:
+    words = {"Element": "object, workspace or agent", "AnySet": "set"}.get(role)
+    if words is None:
+        words = str(ROLE_KINDS[role][0])
+    return _a(words) if article else words
+
+
+def _a(words: str) -> str:
+    article = "an" if words[0] in "aeio" else "a"
+    return f"{article} {words}"

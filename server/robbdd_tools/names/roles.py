@@ -1,0 +1,30 @@
+"""What a reference may lead to, by the grammar rule that reads it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from robbdd_tools.syntax.declaration import SymbolKind
+
+_ELEMENTS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
+_ELEMENT_SETS = (SymbolKind.OBJECT_SET, SymbolKind.WORKSPACE_SET, SymbolKind.AGENT_SET)
+ROLE_KINDS: Mapping[str, tuple[SymbolKind, ...]] = {
+    "Namespace": (SymbolKind.NAMESPACE,),
+    "Event": (SymbolKind.EVENT,),
+    "Task": (SymbolKind.TASK,),
+    "Template": (SymbolKind.TEMPLATE,),
+    "Variable": (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE),
+    "Scene": (SymbolKind.SCENE,),
+    "Composition": (SymbolKind.COMPOSITION,),
+    "Object": (SymbolKind.OBJECT,),
+    "Workspace": (SymbolKind.WORKSPACE,),
+    "Element": _ELEMENTS,
+    "ObjectSet": (SymbolKind.OBJECT_SET,),
+    "WorkspaceSet": (SymbolKind.WORKSPACE_SET,),
+    "AgentSet": (SymbolKind.AGENT_SET,),
+    "ConstantSet": (SymbolKind.CONSTANT_SET,),
+    "AnySet": (*_ELEMENT_SETS, SymbolKind.CONSTANT_SET, SymbolKind.SET_VARIABLE),
+}
+
+SCENE_KINDS = {*_ELEMENTS, *_ELEMENT_SETS, SymbolKind.COMPOSITION, SymbolKind.SCENE}
+"""What only a scene file declares."""

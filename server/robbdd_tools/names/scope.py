@@ -1,0 +1,86 @@
+"""The names that a file can use: its own and, through its imports, those of other files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.names.analysis import Definition
+from robbdd_tools.names.roles import ROLE_KINDS
+from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.tree import Namespace
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.index import Declared, FileIndex
+    from robbdd_tools.names.table import NameTable
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The files whose names a file can use: itself first, then its imports in order of nearness.
+
+    ``unread`` are the URIs of imports that could not be read.
+    """
+
+    files: tuple[FileIndex, ...]
+    unread: tuple[str, ...]
+
+    @property
+    def uris(self) -> list[str]:
+        """The files' URIs, in their order."""
+        return [file.document.uri for file in self.files]
+
+    @property
+    def tables(self) -> tuple[NameTable, ...]:
+        """The files' name tables: equal (by identity) as long as no name appears, vanishes or moves."""
+        return tuple(file.names for file in self.files)
+
+    def find(self, path: str) -> Iterator[tuple[FileIndex, Declared]]:
+        """Yield the declarations of a qualified name, nearest first."""
+        for file in self.files:
+            if path in file.names.entries:
+                yield from ((file, declared) for declared in file.declared(path))
+
+    def define(self, file: FileIndex, declared: Declared) -> Definition:
+        """Return a declaration of a file in this scope as a definition."""
+        symbol = declared.symbol
+        span, extent = symbol.span.shifted(declared.offset), symbol.extent.shifted(declared.offset)
+        return Definition(file.document.uri, symbol, span, extent, self._iri(file, declared))
+
+    def visible(self, kinds: Iterable[SymbolKind], scopes: tuple[str, ...]) -> dict[str, tuple[FileIndex, Declared]]:
+        """Return every name of some kinds as it would be written at a place, nearest declaration first."""
+        wanted = set(kinds)
+        names: dict[str, tuple[FileIndex, Declared]] = {}
+        for position, file in enumerate(self.files):
+            for path, entries in file.names.entries.items():
+                found = next((entry for entry in entries if entry.kind in wanted), None)
+                if found is not None:
+                    written = shortened(path, scopes) if position == 0 else path
+                    names.setdefault(written, (file, file.at(found)))
+        return names
+
+    def _iri(self, file: FileIndex, declared: Declared) -> str | None:
+        symbol = declared.symbol
+        if symbol.namespace is None:
+            return None
+        # A declaration's namespace is looked up from its own file; the nearest one outside is a file it imports.
+        for other in (file, *(other for other in self.files if other is not file)):
+            for entry in other.names.entries.get(symbol.namespace, ()):
+                root = other.declarations[entry.declaration].declaration.tree
+                if isinstance(root, Namespace):
+                    return root.iri.value + _local_name(declared)
+        return None
+
+
+def shortened(path: str, scopes: tuple[str, ...]) -> str:
+    """Return a qualified name as it may be written inside the innermost of some declarations that holds it."""
+    for scope in scopes:
+        if path.startswith(f"{scope}."):
+            return path[len(scope) + 1 :]
+    return path
+
+
+def _local_name(declared: Declared) -> str:
+    symbol = declared.symbol
+    return f"var-{symbol.name}" if symbol.kind in ROLE_KINDS["Variable"] else symbol.name

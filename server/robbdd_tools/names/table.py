@@ -1,0 +1,92 @@
+"""Which names a file declares, by path: what can be kept while the text around the names is edited."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robbdd_tools.syntax.declaration import Declaration, SymbolKind
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A declared name: its kind, the position of its declaration in the file and its own in the declaration."""
+
+    kind: SymbolKind
+    declaration: int
+    symbol: int
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class NameTable:
+    """The names of one file, each with all its declarations in the order of the text.
+
+    Tables are compared by identity: an edit that neither adds, removes nor moves a name keeps the object.
+    """
+
+    entries: Mapping[str, tuple[Entry, ...]]
+    kinds: Mapping[str, tuple[SymbolKind, ...]]
+
+    def repeated(self) -> Iterator[tuple[str, tuple[Entry, ...]]]:
+        """Yield each path that is declared more than once."""
+        return ((path, entries) for path, entries in self.entries.items() if len(entries) > 1)
+
+
+def make_table(declarations: Sequence[Declaration]) -> NameTable:
+    """Return the table of a file's declarations."""
+    entries: dict[str, tuple[Entry, ...]] = {}
+    _add(entries, enumerate(declarations))
+    return NameTable(entries, {path: _kinds(found) for path, found in entries.items()})
+
+
+def update_table(old: NameTable, before: Sequence[Declaration], after: Sequence[Declaration]) -> NameTable:
+    """Return the table of ``after``, given that of ``before``; the same object where no name has changed."""
+    if len(before) != len(after):
+        return make_table(after)
+    changed = [position for position, declaration in enumerate(after) if declaration is not before[position]]
+    renamed = [position for position in changed if _names(before[position]) != _names(after[position])]
+    if not renamed:
+        return old
+    entries = dict(old.entries)
+    touched = {symbol.path for position in renamed for symbol in before[position].symbols}
+    for path in touched:
+        kept = tuple(entry for entry in entries.pop(path) if entry.declaration not in renamed)
+        if kept:
+            entries[path] = kept
+    touched |= _add(entries, [(position, after[position]) for position in renamed])
+    kinds = dict(old.kinds)
+    for path in touched:
+        kinds.pop(path, None)
+        if path in entries:
+            kinds[path] = _kinds(entries[path])
+    return NameTable(entries, kinds)
+
+
+def changed_paths(old: NameTable, new: NameTable) -> set[str]:
+    """Return the paths that two tables do not agree on."""
+    return set() if old is new else {path for path, _ in old.kinds.items() ^ new.kinds.items()}
+
+
+def _add(entries: dict[str, tuple[Entry, ...]], declarations: Iterable[tuple[int, Declaration]]) -> set[str]:
+    added: set[str] = set()
+    for position, declaration in declarations:
+        for number, symbol in enumerate(declaration.symbols):
+            entry = Entry(symbol.kind, position, number)
+            others = entries.get(symbol.path)
+            entries[symbol.path] = (entry,) if others is None else tuple(sorted((*others, entry), key=_place))
+            added.add(symbol.path)
+    return added
+
+
+def _place(entry: Entry) -> tuple[int, int]:
+    return (entry.declaration, entry.symbol)
+
+
+def _kinds(entries: tuple[Entry, ...]) -> tuple[SymbolKind, ...]:
+    return tuple(entry.kind for entry in entries)
+
+
+def _names(declaration: Declaration) -> list[tuple[str, SymbolKind]]:
+    return [(symbol.path, symbol.kind) for symbol in declaration.symbols]
