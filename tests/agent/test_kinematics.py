@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.kinematics import Unreachable, arm_of
-from robbdd_tools.agent.motion import SPEED, ToolPose, frame_of, plan, tool_pose
+from robbdd_tools.agent.motion import ToolPose, frame_of, plan, tool_pose
 from robbdd_tools.agent.placement import Pose
 from robbdd_tools.catalog.robots.panda import PANDA
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 ARM = arm_of(PANDA)
 LIMITS = np.array(PANDA.velocity_limits)
+SPEED = 0.5
 MODIFIED_DH = (
     (0.0, 0.333, 0.0),
     (0.0, 0.0, -pi / 2),
@@ -84,7 +85,7 @@ def test_a_motion_keeps_the_speed_limits_and_ends_at_its_goal(start: ToolPose, g
     position, rotation = frame_of(start)
     joints = ARM.solve(ARM.towards(position), position, rotation)
     try:
-        motion = plan(ARM, joints, goal, LIMITS)
+        motion = plan(ARM, joints, goal, LIMITS, SPEED)
     except Unreachable:
         reject()
     path = np.vstack([joints, motion.joints])

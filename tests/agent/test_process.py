@@ -18,6 +18,7 @@ from robbdd_tools.run.protocol import (
     MANIFEST,
     ClauseJudged,
     ClauseStarted,
+    ConfigSpec,
     LogLine,
     Manifest,
     RunFinished,
@@ -33,7 +34,8 @@ from robbdd_tools.run.protocol import (
 pytestmark = pytest.mark.physics
 CLAUSES = (
     ("given", f'"{CUBE}" is located at "env:bench_ws" before event "t:pick-start"', "holds"),
-    ("given", f'"{CUBE}" has config "mass" = "0.03" before event "t:pick-start"', "unknown"),
+    ("given", f'"{CUBE}" has config "mass" = "0.04" before event "t:pick-start"', "holds"),
+    ("given", f'"{CUBE}" has config "friction" = "0.9" before event "t:pick-start"', "violated"),
     ("when", f'"{PANDA}" picks "{CUBE}" and places it at "{BIN_WS}"', "holds"),
     ("when", 'event "t:place-end" occurs', "holds"),
     ("then", f'"{CUBE}" is located at "{BIN_WS}" within 0.5 seconds after event "t:place-end"', "holds"),
@@ -44,6 +46,7 @@ CLAUSES = (
     ("then", f'"{PANDA}" does not collide "{BIN_WS}" from "t:pick-start" until "t:place-end"', "holds"),
     ("then", f'"{CUBE}" is located at "env:bench_ws" within 1 seconds before event "t:pick-start"', "holds"),
 )
+SET_UP = replace(SCENE, config=(ConfigSpec(CUBE, "mass", "0.04"),))
 STEPS = tuple((role, text) for role, text, _ in CLAUSES)
 EXPECTED = [verdict for *_, verdict in CLAUSES]
 GIZMO = replace(SCENE, objects=(*SCENE.objects, "env:gizmo"))
@@ -75,7 +78,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def specs(folder: Path) -> tuple[ScenarioSpec, ...]:
     folder.mkdir()
-    return write_run(folder, [Steps(STEPS, seed=1), Steps(STEPS, GIZMO), Steps(STEPS, seed=2)])
+    return write_run(folder, [Steps(STEPS, SET_UP, 1), Steps(STEPS, GIZMO), Steps(STEPS, SET_UP, 2)])
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +112,7 @@ def test_the_messages_come_in_order(found: list[RunMessage], specs: tuple[Scenar
 
 
 def test_a_verdict_carries_margin_unit_and_instant(found: list[RunMessage], specs: tuple[ScenarioSpec, ...]) -> None:
-    line = specs[0].clauses[5].line
+    line = specs[0].clauses[6].line
     (wrong,) = [m for m in found if isinstance(m, ClauseJudged) and (m.index, m.line) == (0, line)]
     assert wrong.unit == "m"
     assert wrong.robustness is not None
@@ -119,7 +122,7 @@ def test_a_verdict_carries_margin_unit_and_instant(found: list[RunMessage], spec
 
 
 def test_what_nothing_says_is_unknown_with_its_words(found: list[RunMessage], specs: tuple[ScenarioSpec, ...]) -> None:
-    line = specs[0].clauses[6].line
+    line = specs[0].clauses[7].line
     (lamp,) = [m for m in found if isinstance(m, ClauseJudged) and (m.index, m.line) == (0, line)]
     assert lamp.reason == "no step definition for 'the lamp is green after event \"t:place-end\"'"
 

@@ -140,8 +140,28 @@ def test_can_reach_is_the_margin_that_was_measured() -> None:
     assert judge(predicate, words, Before("e"), late, REGIONS).outcome is Outcome.UNKNOWN
 
 
+@pytest.mark.parametrize(
+    ("settings", "robustness"),
+    [
+        ({("ball", "mass"): "0.25"}, 1.0),
+        ({("ball", "mass"): "0.250000001"}, 1.0),
+        ({("ball", "mass"): "0.26"}, -1.0),
+    ],
+)
+def test_has_config_compares_the_numbers(settings: dict[tuple[str, str], str], robustness: float) -> None:
+    trace = replace(world(ball=still(2)), settings=settings)
+    assert judged("has-config", trace, target="ball", name="mass", value="0.25").robustness == robustness
+
+
+def test_has_config_of_a_workspace_is_that_of_all_its_carriers() -> None:
+    trace = replace(world(), settings={("tray", "height_scale"): "2", ("far", "height_scale"): "1"})
+    words = {"name": "height_scale", "value": "2"}
+    assert judged("has-config", trace, target="tray_ws", **words).outcome is Outcome.HOLDS
+    assert judged("has-config", trace, target="both_ws", **words).outcome is Outcome.VIOLATED
+
+
 @pytest.mark.parametrize("name", ["has-config", "can-reach"])
 def test_what_was_not_recorded_is_unknown(name: str) -> None:
     predicate = load_catalog().predicates[name]
-    words = {slot.name: "tray" for slot in predicate.slots}
+    words = {slot.name: "tray" for slot in predicate.slots} | {"name": "mass", "value": "1"}
     assert judged(name, world(), **words).outcome is Outcome.UNKNOWN

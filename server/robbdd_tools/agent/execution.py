@@ -8,6 +8,7 @@ from math import ceil
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from robbdd_tools.agent.configuration import read_back
 from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.errors import BehaviourError, SceneError, SimulationError
 from robbdd_tools.agent.pick_place import PickPlace
@@ -71,6 +72,7 @@ class Execution:
         self._muted = False
         self.completed = 0
         self.regions: Regions = world.cast.regions
+        self._settings = read_back(self.simulation, spec.scene)
         self._settle()
         self._script = self._scenario()
         self.wall = perf_counter() - began
@@ -101,7 +103,7 @@ class Execution:
         return trace
 
     def measured(self, clause: Clause, trace: Trace) -> Trace:
-        """Return a trace with the quantities that a clause needs in its windows and that cost time to measure."""
+        """Return a trace with the configuration and the quantities that a clause needs and that cost time."""
         began = perf_counter()
         for fluent, arguments in wanting(clause, "reach"):
             agent, name = arguments["agent"], arguments["object"]
@@ -110,7 +112,7 @@ class Execution:
             if known and isinstance(selected, Window):
                 self._reaches.sample(agent, name, range(selected.first, selected.last + 1))
         self.wall += perf_counter() - began
-        return replace(trace, reaches=self._reaches.record(len(trace.times)))
+        return replace(trace, reaches=self._reaches.record(len(trace.times)), settings=self._settings)
 
     def run_behaviour(self, index: int) -> bool:
         """Run on until behaviour number ``index`` is over; returns whether it went through."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +22,8 @@ LEAST_DAMPING, DAMPING = 1e-6, 0.01
 because damping lets the pull towards the posture leak into the pose."""
 POSTURE = 0.2
 """Share of the way back to the home posture that a redundant arm goes in each round."""
+ARMS = 16
+"""Arms that are kept: a configured robot is one of its own."""
 STRIDE = 0.3
 """Largest change of a joint in one round, rad."""
 
@@ -96,9 +98,9 @@ class Arm:
         return np.minimum(np.maximum(moved, self.lower), self.upper)
 
 
-@cache
+@lru_cache(maxsize=ARMS)
 def arm_of(robot: RobotModel) -> Arm:
-    """Return the arm of a robot model; compiled once per process."""
+    """Return the arm of a robot model; compiled when it is first asked for."""
     return Arm(robot)
 
 

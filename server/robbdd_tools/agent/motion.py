@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from robbdd_tools.agent.placement import Pose
     from robbdd_tools.catalog.api import FloatArray
 
-SPEED = 0.5
-"""Largest speed of the tool, m/s (paper: what the Panda typically reached)."""
 ACCELERATION = 2.0
 """Largest acceleration of the tool along its path, m/s²."""
 TURNING = 2.0
@@ -87,8 +85,10 @@ def frame_of(pose: ToolPose) -> tuple[FloatArray, FloatArray]:
     return np.array(at), rotation
 
 
-def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray) -> Motion:
-    """Plan a motion from joint positions (n,) to a tool pose; ``limits`` (n,) are the joints' speed limits, rad/s.
+def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed: float) -> Motion:
+    """Plan a motion from joint positions (n,) to a tool pose.
+
+    ``limits`` (n,) are the joints' speed limits, rad/s, ``speed`` that of the tool, m/s.
 
     The tool moves along a straight line in cylinder coordinates with a minimum-jerk profile, as fast as the tool's
     and the joints' limits allow. Raises ``Unreachable``.
@@ -105,7 +105,7 @@ def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray) -> Mo
     rate = np.abs(np.diff(path, axis=0)).max(axis=0) * count
     duration = max(
         SHORTEST,
-        PEAK_SPEED * length / SPEED,
+        PEAK_SPEED * length / speed,
         PEAK_SPEED * turn / TURNING,
         (PEAK_ACCELERATION * length / ACCELERATION) ** 0.5,
         float((PEAK_SPEED * rate / (MARGIN * limits)).max()),

@@ -135,7 +135,7 @@ class PickPlace:
 
     def _move(self, goal: ToolPose) -> Step:
         try:
-            motion = plan(self._arm, self._joints, goal, self._limits)
+            motion = plan(self._arm, self._joints, goal, self._limits, self._robot.model.tool_speed)
         except Unreachable as error:
             where = f"at {self._simulation.time:.2f} s, {error}"
             raise BehaviourError(

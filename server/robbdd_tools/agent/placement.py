@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.scene import carriers
 from robbdd_tools.catalog.api import ObjectModel, ShapeKind, Vector
+from robbdd_tools.catalog.settings import NORMAL
 
 if TYPE_CHECKING:
     import numpy as np
 
     from robbdd_tools.agent.scene import Cast
+    from robbdd_tools.catalog.settings import Numbers
     from robbdd_tools.run.protocol import SceneSpec
 
 TABLE_TOP = 0.10
 """Height of table tops above the world's origin, m; the paper leaves it open, the world frame is its own."""
-NEAR, FAR, ASIDE = 0.25, 0.60, 0.40
-"""Where things lie before a robot, m from its base: ahead, and to either side (paper, *normal* range)."""
 BEARING = 2.6
 """Largest angle to either side of straight ahead, rad, that an arm is asked to turn to."""
 FINGER_GAP = 0.04
@@ -113,14 +113,19 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
     return poses
 
 
-def field_before(base: Pose, table: Pose, model: ObjectModel) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return centre and half edges (m) of the part of a table that lies before a robot's base, ``None`` without."""
+def field_before(
+    base: Pose, table: Pose, model: ObjectModel, area: Numbers = NORMAL
+) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """Return centre and half edges (m) of the part of a table that lies before a robot's base, ``None`` without.
+
+    ``area`` (m) is ahead of the base from, to; to its left from, to.
+    """
     if model.region is None:
         return None
     side = 1.0 if table.position[0] >= base.position[0] else -1.0
-    near, far = sorted((base.position[0] + side * NEAR, base.position[0] + side * FAR))
-    x = _overlap(near, far, table.position[0], model.region.half[0])
-    y = _overlap(base.position[1] - ASIDE, base.position[1] + ASIDE, table.position[1], model.region.half[1])
+    (near, far), (low, high) = (sorted(side * edge for edge in edges) for edges in (area[:2], area[2:]))
+    x = _overlap(base.position[0] + near, base.position[0] + far, table.position[0], model.region.half[0])
+    y = _overlap(base.position[1] + low, base.position[1] + high, table.position[1], model.region.half[1])
     if x is None or y is None:
         return None
     return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)
@@ -174,7 +179,7 @@ def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose,
         yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None)
         yield _Field((x, y), inner, bottom, pi, TOUCHING, None)
         return
-    area = field_before(base, pose, model)
+    area = field_before(base, pose, model, cast.ranges.get(name, NORMAL))
     if area is None:
         raise SceneError(f"no part of '{carrier}', where '{name}' is to be, lies within reach")
     yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robbdd_tools.agent.configuration import Configured, configure
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.catalog.registry import load_catalog
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel
+    from robbdd_tools.catalog.settings import Numbers
     from robbdd_tools.run.protocol import SceneSpec
 
 PEDESTAL = "pedestal"
@@ -24,12 +26,15 @@ class Cast:
     """A scene with a model for every object and agent.
 
     ``regions`` maps a workspace to the boxes that make it up, each with the object in whose frame it is given;
-    a workspace that nothing carries is absent.
+    a workspace that nothing carries is absent. ``ranges`` tells of some elements where things are laid out
+    (``position_range``); ``seed`` is the one that the scene asks for, if any.
     """
 
     objects: Mapping[str, ObjectModel]
     agents: Mapping[str, RobotModel]
     regions: Mapping[str, tuple[tuple[str, Region], ...]]
+    ranges: Mapping[str, Numbers]
+    seed: int | None
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -43,7 +48,10 @@ def local_name(curie: str) -> str:
 
 
 def cast_scene(scene: SceneSpec) -> Cast:
-    """Choose the models of a scene; raises ``SceneError`` for a name that no model stands for."""
+    """Choose the models of a scene and configure them.
+
+    Raises ``SceneError`` for a name that no model stands for and for a configuration that cannot be.
+    """
     catalog = load_catalog()
     objects: dict[str, ObjectModel] = {}
     for name in scene.objects:
@@ -59,7 +67,14 @@ def cast_scene(scene: SceneSpec) -> Cast:
         agents[name] = robot
     if all(model.free for model in objects.values()):
         objects[PEDESTAL] = catalog.objects["table"]
-    return Cast(objects, agents, _regions(scene, objects))
+    found = Configured(objects, agents)
+    configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
+    return Cast(objects, agents, _regions(scene, objects), found.ranges, found.seed)
+
+
+def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
+    """Return the objects that a workspace stands for, for anything else the target itself."""
+    return carriers(scene, target) or (target,)
 
 
 def _no_model(kind: str, name: str, prefixes: Iterable[tuple[str, ...]]) -> str:

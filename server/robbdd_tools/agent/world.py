@@ -34,17 +34,18 @@ class World:
     """A compiled scene.
 
     ``model`` is the engine's; ``bases`` are the poses of the robots' bases, ``poses`` those of the objects before
-    they settle.
+    they settle. ``seed`` is the one that decided everything random in it.
     """
 
     model: Any
     cast: Cast
     bases: Mapping[str, Pose]
     poses: Mapping[str, Pose]
+    seed: int
 
 
 def build_world(scene: SceneSpec, seed: int, actor: str | None = None) -> World:
-    """Build the world of a scene; everything random in it follows from ``seed``.
+    """Build the world of a scene; everything random in it follows from ``seed``, or from that of its configuration.
 
     ``actor`` is the agent that objects are laid out for, by default the first. Raises ``SceneError`` when an element
     has no model, a place does not exist or there is no room.
@@ -54,8 +55,9 @@ def build_world(scene: SceneSpec, seed: int, actor: str | None = None) -> World:
     if actor is not None and actor not in bases:
         raise SceneError(f"the scene has no agent '{actor}'")
     base = bases[actor] if actor is not None else next(iter(bases.values()), Pose((0.0, 0.0, TABLE_TOP)))
+    seed = seed if cast.seed is None else cast.seed
     poses = arrange(scene, cast, base, np.random.default_rng(seed))
-    return World(_compile(cast, bases, poses), cast, bases, poses)
+    return World(_compile(cast, bases, poses), cast, bases, poses, seed)
 
 
 def mjcf_path(robot: RobotModel) -> Path:

@@ -216,3 +216,5 @@ class RobotModel:
     stroke: float
     doc: str
     source: str
+    tool_speed: float = 0.5
+    """Largest speed of the tool along a planned path, m/s (paper: what the Panda typically reached)."""

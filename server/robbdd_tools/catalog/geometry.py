@@ -33,6 +33,14 @@ def inside_margin(evidence: Evidence, name: str, workspaces: Iterable[str]) -> F
     return margins
 
 
+def carriers_of(evidence: Evidence, target: str) -> list[str]:
+    """Return the objects that a workspace stands for, for anything else the target itself."""
+    try:
+        return [carrier for carrier, _ in evidence.regions(target)]
+    except KeyError:
+        return [target]
+
+
 def path_length(positions: FloatArray) -> FloatArray:
     """Distance (m) travelled along positions (n, 3) up to each sample, shape (n,), starting at 0."""
     import numpy as np

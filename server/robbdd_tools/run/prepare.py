@@ -10,8 +10,19 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.feature import ScenarioText, elements_of, feature_file_name, feature_pieces
-from robbdd_tools.graph.model import AcceptanceModel, BehaviourClause, Cell, Clause, Fluent, Iri, Story, Variant
-from robbdd_tools.run.protocol import ClauseSpec, Manifest, ScenarioSpec, SceneSpec, write_manifest
+from robbdd_tools.graph.model import (
+    AcceptanceModel,
+    BehaviourClause,
+    Cell,
+    Clause,
+    Fluent,
+    ForAll,
+    Iri,
+    Junction,
+    Story,
+    Variant,
+)
+from robbdd_tools.run.protocol import ClauseSpec, ConfigSpec, Manifest, ScenarioSpec, SceneSpec, write_manifest
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.model import SceneModel
@@ -138,6 +149,7 @@ def _scene(model: AcceptanceModel, variant: Variant, values: Mapping[Iri, Cell])
         curies(scene.carriers),
         curies(scene.contains),
         {model.curie(thing): model.curie(place) for thing, place in _places(variant, values)},
+        tuple(_config(model, (*variant.template.clauses, *variant.clauses), values)),
     )
 
 
@@ -153,6 +165,30 @@ def _places(variant: Variant, values: Mapping[Iri, Cell]) -> Iterator[tuple[Iri,
             thing, place = (_value(clause.arguments[slot], values) for slot in ("object", "workspace"))
             if isinstance(thing, Iri) and isinstance(place, Iri):
                 yield thing, place
+
+
+def _config(model: AcceptanceModel, clauses: tuple[Clause, ...], values: Mapping[Iri, Cell]) -> Iterator[ConfigSpec]:
+    """How the Given clauses want elements set up, each value as the feature text has it."""
+    for clause in clauses:
+        match clause:
+            case Fluent(role="given", predicate="has-config"):
+                target, value = (_value(clause.arguments[slot], values) for slot in ("target", "value"))
+                for element in target if isinstance(target, tuple) else (target,):
+                    yield ConfigSpec(_word(model, element), clause.arguments["name"], _word(model, value))
+            case Junction(operator="and"):
+                yield from _config(model, clause.operands, values)
+            case ForAll():
+                elements = values.get(clause.in_set, model.sets.get(clause.in_set, ()))
+                for element in elements if isinstance(elements, tuple) else (elements,):
+                    yield from _config(model, clause.clauses, {**values, clause.variable: element})
+            case _:
+                pass
+
+
+def _word(model: AcceptanceModel, cell: Cell) -> str:
+    if isinstance(cell, tuple):
+        return " ".join(_word(model, value) for value in cell)
+    return model.curie(cell) if isinstance(cell, Iri) else " ".join(str(cell).split())
 
 
 def _value(term: Iri | str, values: Mapping[Iri, Cell]) -> Cell:

@@ -15,11 +15,21 @@ MANIFEST = "manifest.json"
 
 
 @dataclass(frozen=True, slots=True)
+class ConfigSpec:
+    """A configuration that a Given clause wants: the element's CURIE, the name, the value as text."""
+
+    target: str
+    name: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
 class SceneSpec:
     """What a scenario's world holds; all names are CURIEs as in the feature text.
 
     ``workspaces`` maps a workspace to the objects that carry it; ``contains`` to the workspaces that lie within
     (a bin's workspace within the table's); ``places`` an object to the workspace where the Given clauses want it.
+    ``config`` is how the Given clauses want it set up.
     """
 
     objects: tuple[str, ...] = ()
@@ -27,6 +37,7 @@ class SceneSpec:
     workspaces: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     contains: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     places: Mapping[str, str] = field(default_factory=dict[str, str])
+    config: tuple[ConfigSpec, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +193,7 @@ def _scenario(entry: dict[str, Any]) -> ScenarioSpec:
             {name: tuple(objects) for name, objects in scene["workspaces"].items()},
             {name: tuple(inner) for name, inner in scene["contains"].items()},
             dict(scene["places"]),
+            tuple(ConfigSpec(**config) for config in scene["config"]),
         ),
         clauses=tuple(ClauseSpec(**clause) for clause in clauses),
         **entry,

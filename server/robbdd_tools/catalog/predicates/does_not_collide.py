@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
-from robbdd_tools.catalog.geometry import path_length
+from robbdd_tools.catalog.geometry import carriers_of, path_length
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -21,11 +21,7 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """
     import numpy as np
 
-    target = str(arguments["target"])
-    try:
-        carriers = [carrier for carrier, _ in evidence.regions(target)]
-    except KeyError:
-        carriers = [target]
+    carriers = carriers_of(evidence, str(arguments["target"]))
     travelled = [path_length(evidence.position(carrier)) for carrier in carriers]
     return LIMIT - np.max(travelled, axis=0)
 

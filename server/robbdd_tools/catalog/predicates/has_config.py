@@ -1,6 +1,39 @@
-"""A target has a configuration value."""
+"""A target has a configuration value: set up before the scenario starts, read back from the world, then compared."""
 
-from robbdd_tools.catalog.api import Kind, Predicate, Slot
+from __future__ import annotations
+
+from math import isclose
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
+from robbdd_tools.catalog.geometry import carriers_of
+from robbdd_tools.catalog.settings import Numbers, setting_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+TOLERANCE = 1e-6
+"""Relative difference that is put down to floating-point numbers."""
+
+
+def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
+    """Return 1 where the value that was read back is the one wanted and -1 elsewhere, shape (n,).
+
+    Raises ``SettingError`` for a name or a value that does not exist.
+    """
+    import numpy as np
+
+    name = str(arguments["name"])
+    setting = setting_of(name)
+    wanted = setting.read(str(arguments["value"]))
+    elements = carriers_of(evidence, str(arguments["target"]))
+    same = all(_same(wanted, setting.read(evidence.setting(element, name))) for element in elements)
+    return np.full(len(evidence.times), 1.0 if same else -1.0)
+
+
+def _same(one: Numbers, other: Numbers) -> bool:
+    return all(isclose(a, b, rel_tol=TOLERANCE, abs_tol=1e-12) for a, b in zip(one, other, strict=True))
+
 
 HAS_CONFIG = Predicate(
     name="has-config",
@@ -13,5 +46,9 @@ HAS_CONFIG = Predicate(
     ),
     sentence='"{target}" has config "{name}" = "{value}"',
     unit="",
-    doc="The target was set up with this value of the named configuration.",
+    doc=(
+        "The target is set up with this value: position_range (m), height_scale, ee_speed (m/s), mass (kg), friction "
+        "or seed."
+    ),
+    evaluate=margin,
 )

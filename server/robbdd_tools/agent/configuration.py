@@ -1,0 +1,121 @@
+"""Sets a scene up as its Given clauses want it, and reads the values back from the world that came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, Vector
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.catalog.settings import NORMAL, SETTINGS, Numbers, SettingError, setting_of, written
+
+if TYPE_CHECKING:
+    from robbdd_tools.agent.simulation import Simulation
+    from robbdd_tools.run.protocol import ConfigSpec, SceneSpec
+
+
+@dataclass(slots=True)
+class Configured:
+    """Models of objects and agents as configured, where things lie (position ranges, m) and the seed, if any."""
+
+    objects: dict[str, ObjectModel]
+    agents: dict[str, RobotModel]
+    ranges: dict[str, Numbers] = field(default_factory=dict[str, Numbers])
+    seed: int | None = None
+
+
+def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, ...]]]) -> None:
+    """Apply configurations, each with the elements that its target stands for.
+
+    Raises ``SceneError`` for a name or value that does not exist, an element that has no such configuration, and
+    two values for one configuration.
+    """
+    known: dict[tuple[str, str], Numbers] = {}
+    for config, elements in wanted:
+        try:
+            value = setting_of(config.name).read(config.value)
+        except SettingError as error:
+            raise SceneError(f"'{config.target}' cannot be configured: {error}") from error
+        for element in ("",) if config.name == "seed" else elements:
+            if known.setdefault((element, config.name), value) != value:
+                other = written(known[element, config.name])
+                raise SceneError(f"'{config.target}' is to have {config.name} = {other} and {config.value}")
+            _apply(found, element, config, value)
+
+
+def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, str], str]:
+    """Return element and name → value of every configuration, as the simulated world has it."""
+    cast, model = simulation.world.cast, simulation.model
+    settings: dict[tuple[str, str], Numbers] = {}
+    for name, thing in cast.objects.items():
+        body = model.body(name)
+        geoms = range(int(body.geomadr[0]), int(body.geomadr[0] + body.geomnum[0]))
+        settings[name, "friction"] = (float(model.geom_friction[geoms[0], 0]),)
+        if thing.free:
+            settings[name, "mass"] = (float(body.mass[0]),)
+        if thing.graspable:
+            settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
+        if thing.free and thing.region is not None:
+            settings[name, "height_scale"] = (_top(model, geoms) / _height(load_catalog().objects[thing.name]),)
+    for name, robot in simulation.robots.items():
+        settings[name, "ee_speed"] = (robot.model.tool_speed,)
+        settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
+    # A seed may be asked for of anything, such as the scene.
+    for name in (*cast.objects, *cast.agents, *(config.target for config in scene.config)):
+        settings[name, "seed"] = (float(simulation.world.seed),)
+    return {pair: written(value) for pair, value in settings.items()}
+
+
+def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) -> None:
+    thing, robot = found.objects.get(element), found.agents.get(element)
+    match config.name:
+        case "seed":
+            found.seed = int(value[0])
+        case "ee_speed" if robot is not None:
+            found.agents[element] = replace(robot, tool_speed=value[0])
+        case "position_range" if robot is not None:
+            found.ranges |= dict.fromkeys(_loose(found), value) | {element: value}
+        case "position_range" if thing is not None and thing.graspable:
+            found.ranges[element] = value
+        case "mass" if thing is not None and thing.free:
+            found.objects[element] = replace(thing, mass=value[0])
+        case "friction" if thing is not None:
+            found.objects[element] = replace(thing, friction=value[0])
+        case "height_scale" if thing is not None and thing.free and thing.region is not None:
+            found.objects[element] = _scaled(thing, value[0])
+        case name if thing is None and robot is None:
+            raise SceneError(f"'{config.target}', which is to have {name} = {config.value}, is not in the scene")
+        case name:
+            raise SceneError(f"'{config.target}' has no {name}: that is of {SETTINGS[name].target}")
+
+
+def _loose(found: Configured) -> list[str]:
+    """What is laid out at random and has no range of its own."""
+    return [name for name in found.objects if found.objects[name].graspable and name not in found.ranges]
+
+
+def _scaled(model: ObjectModel, factor: float) -> ObjectModel:
+    def taller(vector: Vector) -> Vector:
+        return (vector[0], vector[1], factor * vector[2])
+
+    region = model.region
+    return replace(
+        model,
+        shapes=tuple(
+            replace(shape, size=taller(shape.size), position=taller(shape.position)) for shape in model.shapes
+        ),
+        rest_height=factor * model.rest_height,
+        region=None if region is None else Region(taller(region.center), taller(region.half)),
+    )
+
+
+def _height(model: ObjectModel) -> float:
+    """Height (m) of the highest point of a bin above its origin."""
+    return max(shape.position[2] + shape.size[2] for shape in model.shapes)
+
+
+def _top(model: Any, geoms: range) -> float:
+    """Height (m) of the highest point of a bin's geoms in the frame of its body."""
+    return max(float(model.geom_pos[geom, 2] + model.geom_size[geom, 2]) for geom in geoms)

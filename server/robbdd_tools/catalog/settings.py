@@ -1,0 +1,95 @@
+"""The configurations that ``has config`` can set, with their units, and what their values may be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+Numbers = tuple[float, ...]
+"""A value: one number, or the four of a range."""
+
+
+class SettingError(ValueError):
+    """A configuration that does not exist or a value that it cannot have; the message names what there is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """One configuration: ``unit`` of its numbers, what it is of (``target``), the bounds of each number.
+
+    ``words`` are names for common values; ``count`` is how many numbers a value has; ``whole`` allows no fractions.
+    """
+
+    name: str
+    unit: str
+    target: str
+    low: float
+    high: float
+    doc: str
+    count: int = 1
+    whole: bool = False
+    words: tuple[tuple[str, Numbers], ...] = ()
+
+    def read(self, text: str) -> Numbers:
+        """Return the value that a text states; raises ``SettingError``."""
+        named = dict(self.words).get(text.strip())
+        if named is not None:
+            return named
+        try:
+            numbers = tuple(float(part) for part in text.split())
+        except ValueError:
+            numbers = ()
+        fits = all(self.low <= number <= self.high and not (self.whole and number % 1) for number in numbers)
+        ordered = all(low < high for low, high in zip(numbers[::2], numbers[1::2], strict=False))
+        if len(numbers) != self.count or not fits or not ordered:
+            raise SettingError(f"'{self.name}' cannot be '{text}': it is {self._wanted()}")
+        return numbers
+
+    def _wanted(self) -> str:
+        kind = "a whole number" if self.whole else "a number"
+        if self.count > 1:
+            kind = f"{self.count} numbers, each lower bound before its upper one,"
+        unit = f" {self.unit}" if self.unit else ""
+        words = "".join(f", or {word}" for word, _ in self.words)
+        return f"{kind} from {self.low:g} to {self.high:g}{unit}{words}"
+
+
+NORMAL: Numbers = (0.25, 0.60, -0.40, 0.40)
+DENSE: Numbers = (0.35, 0.60, -0.30, 0.30)
+"""Ranges of the paper's experiment: ahead of the robot from, to; to its left from, to, m."""
+_EVERY = (
+    Setting(
+        name="position_range",
+        unit="m",
+        target="an object, or an agent for all objects laid out before it",
+        low=-2.0,
+        high=2.0,
+        doc="where a thing lies at the start, before the base of the acting robot: x from, x to, y from, y to",
+        count=4,
+        words=(("normal", NORMAL), ("dense", DENSE)),
+    ),
+    Setting("height_scale", "", "a bin, or its workspace", 0.2, 3.0, "height as a multiple of the catalog's"),
+    Setting("ee_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool along its planned path"),
+    Setting("mass", "kg", "a loose object", 0.001, 50.0, "mass of the whole object"),
+    Setting("friction", "", "an object", 0.01, 2.0, "coefficient of sliding friction"),
+    Setting("seed", "", "any element", 0, 2**32 - 1, "decides everything random in the scenario", whole=True),
+)
+SETTINGS: Mapping[str, Setting] = MappingProxyType(
+    {setting.name: setting for setting in sorted(_EVERY, key=lambda s: s.name)}
+)
+
+
+def setting_of(name: str) -> Setting:
+    """Return a configuration by name; raises ``SettingError`` that lists the known ones."""
+    if name not in SETTINGS:
+        raise SettingError(f"there is no configuration '{name}'; the known ones are {', '.join(SETTINGS)}")
+    return SETTINGS[name]
+
+
+def written(numbers: Numbers) -> str:
+    """Return a value as a text that reads back to the same numbers."""
+    return " ".join(repr(int(number)) if number.is_integer() else repr(number) for number in numbers)

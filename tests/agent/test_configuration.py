@@ -1,0 +1,120 @@
+"""Configurations are applied before a scenario starts and read back from the world that came of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from agent.worlds import BALL, BIN, BIN_WS, CUBE, OTHER_BIN, PANDA, SCENE, execution, pick_place
+from robbdd_tools.agent.clauses import decide
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.agent.sentences import read_clause
+from robbdd_tools.catalog.objects.bin import HEIGHT
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.protocol import ConfigSpec, SceneSpec
+
+pytestmark = pytest.mark.physics
+
+
+def configured(*wanted: tuple[str, str, str]) -> SceneSpec:
+    return replace(SCENE, config=tuple(ConfigSpec(*one) for one in wanted))
+
+
+def verdict(run: Execution, target: str, name: str, value: str) -> Outcome:
+    clause = read_clause(f'"{target}" has config "{name}" = "{value}" before event "t:start"')
+    return decide(clause, run.measured(clause, run.trace), run.regions, {"t:start"}).outcome
+
+
+def started(scene: SceneSpec = SCENE, seed: int = 1) -> Execution:
+    run = execution([pick_place()], scene, seed)
+    run.advance_until(lambda trace: trace.event_time("t:start") is not None)
+    return run
+
+
+@pytest.mark.parametrize(
+    ("target", "name", "value"),
+    [
+        (CUBE, "mass", "0.2"),
+        (CUBE, "friction", "0.3"),
+        (BIN, "height_scale", "0.8"),
+        (BIN_WS, "height_scale", "1.2"),
+        (PANDA, "ee_speed", "0.25"),
+        (PANDA, "position_range", "dense"),
+        (BALL, "position_range", "0.4 0.5 -0.1 0.1"),
+        (PANDA, "seed", "17"),
+        ("env:bench_scene", "seed", "17"),
+    ],
+)
+def test_a_configuration_holds_once_it_is_applied_and_not_before(target: str, name: str, value: str) -> None:
+    run = started(configured((target, name, value)))
+    assert verdict(run, target, name, value) is Outcome.HOLDS
+    plain = verdict(started(), target, name, value)
+    assert plain is (Outcome.UNKNOWN if target == "env:bench_scene" else Outcome.VIOLATED)
+
+
+def test_the_verdict_comes_from_the_world_and_not_from_the_wish() -> None:
+    run = started(configured((CUBE, "mass", "0.2")))
+    assert run.simulation.model.body(CUBE).mass[0] == pytest.approx(0.2)
+    assert verdict(run, CUBE, "mass", "0.3") is Outcome.VIOLATED
+
+
+def test_a_taller_bin_is_taller_and_so_is_its_workspace() -> None:
+    run = started(configured((BIN, "height_scale", "1.5")))
+    model = run.simulation.model
+    tops = {
+        name: max(float(model.geom_pos[g, 2] + model.geom_size[g, 2]) for g in range(model.ngeom) if owner[g] == body)
+        for name in (BIN, OTHER_BIN)
+        for owner, body in [(model.geom_bodyid, model.body(name).id)]
+    }
+    assert tops == {BIN: pytest.approx(1.5 * HEIGHT), OTHER_BIN: pytest.approx(HEIGHT)}
+    ((_, region),) = run.regions[BIN_WS]
+    assert region.center[2] + region.half[2] == pytest.approx(1.5 * HEIGHT)
+
+
+def test_things_lie_within_the_range_that_is_asked_for() -> None:
+    scene = configured((PANDA, "position_range", "0.35 0.45 0.1 0.3"), (BALL, "position_range", "dense"))
+    for seed in range(5):
+        run = started(scene, seed)
+        x, y, _ = run.trace.positions[0, run.trace.column(CUBE)]
+        assert 0.35 - 1e-3 <= x <= 0.45 + 1e-3
+        assert 0.1 - 1e-3 <= y <= 0.3 + 1e-3
+
+
+def test_a_slower_arm_takes_longer_and_stays_below_its_speed() -> None:
+    ends: list[float] = []
+    for speed in (0.2, 0.5):
+        run = execution([pick_place()], configured((PANDA, "ee_speed", str(speed))))
+        trace = run.advance_until(lambda _: False)
+        tool = trace.positions[:, trace.column(PANDA)]
+        speeds = np.linalg.norm(np.diff(tool, axis=0), axis=1) / np.diff(trace.times)
+        assert speeds.max() < 1.1 * speed
+        ends.append(trace.event_time("t:place-end") or 0.0)
+    assert ends[0] > 1.5 * ends[1] > 0.0
+
+
+def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
+    scene = configured((PANDA, "seed", "5"))
+    one, two, plain = started(scene, 1), started(scene, 2), started(seed=5)
+    assert one.trace.positions[0].tobytes() == two.trace.positions[0].tobytes() == plain.trace.positions[0].tobytes()
+
+
+@pytest.mark.parametrize(
+    ("wanted", "message"),
+    [
+        ([(CUBE, "colour", "red")], "there is no configuration 'colour'; the known ones are ee_speed, friction,"),
+        ([(CUBE, "mass", "heavy")], "'env:cube1' cannot be configured: 'mass' cannot be 'heavy': it is a number"),
+        ([(CUBE, "ee_speed", "1")], "'env:cube1' has no ee_speed: that is of an agent"),
+        ([(PANDA, "mass", "1")], "'env:panda' has no mass: that is of a loose object"),
+        ([("env:bench", "height_scale", "1")], "'env:bench' has no height_scale: that is of a bin, or its workspace"),
+        ([("env:bolt", "mass", "1")], "'env:bolt', which is to have mass = 1, is not in the scene"),
+        ([(CUBE, "mass", "1"), (CUBE, "mass", "2")], "'env:cube1' is to have mass = 1 and 2"),
+        ([(CUBE, "position_range", "1.5 1.6 0 0.1")], "no part of 'env:bench', where 'env:cube1' is to be"),
+    ],
+)
+def test_what_cannot_be_set_up_is_explained(wanted: list[tuple[str, str, str]], message: str) -> None:
+    with pytest.raises(SceneError) as error:
+        execution([pick_place()], configured(*wanted))
+    assert message in str(error.value)

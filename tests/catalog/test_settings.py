@@ -1,0 +1,52 @@
+"""Configurations: names, values, units."""
+
+from __future__ import annotations
+
+import pytest
+
+from robbdd_tools.catalog.settings import DENSE, SETTINGS, Setting, SettingError, setting_of, written
+
+
+@pytest.mark.parametrize("setting", SETTINGS.values(), ids=lambda setting: setting.name)
+def test_every_configuration_says_what_it_is_and_reads_its_own_values(setting: Setting) -> None:
+    assert setting.doc
+    assert setting.target
+    assert setting.low < setting.high
+    value = (setting.low, setting.high) * (setting.count // 2) if setting.count > 1 else (float(setting.high),)
+    assert setting.read(written(value)) == value
+    assert all(setting.read(word) == numbers for word, numbers in setting.words)
+
+
+def test_the_documented_names_are_known() -> None:
+    assert list(SETTINGS) == ["ee_speed", "friction", "height_scale", "mass", "position_range", "seed"]
+
+
+def test_an_unknown_name_is_told_the_known_ones() -> None:
+    with pytest.raises(SettingError, match="no configuration 'colour'; the known ones are ee_speed, friction, height"):
+        setting_of("colour")
+
+
+def test_a_range_has_a_word_or_four_numbers() -> None:
+    assert SETTINGS["position_range"].read("dense") == DENSE
+    assert SETTINGS["position_range"].read("0.3 0.5  -0.1 0.2") == (0.3, 0.5, -0.1, 0.2)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "wanted"),
+    [
+        ("mass", "heavy", "'mass' cannot be 'heavy': it is a number from 0.001 to 50 kg"),
+        ("mass", "-1", "'mass' cannot be '-1': it is a number from 0.001 to 50 kg"),
+        ("mass", "nan", "it is a number from 0.001 to 50 kg"),
+        ("mass", "1 2", "it is a number from 0.001 to 50 kg"),
+        ("mass", "", "it is a number from 0.001 to 50 kg"),
+        ("seed", "1.5", "it is a whole number from 0 to 4.29497e"),
+        ("ee_speed", "inf", "it is a number from 0.01 to 3 m/s"),
+        ("position_range", "wide", "or normal, or dense"),
+        ("position_range", "0.3 0.5", "it is 4 numbers, each lower bound before its upper one, from -2 to 2 m"),
+        ("position_range", "0.5 0.3 -0.1 0.1", "each lower bound before its upper one"),
+    ],
+)
+def test_a_value_of_the_wrong_type_is_told_what_it_can_be(name: str, text: str, wanted: str) -> None:
+    with pytest.raises(SettingError) as error:
+        SETTINGS[name].read(text)
+    assert wanted in str(error.value)
