@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo test setup lint test-python test-client test-editors bench clean
+.PHONY: demo test setup lint test-python test-client test-editors fuzz bench clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -31,6 +31,11 @@ test-editors: $(READY) $(CLIENT_READY)
 	tests/editors/workbench/setup.sh
 	cd $(CLIENT) && npm run --silent package
 	tests/editors/workbench/run.sh
+
+# Edits models at random for as long as one likes: make fuzz SEQUENCES=100000
+SEQUENCES ?= 20000
+fuzz: $(READY)
+	ROBBDD_FUZZ=$(SEQUENCES) $(BIN)/pytest -q tests/names/test_incremental.py
 
 # Measures speed as ratios of one run and writes the figures into docs/performance.md.
 bench: $(READY)

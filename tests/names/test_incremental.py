@@ -1,0 +1,122 @@
+"""After any edits, what is known of a file equals what a cold analysis of the same text finds.
+
+``ROBBDD_FUZZ`` sets the number of edit sequences (``make fuzz`` sets a large one); a failure shrinks to few edits.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from kit import EXAMPLES, MODEL, SCENE
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.names.analysis import FileAnalysis
+from robbdd_tools.names.project import Project
+
+SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "300"))
+PIECES = (
+    "",
+    " ",
+    "\n",
+    "}",
+    "{",
+    "(",
+    ")",
+    '"',
+    "// ",
+    "<",
+    "Event (ns=t) e\n",
+    "Task (ns=t) start\n",
+    "\nScenario Template ",
+    'import "lab.scene"\n',
+    'import "main.bdd"\n',
+    "ns t = 'urn:x:'\n",
+    "obj set (ns=env) parts { object bolt }\n",
+    "before <pick-start>",
+    "<part>",
+    "é🤖",
+    "\r\n",
+)
+
+
+@dataclass(frozen=True)
+class Edit:
+    """Replace some text of one of the files, at a place given as a fraction of its length."""
+
+    file: int
+    place: float
+    length: int
+    text: str
+
+
+def _texts() -> list[dict[str, str]]:
+    """Pairs of model and scene that users would have open together: ours, and foreign ones where there are any."""
+    pairs = [{"main.bdd": MODEL, "lab.scene": SCENE}]
+    folder = EXAMPLES / "pickplace"
+    pairs.append({path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.[bs]*"))})
+    corpus = os.environ.get("ROBBDD_CORPUS")
+    for path in sorted(Path(corpus, "current").glob("*.bdd")) if corpus else []:
+        scene = path.with_name("lab.scene")
+        pairs.append({file.name: file.read_text(encoding="utf-8") for file in (path, scene)})
+    return pairs
+
+
+TEXTS = _texts()
+EDITS = st.builds(
+    Edit,
+    st.integers(0, 1),
+    st.floats(0, 1),
+    st.sampled_from([0, 0, 0, 1, 1, 2, 5, 20, 100, 400]),
+    st.one_of(st.sampled_from(PIECES), st.sampled_from([text for pair in TEXTS for text in pair.values()]).flatmap(
+        lambda text: st.integers(0, len(text)).flatmap(lambda start: st.integers(0, 60).map(lambda n: text[start : start + n]))
+    )),
+)  # fmt: skip
+
+
+def known(project: Project, uri: str) -> object:
+    """Everything that users see of a file."""
+    snapshot = project.snapshot()
+    analysis = snapshot.file(uri)
+    assert isinstance(analysis, FileAnalysis)
+    definitions = {
+        path: (found.span, found.extent, found.kind, found.iri) for path, found in analysis.definitions.items()
+    }
+    targets = [(placed.offset, dict(placed.targets)) for placed in analysis.declarations]
+    return fast_diagnostics(snapshot, uri), definitions, targets, analysis.imports
+
+
+@settings(
+    max_examples=SEQUENCES, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+@given(st.sampled_from(TEXTS), st.lists(EDITS, min_size=4, max_size=16))
+def test_an_edited_project_equals_a_fresh_one(texts: dict[str, str], edits: list[Edit]) -> None:
+    folder = Path("/fuzz")
+    files = {path_to_uri(folder / name): text for name, text in texts.items()}
+    uris = list(files)
+    edited = Project()
+    for uri, text in files.items():
+        edited.open(uri, 0, text)
+    before = dict(files)
+    for version, edit in enumerate(edits, start=1):
+        uri = uris[edit.file % len(uris)]
+        text = files[uri]
+        start = int(edit.place * len(text))
+        files[uri] = text[:start] + edit.text + text[start + edit.length :]
+        _compare(edited, files, uri, version)
+    for uri in uris:
+        files[uri] = before[uri]
+        _compare(edited, files, uri, len(edits) + 1)
+
+
+def _compare(edited: Project, files: dict[str, str], changed: str, version: int) -> None:
+    edited.open(changed, version, files[changed])
+    fresh = Project()
+    for uri, text in files.items():
+        fresh.open(uri, 0, text)
+    for uri in files:
+        assert known(edited, uri) == known(fresh, uri)
