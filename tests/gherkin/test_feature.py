@@ -1,45 +1,21 @@
 """Models become features whose steps the line map finds again."""
 
-from importlib import import_module
-from typing import Any
+from __future__ import annotations
 
-import pytest
-
-from kit import MODEL, SCENE, fixture
-from robbdd_tools.gherkin.feature import FeaturePiece, feature_pieces
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.read import read_model
-
-
-def pieces(text: str, scene: str = SCENE) -> list[FeaturePiece]:
-    case = fixture(f"//- main.bdd\n{text}\n//- lab.scene\n{scene}")
-    model = read_model(build_graph(case.snapshot, case.uri).graph)
-    return [piece for story in model.stories for piece in feature_pieces(model, story)]
-
-
-def feature(text: str) -> str:
-    return "".join(piece.text for piece in pieces(text))
-
-
-def steps(text: str, number: int = 0) -> list[str]:
-    scenario = [piece.scenario for piece in pieces(text) if piece.scenario][number]
-    return [f"{step.keyword} {step.text}" for step in scenario.steps]
-
-
-def edited(old: str, new: str) -> str:
-    assert old in MODEL
-    return MODEL.replace(old, new, 1)
+from gherkin_kit import edited, feature, pieces, steps
+from kit import MODEL, SCENE, STORY
 
 
 def test_a_scenario_lists_its_scene_and_states_its_clauses() -> None:
     text = feature(MODEL)
     assert text.startswith(
-        """Feature: t:fetching
+        """@story=https:;;example.org;t;fetching
+Feature: t:fetching
   As a operator
   I want parts fetched
   So that work goes on
 
-  Scenario: t:bench-to-tray -- 1
+  Background:
     Given a set of objects
       | name |
       | env:bolt |
@@ -54,6 +30,12 @@ def test_a_scenario_lists_its_scene_and_states_its_clauses() -> None:
       | name |
       | env:panda |
       | env:ur10 |
+
+"""
+    )
+    scenario = text[text.index("  Scenario: ") :]
+    assert scenario.startswith(
+        """  Scenario: t:bench-to-tray -- 1
     Given the scene is set up
     Given "env:bolt" is located at "env:bench_ws" before event "t:pick-start"
     When "env:panda" picks "env:bolt" and places it at "env:bench_ws"
@@ -61,6 +43,15 @@ def test_a_scenario_lists_its_scene_and_states_its_clauses() -> None:
 """
     )
     assert text.count("Scenario:") == 4
+
+
+def test_stories_over_several_scenes_list_them_in_each_scenario() -> None:
+    second = STORY[STORY.index("        Scenario ") : STORY.rindex("}")].replace("bench-to-tray", "bare")
+    source = MODEL[: MODEL.rindex("}")] + second.replace("<bench_scene>", "<bare_scene>") + "}\n"
+    text = feature(source, scene=SCENE + "scene (ns=env) bare_scene { obj set <parts> }\n")
+    assert "Background:" not in text
+    bare = text[text.index("  Scenario: t:bare -- 1") :]
+    assert "Given a set of objects\n      | name |\n      | env:bolt |\n      | env:nut |\n" in bare
 
 
 def test_values_that_the_scene_lacks_are_listed_apart() -> None:
@@ -138,13 +129,3 @@ def test_quantifiers_are_unrolled_over_their_sets() -> None:
         "Then \"['env:nut', 'env:bolt']\" are sorted into \"['env:bench_ws', 'env:tray_ws']\""
         ' after event "t:place-end"',
     ]
-
-
-@pytest.mark.parametrize("word", ['a "quoted" word', "a | pipe", "two\nlines"])
-def test_every_feature_is_read_by_behave(word: str) -> None:
-    parse_feature: Any = import_module("behave.parser").parse_feature
-    escaped = word.replace('"', '\\"')
-    text = edited("{ <arms.panda> }", f'{{ "{escaped}" }}')
-    parsed = parse_feature(feature(text))
-    assert parsed is not None
-    assert len(parsed.scenarios) == 4

@@ -2,50 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
-from itertools import takewhile
-from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.gherkin import text
+from robbdd_tools.gherkin.outline import Outline, outline, variable_name
+from robbdd_tools.gherkin.render import Sheet, our_sheet
 from robbdd_tools.gherkin.steps import Step, StepWriter
+from robbdd_tools.gherkin.tables import SceneTable, extra_elements, members, scene_tables, variable_table
 from robbdd_tools.gherkin.variations import Binding, bindings
-from robbdd_tools.graph.model import AcceptanceModel, Cell, Clause, Iri, Story, Variant
+from robbdd_tools.graph.model import AcceptanceModel, Clause, Iri, Story, Variant
 
-if TYPE_CHECKING:
-    from jinja2 import Template
-
-
-@dataclass(frozen=True, slots=True)
-class SceneTable:
-    """A scene step with its one-column table of names."""
-
-    title: str
-    names: tuple[str, ...]
+Numbered = tuple[int, Binding]
+"""The number of a scenario within its variation, from 1, and its values."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoryHeader:
-    """What the feature line and its narrative say."""
+    """What stands above the scenarios. ``background`` holds the scene tables that all scenarios share."""
 
     name: str
+    iri: Iri
     role: str
     feature: str
     benefit: str
+    tags: tuple[str, ...]
+    background: tuple[SceneTable, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class VariantHeader:
+    """What the scenarios of a variant share.
+
+    ``columns`` names its variables; ``tables`` are those of its scene that the background lacks. ``outline`` states
+    all scenarios at once, ``None`` where that is not possible.
+    """
+
+    name: str
+    iri: Iri
+    template: Iri
+    tags: tuple[str, ...]
+    columns: tuple[str, ...]
+    tables: tuple[SceneTable, ...]
+    outline: Outline | None
 
 
 @dataclass(frozen=True, slots=True)
 class ScenarioText:
-    """One scenario: ``number`` counts from 1 within the variant, ``line`` is that of its heading in the feature.
+    """One scenario: ``number`` counts from 1 within the variation, ``line`` is that of its heading in the feature.
 
-    ``lines`` gives the feature line of each step of ``steps``.
+    ``cells`` gives the values as words, in the order of the variant's columns. ``lines`` gives the feature line of
+    each step of ``steps``, 0 for one that the template leaves out. ``tables`` are those that the background lacks.
     """
 
     name: str
     variant: Variant
     number: int
     values: Binding
+    cells: tuple[str, ...]
+    tags: tuple[str, ...]
     tables: tuple[SceneTable, ...]
     steps: tuple[Step, ...]
     line: int = 0
@@ -54,25 +70,30 @@ class ScenarioText:
 
 @dataclass(frozen=True, slots=True)
 class FeaturePiece:
-    """A run of text of one feature: its head, or one scenario."""
+    """A run of text of one feature: its head, the head of a variant, one scenario, or its end."""
 
     text: str
     scenario: ScenarioText | None
 
 
-def feature_pieces(model: AcceptanceModel, story: Story) -> Iterator[FeaturePiece]:
-    """Yield the feature of a story piece by piece, in written order, in constant memory."""
-    writer = StepWriter(model, load_catalog())
-    header = StoryHeader(model.curie(story.iri), story.role, story.feature, story.benefit)
-    text = _render("feature", {"story": header})
-    yield FeaturePiece(text, None)
-    line = text.count("\n") + 1
-    for variant in story.variants:
-        for number, binding in enumerate(bindings(variant.variation), start=1):
-            scenario = _scenario(writer, variant, number, binding)
-            text = _render("scenario", {"scenario": scenario})
-            yield FeaturePiece(text, _located(scenario, text, line))
-            line += text.count("\n")
+def every_scenario(variant: Variant) -> Iterator[Numbered]:
+    """Yield all scenarios of a variant."""
+    return enumerate(bindings(variant.variation), start=1)
+
+
+def feature_pieces(
+    model: AcceptanceModel,
+    story: Story,
+    scenarios: Callable[[Variant], Iterable[Numbered]] = every_scenario,
+    sheet: Sheet | None = None,
+) -> Iterator[FeaturePiece]:
+    """Yield the feature of a story piece by piece, in written order, in constant memory.
+
+    ``scenarios`` selects the scenarios of each variant; ``sheet`` is the template, our default when ``None``. Raises
+    ``TemplateProblem``.
+    """
+    writer = _FeatureWriter(StepWriter(model, load_catalog()), sheet or our_sheet(), story)
+    return writer.pieces(scenarios)
 
 
 def feature_file_name(model: AcceptanceModel, story: Story) -> str:
@@ -81,82 +102,138 @@ def feature_file_name(model: AcceptanceModel, story: Story) -> str:
     return "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in name) + ".feature"
 
 
-def _scenario(writer: StepWriter, variant: Variant, number: int, binding: Binding) -> ScenarioText:
-    steps = tuple(writer.steps(_in_order(variant), dict(binding)))
-    name = f"{writer.model.curie(variant.iri)} -- {number}"
-    return ScenarioText(name, variant, number, binding, _tables(writer.model, variant, binding), steps)
+class _FeatureWriter:
+    """Keeps count of the lines of one feature."""
+
+    def __init__(self, writer: StepWriter, sheet: Sheet, story: Story) -> None:
+        self._writer = writer
+        self._sheet = sheet
+        self._story = story
+        self._line = 1
+        shared = {scene_tables(writer, variant.scene) for variant in story.variants}
+        self._background = shared.pop() if len(shared) == 1 else ()
+
+    def pieces(self, scenarios: Callable[[Variant], Iterable[Numbered]]) -> Iterator[FeaturePiece]:
+        story = {"story": self._header()}
+        yield from self._plain("feature", story)
+        for variant in self._story.variants:
+            writer = _VariantWriter(self._writer, variant, self._background, self._sheet.has("variant"))
+            values = {**story, "variant": writer.header}
+            first = self._line
+            shared: tuple[int, ...] = ()
+            for piece in self._plain("variant", values):
+                if writer.header.outline is not None:
+                    shared = _places(piece.text, writer.header.outline.steps, first)
+                yield piece
+            for number, binding in scenarios(variant):
+                scenario = writer.scenario(number, binding)
+                rendered = self._sheet.render("scenario", {**values, "scenario": scenario})
+                yield self._advanced(FeaturePiece(rendered, _located(scenario, rendered, self._line, shared)))
+        yield from self._plain("end", story)
+
+    def _plain(self, block: str, values: Mapping[str, object]) -> Iterator[FeaturePiece]:
+        rendered = self._sheet.render(block, values)
+        if rendered:
+            yield self._advanced(FeaturePiece(rendered, None))
+
+    def _advanced(self, piece: FeaturePiece) -> FeaturePiece:
+        self._line += piece.text.count("\n")
+        return piece
+
+    def _header(self) -> StoryHeader:
+        story = self._story
+        name = text.line(self._writer.curie(story.iri))
+        role, feature, benefit = map(text.line, (story.role, story.feature, story.benefit))
+        tags = (text.tag("story", story.iri),)
+        return StoryHeader(name, story.iri, role, feature, benefit, tags, self._background)
+
+
+class _VariantWriter:
+    """Makes the scenarios of one variant; ``outlined`` asks for its outline."""
+
+    def __init__(
+        self, writer: StepWriter, variant: Variant, background: tuple[SceneTable, ...], outlined: bool
+    ) -> None:
+        self._writer = writer
+        self._variant = variant
+        self._clauses = _in_order(variant)
+        self._members = members(variant.scene)
+        self._tables = () if background else scene_tables(writer, variant.scene)
+        self._tags: dict[Iri, str] = {}
+        variables = variant.variation.variables
+        self.header = VariantHeader(
+            text.line(writer.curie(variant.iri)),
+            variant.iri,
+            variant.template.iri,
+            (text.tag("variant", variant.iri), text.tag("template", variant.template.iri)),
+            tuple(variable_name(variable) for variable in variables),
+            self._tables,
+            outline(writer, self._clauses, variant.variation, self._members) if outlined else None,
+        )
+
+    def scenario(self, number: int, values: Binding) -> ScenarioText:
+        """Return one scenario, not yet placed in a feature."""
+        cells = tuple(values.values())
+        steps = tuple(self._writer.steps(self._clauses, values))
+        extra = extra_elements(cells, self._writer.model.kinds, self._members)
+        return ScenarioText(
+            f"{self.header.name} -- {number}",
+            self._variant,
+            number,
+            values,
+            tuple(text.cell(self._writer.word(cell)) for cell in cells),
+            (*self.header.tags, *self._clause_tags(steps)),
+            (*self._tables, *variable_table(self._writer, extra)),
+            steps,
+        )
+
+    def _clause_tags(self, steps: Iterable[Step]) -> Iterator[str]:
+        for clause in dict.fromkeys(step.clause for step in steps):
+            found = self._tags.get(clause)
+            if found is None:
+                found = self._tags[clause] = text.tag("clause", clause)
+            yield found
 
 
 def _in_order(variant: Variant) -> tuple[Clause, ...]:
     """Template's before the variant's in each role: what is given, what happens, what then holds."""
-    own = [(getattr(clause, "role", "when"), clause) for clause in variant.clauses]
-    template = variant.template.clauses
-    given = tuple(takewhile(lambda clause: getattr(clause, "role", "") == "given", template))
-    return (
-        *given,
-        *(clause for role, clause in own if role == "given"),
-        *(clause for role, clause in own if role == "when"),
-        *template[len(given) :],
-        *(clause for role, clause in own if role == "then"),
-    )
+    clauses = (*variant.template.clauses, *variant.clauses)
+    return tuple(clause for role in ("given", "when", "then") for clause in clauses if _role(clause) == role)
 
 
-def _tables(model: AcceptanceModel, variant: Variant, binding: Binding) -> tuple[SceneTable, ...]:
-    scene = variant.scene
-    members = {*scene.objects, *scene.workspaces, *scene.agents}
-    extra = tuple(element for element in elements_of(binding) if element in model.kinds and element not in members)
-    titled = (
-        ("a set of objects", scene.objects),
-        ("a set of workspaces", scene.workspaces),
-        ("a set of agents", scene.agents),
-        ("variable scene elements", extra),
-    )
-    return tuple(
-        SceneTable(title, tuple(_cell(model.curie(name)) for name in names)) for title, names in titled if names
-    )
+def _role(clause: Clause) -> str:
+    # What happens, and a body that is repeated, has no role of its own.
+    return getattr(clause, "role", "when")
 
 
-def elements_of(binding: Mapping[Iri, Cell]) -> tuple[Iri, ...]:
-    """Return the IRIs among the values of a scenario, sets included, each once, in order."""
-    found: dict[Iri, None] = {}
-    for cell in binding.values():
-        for value in cell if isinstance(cell, tuple) else (cell,):
-            if isinstance(value, Iri):
-                found.setdefault(value)
-    return tuple(found)
+def _located(scenario: ScenarioText, rendered: str, first_line: int, shared: tuple[int, ...]) -> ScenarioText:
+    """Find the lines of a scenario's heading and steps in its rendered text.
 
-
-def _cell(text: str) -> str:
-    return text.replace("\\", "\\\\").replace("|", "\\|")
-
-
-def _located(scenario: ScenarioText, text: str, first_line: int) -> ScenarioText:
-    """Find the lines of a scenario's heading and steps in its rendered text."""
-    wanted = [f"{step.keyword} {step.text}" for step in scenario.steps]
+    One that has no steps of its own, a row of an outline, has those of the outline (``shared``).
+    """
     heading = 0
-    lines: list[int] = []
-    for number, line in enumerate(text.split("\n"), start=first_line):
-        stripped = line.strip()
-        if not heading and stripped.endswith(scenario.name):
+    for number, told in enumerate(rendered.split("\n"), start=first_line):
+        if told.strip() and (not heading or told.rstrip().endswith(scenario.name)):
             heading = number
-        elif len(lines) < len(wanted) and stripped == wanted[len(lines)]:
-            lines.append(number)
-    return replace(scenario, line=heading, lines=tuple(lines))
+            if told.rstrip().endswith(scenario.name):
+                break
+    lines = _places(rendered, scenario.steps, first_line)
+    if shared and not any(lines):
+        lines = shared
+    return replace(scenario, line=heading, lines=lines)
 
 
-def _render(block: str, values: dict[str, object]) -> str:
-    template = _template()
-    return "".join(template.blocks[block](template.new_context(values)))
-
-
-@cache
-def _template() -> Template:
-    from jinja2 import PackageLoader, StrictUndefined
-    from jinja2.sandbox import SandboxedEnvironment
-
-    loader = PackageLoader("robbdd_tools.gherkin", "templates")
-    # Feature files are plain text: HTML escaping would corrupt the names.
-    environment = SandboxedEnvironment(
-        loader=loader, undefined=StrictUndefined, autoescape=False, keep_trailing_newline=True
-    )
-    return environment.get_template("default.feature.jinja")
+def _places(rendered: str, steps: tuple[Step, ...], first_line: int) -> tuple[int, ...]:
+    """Return the line of each step, 0 for one that is not there; steps stand in their order."""
+    found: list[int] = []
+    lines = enumerate(rendered.split("\n"), start=first_line)
+    written = [(number, told.strip()) for number, told in lines]
+    start = 0
+    for step in steps:
+        place = next((at for at in range(start, len(written)) if written[at][1].endswith(step.text)), None)
+        if place is None:
+            found.append(0)
+        else:
+            found.append(written[place][0])
+            start = place + 1
+    return tuple(found)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cache
+from typing import TYPE_CHECKING
 
-from robbdd_tools.catalog.registry import Catalog
+from robbdd_tools.gherkin import text
 from robbdd_tools.graph.model import (
     AcceptanceModel,
     BehaviourClause,
@@ -22,6 +24,9 @@ from robbdd_tools.graph.model import (
     TextFluent,
 )
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.registry import Catalog
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +46,18 @@ class AnyOf:
     elements: tuple[str, ...]
 
 
-Filler = Cell | AnyOf
+@dataclass(frozen=True, slots=True)
+class Placeholder:
+    """What a variable stands for in a Scenario Outline: the name of its column."""
+
+    name: str
+
+
+Filler = Cell | AnyOf | Placeholder
+
+
+class UnknownElements(Exception):
+    """A set whose elements a Scenario Outline leaves open would have to be gone through."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,93 +66,167 @@ class StepWriter:
 
     model: AcceptanceModel
     catalog: Catalog
+    _curies: dict[str, str] = field(default_factory=dict[str, str])
+
+    def curie(self, iri: str) -> str:
+        """Return the short form of an IRI; a model has few and writes them often."""
+        found = self._curies.get(iri)
+        if found is None:
+            found = self._curies[iri] = self.model.curie(iri)
+        return found
 
     def steps(self, clauses: tuple[Clause, ...], values: Mapping[Iri, Filler]) -> Iterator[Step]:
         """Yield the steps of clauses in order; ``for all`` is repeated per element, ``and`` becomes several steps."""
         for clause in clauses:
             match clause:
                 case ForAll():
-                    for element in self._elements(clause.in_set, values):
+                    for element in self.elements(clause.in_set, values):
                         yield from self.steps(clause.clauses, {**values, clause.variable: element})
-                case Exists():
-                    some = AnyOf(tuple(self.word(element) for element in self._elements(clause.in_set, values)))
-                    yield from self.steps(clause.clauses, {**values, clause.variable: some})
+                case Exists() if self._is_one_choice(clause, values):
+                    yield from self.steps(clause.clauses, self._some(clause, values))
                 case Junction(operator="and"):
                     yield from self.steps(clause.operands, values)
-                case BehaviourClause():
+                case BehaviourClause() | EventClause():
                     yield Step("When", self.sentence(clause, values), clause.iri, "when")
-                case EventClause():
-                    yield Step("When", f'event "{self.model.curie(clause.event)}" occurs', clause.iri, "when")
                 case _:
                     yield Step(clause.role.capitalize(), self.sentence(clause, values), clause.iri, clause.role)
 
-    def sentence(self, clause: Clause, values: Mapping[Iri, Filler]) -> str:
-        """Return the sentence of one clause with its values."""
+    def sentence(self, clause: Clause, values: Mapping[Iri, Filler], *, within: bool = False) -> str:
+        """Return the sentence of one clause with its values; ``within`` tells that it is a part of a group."""
         match clause:
             case Fluent():
-                text = self._filled(self.catalog.predicates[clause.predicate].sentence, clause.arguments, values)
-                return f"{text} {self.time(clause.time)}"
+                filled = self._filled(self.catalog.predicates[clause.predicate].sentence, clause.arguments, values)
+                return f"{filled} {self.time(clause.time)}"
             case BehaviourClause():
                 return self._filled(self.catalog.behaviours[clause.behaviour].sentence, clause.arguments, values)
             case TextFluent():
-                return f"{self._filled(clause.template, clause.arguments, values)} {self.time(clause.time)}"
+                filled = self._filled(text.free(clause.template), clause.arguments, values)
+                return f"{text.guarded(filled) if within else filled} {self.time(clause.time)}"
             case TextClause():
-                return f"{_one_line(clause.text)} {self.time(clause.time)}"
-            case Junction(operator="not"):
-                return f"not ( {self.sentence(clause.operands[0], values)} )"
-            case Junction():
-                operands = f" {clause.operator} ".join(self.sentence(part, values) for part in clause.operands)
-                return f"( {operands} )"
-            case Exists():
-                some = AnyOf(tuple(self.word(element) for element in self._elements(clause.in_set, values)))
-                inner = {**values, clause.variable: some}
-                return " and ".join(self.sentence(part, inner) for part in clause.clauses)
-            case ForAll():
-                each = ({**values, clause.variable: element} for element in self._elements(clause.in_set, values))
-                return " and ".join(self.sentence(part, inner) for inner in each for part in clause.clauses)
+                words = text.free(clause.text)
+                return f"{text.guarded(words) if within else words} {self.time(clause.time)}"
             case EventClause():
-                return f'event "{self.model.curie(clause.event)}" occurs'
+                return f'event "{self.curie(clause.event)}" occurs'
+            case Junction(operator="not"):
+                return f"not ( {self._joined('and', clause.operands, values)} )"
+            case Junction():
+                return f"( {self._joined(clause.operator, clause.operands, values)} )"
+            case Exists() if self._is_one_choice(clause, values):
+                return self._all_of(clause.clauses, self._some(clause, values))
+            case Exists():
+                return self._grouped(
+                    "or", [self._all_of(clause.clauses, inner) for inner in self._each(clause, values)]
+                )
+            case ForAll():
+                return self._grouped(
+                    "and", [self._all_of(clause.clauses, inner) for inner in self._each(clause, values)]
+                )
 
     def time(self, constraint: TimeConstraint) -> str:
         """Return the words of a time constraint."""
         match constraint:
             case During(start, end):
-                return f'from "{self.model.curie(start)}" until "{self.model.curie(end)}"'
+                return f'from "{self.curie(start)}" until "{self.curie(end)}"'
             case Before(event, horizon):
-                return f'{_within(horizon)}before event "{self.model.curie(event)}"'
+                return f'{_within(horizon)}before event "{self.curie(event)}"'
             case After(event, horizon):
-                return f'{_within(horizon)}after event "{self.model.curie(event)}"'
+                return f'{_within(horizon)}after event "{self.curie(event)}"'
 
     def word(self, value: Filler) -> str:
         """Return a value as it stands inside the quotes of a sentence."""
         match value:
-            case AnyOf(elements):
-                return f"any of {list(elements)}"
             case Iri():
-                return self.model.curie(value)
+                return self.curie(value)
+            case str():
+                return text.inside_quotes(value)
+            case AnyOf(elements):
+                return f"any of {text.set_inside_quotes(elements)}"
+            case Placeholder(name):
+                return f"<{name}>"
             case tuple():
-                return str([self.word(element) for element in value])
+                return text.set_inside_quotes(self._plain(element) for element in value)
             case _:
-                return _one_line(str(value)).replace('"', "'")
+                return str(value)
+
+    def elements(self, in_set: Iri, values: Mapping[Iri, Filler]) -> tuple[Cell, ...]:
+        """Return the elements of a set: the value of a variable, or a constant set; raises ``UnknownElements``."""
+        match values.get(in_set, self.model.sets.get(in_set, ())):
+            case AnyOf(elements):
+                return elements
+            case Placeholder():
+                raise UnknownElements
+            case tuple() as several:
+                return several
+            case one:
+                return (one,)
+
+    def _joined(self, operator: str, parts: tuple[Clause, ...], values: Mapping[Iri, Filler]) -> str:
+        return f" {operator} ".join(self.sentence(part, values, within=True) for part in parts)
+
+    def _all_of(self, parts: tuple[Clause, ...], values: Mapping[Iri, Filler]) -> str:
+        return self._grouped("and", [self.sentence(part, values, within=True) for part in parts])
+
+    def _grouped(self, operator: str, sentences: list[str]) -> str:
+        return sentences[0] if len(sentences) == 1 else f"( {f' {operator} '.join(sentences)} )"
+
+    def _some(self, exists: Exists, values: Mapping[Iri, Filler]) -> Mapping[Iri, Filler]:
+        elements = tuple(self._plain(element) for element in self.elements(exists.in_set, values))
+        return {**values, exists.variable: AnyOf(elements)}
+
+    def _each(self, quantified: Exists | ForAll, values: Mapping[Iri, Filler]) -> Iterator[Mapping[Iri, Filler]]:
+        for element in self.elements(quantified.in_set, values):
+            yield {**values, quantified.variable: element}
+
+    def _is_one_choice(self, exists: Exists, values: Mapping[Iri, Filler]) -> bool:
+        """Whether *any of* in one place says all: otherwise each choice has to be written out and joined by *or*.
+
+        One element must satisfy all clauses, and "some element is not there" is not "it is not any of them".
+        """
+        if not self.elements(exists.in_set, values):
+            return True
+        about = [clause for clause in exists.clauses if mentions(clause, exists.variable)]
+        return not about or (len(about) == 1 and _mentions_once(about[0], exists.variable))
+
+    def _plain(self, value: Filler) -> str:
+        return self.curie(value) if isinstance(value, Iri) else str(value)
 
     def _filled(self, sentence: str, arguments: Mapping[str, Iri | str], values: Mapping[Iri, Filler]) -> str:
-        words = {
-            slot: self.word(values.get(term, term) if isinstance(term, Iri) else term)
-            for slot, term in arguments.items()
-        }
-        # Not str.format: a user's template must not reach attributes or items of our objects.
-        return re.sub(r"\{(\w[\w-]*)\}", lambda match: words.get(match[1], match[0]), _one_line(sentence))
+        parts = _slots(sentence)
+        filled = list(parts)
+        for index in range(1, len(parts), 2):
+            term = arguments.get(parts[index])
+            if term is None:
+                filled[index] = f"{{{parts[index]}}}"
+            else:
+                filled[index] = self.word(values.get(term, term) if isinstance(term, Iri) else term)
+        return "".join(filled)
 
-    def _elements(self, in_set: Iri, values: Mapping[Iri, Filler]) -> tuple[Cell, ...]:
-        value = values.get(in_set, self.model.sets.get(in_set, ()))
-        if isinstance(value, AnyOf):
-            return value.elements
-        return value if isinstance(value, tuple) else (value,)
+
+def mentions(clause: Clause, variable: Iri) -> bool:
+    """Tell whether a clause speaks of a variable."""
+    match clause:
+        case Fluent() | TextFluent() | BehaviourClause():
+            return variable in clause.arguments.values()
+        case Junction():
+            return any(mentions(operand, variable) for operand in clause.operands)
+        case ForAll() | Exists():
+            return clause.in_set == variable or any(mentions(part, variable) for part in clause.clauses)
+        case TextClause() | EventClause():
+            return False
+
+
+def _mentions_once(clause: Clause, variable: Iri) -> bool:
+    if isinstance(clause, Fluent | TextFluent):
+        return list(clause.arguments.values()).count(variable) == 1
+    return isinstance(clause, Exists) and len(clause.clauses) == 1 and _mentions_once(clause.clauses[0], variable)
+
+
+# Not str.format: a user's template must not reach attributes or items of our objects.
+@cache
+def _slots(sentence: str) -> tuple[str, ...]:
+    """Split a sentence at its ``{slots}``: words and names of slots in turn."""
+    return tuple(re.split(r"\{(\w[\w-]*)\}", sentence))
 
 
 def _within(horizon: float | None) -> str:
-    return "" if horizon is None else f"within {horizon:g} seconds "
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.split())
+    return "" if horizon is None else f"within {repr(horizon).removesuffix('.0')} seconds "

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.gherkin.feature import ScenarioText, elements_of, feature_file_name, feature_pieces
+from robbdd_tools.gherkin.feature import ScenarioText, feature_file_name, feature_pieces
+from robbdd_tools.gherkin.tables import elements_of
 from robbdd_tools.graph.model import (
     AcceptanceModel,
     BehaviourClause,
@@ -134,7 +135,7 @@ def _plain(model: AcceptanceModel, cell: Cell) -> object:
 
 def _scene(model: AcceptanceModel, variant: Variant, values: Mapping[Iri, Cell]) -> SceneSpec:
     scene = variant.scene
-    extra = elements_of(values)
+    extra = elements_of(values.values())
 
     def members(own: tuple[Iri, ...], kind: str) -> tuple[str, ...]:
         added = (element for element in extra if model.kinds.get(element) == kind)

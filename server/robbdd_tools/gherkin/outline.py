@@ -1,0 +1,81 @@
+"""All scenarios of a variant as one Scenario Outline, where its steps differ in nothing but values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+
+from robbdd_tools.gherkin import text
+from robbdd_tools.gherkin.steps import Placeholder, Step, StepWriter, UnknownElements
+from robbdd_tools.gherkin.tables import SceneTable, elements_of
+from robbdd_tools.graph.model import Cell, Clause, Iri, Product, Selection, Table
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """Tables and steps with ``<column>`` where a scenario has its value. ``tags`` are those of the clauses."""
+
+    tags: tuple[str, ...]
+    tables: tuple[SceneTable, ...]
+    steps: tuple[Step, ...]
+
+
+def variable_name(variable: Iri) -> str:
+    """Return the name of a variable as the user wrote it."""
+    return re.split(r"[/#:]", variable)[-1].removeprefix("var-")
+
+
+def outline(
+    writer: StepWriter, clauses: tuple[Clause, ...], variation: Product | Table, present: Collection[Iri]
+) -> Outline | None:
+    """Return the outline of some clauses, ``None`` where a table of values cannot express the scenarios.
+
+    That is so where a quantifier goes through a varying set, where parsers would read a cell in different ways, and
+    where a variable's values are partly in the scene (``present``) and partly not.
+    """
+    columns = {variable: variable_name(variable) for variable in variation.variables}
+    words = [writer.word(cell) for cell in _cells(variation)]
+    if not columns or len(set(columns.values())) < len(columns) or not all(map(_plain, words)):
+        return None
+    values = {variable: Placeholder(name) for variable, name in columns.items()}
+    try:
+        steps = tuple(writer.steps(clauses, values))
+        without = " ".join(step.text for step in writer.steps(clauses, dict.fromkeys(values, "")))
+    except UnknownElements:
+        return None
+    if any(f"<{name}>" in told for name in columns.values() for told in (without, *words)):
+        return None
+    added: list[str] = []
+    for index, name in enumerate(columns.values()):
+        kinds = {_added(writer, cell, present) for cell in _column(variation, index)}
+        if len(kinds) > 1 or kinds == {None}:
+            return None
+        added += [f"<{name}>"] if kinds == {True} else []
+    tables = (SceneTable("variable scene elements", tuple(added)),) if added else ()
+    tags = tuple(text.tag("clause", clause) for clause in dict.fromkeys(step.clause for step in steps))
+    return Outline(tags, tables, steps)
+
+
+def _added(writer: StepWriter, cell: Cell, present: Collection[Iri]) -> bool | None:
+    """Whether a value adds to the scene; ``None`` for a set that does, as it needs several rows."""
+    new = [element for element in elements_of((cell,)) if element in writer.model.kinds and element not in present]
+    return None if new and isinstance(cell, tuple) else bool(new)
+
+
+def _plain(word: str) -> bool:
+    """Whether all parsers read a word in a table cell alike."""
+    return "\\" not in word and word == word.strip() and word != ""
+
+
+def _cells(variation: Product | Table) -> Iterator[Cell]:
+    for index in range(len(variation.variables)):
+        yield from _column(variation, index)
+
+
+def _column(variation: Product | Table, index: int) -> Iterable[Cell]:
+    """Return the values of a variable; of a selection, every element as a set of one."""
+    if isinstance(variation, Table):
+        return (row[index] for row in variation.rows)
+    choices = variation.choices[index]
+    return ((value,) for value in choices.source) if isinstance(choices, Selection) else choices
