@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Literal
 
-from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 
@@ -25,7 +24,12 @@ TIME = (
 NOT, GROUP = r"not \( (?P<inner>.*) \)", r"\( (?P<inner>.*) \)"
 """A negation, and an alternative or enumeration."""
 OCCURS = r'event "(?P<event>[^"]*)" occurs'
+QUOTED = r'(?:[^"\\]|\\.)*'
+"""What stands between double quotes; a backslash takes the meaning from the next character."""
 ANY = "any of "
+_ESCAPE = re.compile(r"\\(?:u([0-9a-f]{4})|(.))")
+_NAMED = {"n": "\n", "r": "\r", "t": "\t"}
+_OPAQUE = re.compile(rf'"{QUOTED}"|\\.')
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,18 +77,17 @@ class Doing:
     arguments: Mapping[str, Filler]
 
 
-def sentence_pattern(sentence: str, slots: tuple[Slot, ...]) -> str:
+def sentence_pattern(sentence: str) -> str:
     """Return the regular expression of a catalog sentence, one named group per slot."""
-    kinds = {slot.name: slot.kind for slot in slots}
     parts = re.split(r"\{(\w+)\}", sentence)
     pieces = [re.escape(text) for text in parts[::2]]
-    groups = [f"(?P<{name}>{_inside(kinds[name])})" for name in parts[1::2]]
+    groups = [f"(?P<{name}>{QUOTED})" for name in parts[1::2]]
     return pieces[0] + "".join(group + piece for group, piece in zip(groups, pieces[1:], strict=True))
 
 
 def fluent_pattern(predicate: Predicate) -> str:
     """Return the regular expression of a step that states a fluent of this predicate."""
-    return f"{sentence_pattern(predicate.sentence, predicate.slots)} {TIME}"
+    return f"{sentence_pattern(predicate.sentence)} {TIME}"
 
 
 def read_clause(text: str) -> Clause:
@@ -130,6 +133,11 @@ def fluents_of(clause: Clause) -> Iterator[Fluent]:
             return
 
 
+def unescaped(text: str) -> str:
+    """Return a string as the user wrote it from what stands for it in a step."""
+    return _ESCAPE.sub(lambda match: chr(int(match[1], 16)) if match[1] else _NAMED.get(match[2], match[2]), text)
+
+
 @cache
 def _fluents() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
     predicates = load_catalog().predicates.values()
@@ -139,12 +147,7 @@ def _fluents() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
 @cache
 def _doings() -> tuple[tuple[Behaviour, re.Pattern[str]], ...]:
     behaviours = load_catalog().behaviours.values()
-    return tuple((word, re.compile(sentence_pattern(word.sentence, word.slots))) for word in behaviours)
-
-
-def _inside(kind: Kind) -> str:
-    """What may stand inside the quotes for a kind of slot: a value may hold anything, a name no quotes."""
-    return ".*?" if kind is Kind.VALUE else r'[^"]*'
+    return tuple((word, re.compile(sentence_pattern(word.sentence))) for word in behaviours)
 
 
 def _fillers(match: re.Match[str], slots: tuple[Slot, ...]) -> dict[str, Filler]:
@@ -153,13 +156,13 @@ def _fillers(match: re.Match[str], slots: tuple[Slot, ...]) -> dict[str, Filler]
 
 def _filler(text: str) -> Filler:
     some = text.startswith(f"{ANY}[")
-    listed = text.removeprefix(ANY) if some else text
-    if not (listed.startswith("[") and listed.endswith("]")):
-        return text
+    listed = unescaped(text.removeprefix(ANY) if some else text)
+    if text.startswith("\\") or not (listed.startswith("[") and listed.endswith("]")):
+        return unescaped(text)
     try:
         value: list[object] = ast.literal_eval(listed)
     except (ValueError, SyntaxError):
-        return text
+        return unescaped(text)
     elements = tuple(str(element) for element in value)
     return AnyOf(elements) if some else elements
 
@@ -195,5 +198,5 @@ def _split(text: str, separator: str) -> list[str]:
 
 
 def _outside_quotes(text: str) -> str:
-    """Blank out everything within double quotes, keeping the length."""
-    return re.sub(r'"[^"]*"', lambda match: '"' + "_" * (len(match[0]) - 2) + '"', text)
+    """Blank out everything within double quotes and what a backslash escapes, keeping the length."""
+    return _OPAQUE.sub(lambda match: "_" * len(match[0]), text)

@@ -33,7 +33,7 @@ def register() -> None:
         _judged_step(behave, NOT)
         _judged_step(behave, GROUP)
         for behaviour in load_catalog().behaviours.values():
-            behave.when(sentence_pattern(behaviour.sentence, behaviour.slots))(_execute)
+            behave.when(sentence_pattern(behaviour.sentence))(_execute)
         behave.when(OCCURS)(_await_event)
     finally:
         matchers.use_step_matcher("parse")
