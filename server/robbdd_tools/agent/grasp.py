@@ -1,4 +1,4 @@
-"""Where a parallel gripper can take hold of an object from above."""
+"""Where a gripper can take hold of an object from above."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ DEPTH = 0.030
 
 @dataclass(frozen=True, slots=True)
 class Grasp:
-    """The tool's position (3,) m, the direction (rad) in which the fingers close, and the object's width there (m).
+    """The tool's position (3,) m, the direction (rad) across the tool, and the object's width there (m).
 
-    ``below`` is how far the object reaches down from the tool, m.
+    Fingers close along that direction. ``below`` is how far the object reaches down from the tool, m.
     """
 
     position: FloatArray
@@ -35,7 +35,9 @@ class Grasp:
     below: float
 
 
-def grasps(name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray, stroke: float) -> list[Grasp]:
+def finger_grasps(
+    name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray, stroke: float
+) -> list[Grasp]:
     """Return the grasps of an object at a pose that a gripper of this ``stroke`` (m) can make.
 
     Raises ``BehaviourError`` when the object is wider than the gripper opens.
@@ -51,6 +53,23 @@ def grasps(name: str, model: ObjectModel, position: FloatArray, rotation: FloatA
         narrowest = min(width for _, width in directions)
         raise BehaviourError(f"{name} is {narrowest:.3f} m wide, the gripper opens {stroke:.3f} m")
     return fitting
+
+
+def suction_grasps(
+    name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray, diameter: float
+) -> list[Grasp]:
+    """Return the grasps of an object at a pose that a cup of this ``diameter`` (m) can make on its top.
+
+    Raises ``BehaviourError`` when the object is smaller than the cup.
+    """
+    shape = model.shapes[0]
+    center = position + rotation @ np.array(shape.position)
+    directions, half_height = _directions(shape, rotation)
+    narrowest = min(width for _, width in directions)
+    if narrowest < diameter:
+        raise BehaviourError(f"{name} is {narrowest:.3f} m wide, the suction cup {diameter:.3f} m")
+    top = np.array([center[0], center[1], float(center[2]) + half_height])
+    return [Grasp(top, angle, narrowest, 2 * half_height) for angle, _ in _all_round(narrowest)]
 
 
 def _directions(shape: Shape, rotation: FloatArray) -> tuple[list[tuple[float, float]], float]:

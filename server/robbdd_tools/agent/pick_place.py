@@ -1,18 +1,18 @@
 """The controller that picks an object from above and places it at a workspace.
 
-It knows the object's pose when it begins and follows its plan from there, feeling only what its fingers hold.
+It knows the object's pose when it begins and follows its plan from there, feeling only what its gripper holds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from robbdd_tools.agent.clearance import Clearance
-from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.errors import BehaviourError
+from robbdd_tools.agent.gripper import Step, gripper_of
 from robbdd_tools.agent.kinematics import Unreachable, arm_of
 from robbdd_tools.agent.motion import ToolPose, plan, present_pose, tool_pose
 from robbdd_tools.agent.reach import TRAVEL, Approach, approaches, at_travel, joints_at
@@ -23,19 +23,10 @@ if TYPE_CHECKING:
     from robbdd_tools.agent.simulation import Simulation
     from robbdd_tools.catalog.api import FloatArray
 
-CLOSING = 0.05
-"""Speed of one finger, m/s."""
-SQUEEZE = 10
-"""Ticks for which a grip must last before the arm moves."""
-PATIENCE = 60
-"""Ticks that the fingers may take beyond their way before the object counts as missed."""
 SLIPPED = 3
 """Ticks in a row without grip that count as a loss."""
 RELEASE = 20
 """Ticks that the open gripper waits before it leaves."""
-
-Step = Iterator[None]
-"""One control tick per item: the controls are set, the world may be stepped."""
 
 
 class PickPlace:
@@ -51,7 +42,8 @@ class PickPlace:
         self._limits: FloatArray = np.array(self._robot.model.velocity_limits)
         self._emit = emit
         self._joints: FloatArray = self._arm.home.copy()
-        self._opening = self._robot.model.gripper_open
+        self._gripper = gripper_of(self._robot.model)
+        self.control = self._robot.model.gripper_open
         self._held: str | None = None
         self._grasp: Grasp | None = None
 
@@ -59,12 +51,11 @@ class PickPlace:
         """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``."""
         self._emit("pick-start")
         best = self._choose_grasp(name)
-        yield from self._open()
-        yield from self._move(best.above)
-        yield from self._move(best.at)
-        yield from self._close(name)
+        yield from self._gripper.release(self)
+        yield from self.move(best.above)
+        yield from self._gripper.take(self, best.at, name)
         self._held, self._grasp = name, best.grasp
-        yield from self._move(self._at_travel(best.at))
+        yield from self.move(self._at_travel(best.at))
         self._emit("pick-end")
 
     def place(self, name: str, workspace: str) -> Step:
@@ -73,12 +64,12 @@ class PickPlace:
             raise BehaviourError(f"{self._robot.name} does not hold {name}")
         self._emit("place-start")
         down = self._choose_target(name, workspace, self._grasp)
-        yield from self._move(self._at_travel(down))
-        yield from self._move(down)
+        yield from self.move(self._at_travel(down))
+        yield from self.move(down)
         self._held = None
-        yield from self._open()
-        yield from self._wait(RELEASE)
-        yield from self._move(self._at_travel(down))
+        yield from self._gripper.release(self)
+        yield from self.wait(RELEASE)
+        yield from self.move(self._at_travel(down))
         self._emit("place-end")
 
     def pick_place(self, name: str, workspace: str) -> Step:
@@ -89,9 +80,9 @@ class PickPlace:
     def withdraw(self) -> Step:
         """Open the gripper and leave upwards, after something went wrong."""
         self._held = None
-        yield from self._open()
+        yield from self._gripper.release(self)
         try:
-            yield from self._move(self._at_travel(present_pose(self._arm, self._joints)))
+            yield from self.move(self._at_travel(present_pose(self._arm, self._joints)))
         except BehaviourError:
             return
 
@@ -133,11 +124,25 @@ class PickPlace:
     def _at_travel(self, pose: ToolPose) -> ToolPose:
         return at_travel(self._robot.base, pose)
 
-    def _move(self, goal: ToolPose) -> Step:
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self._simulation.time
+
+    def feels(self, name: str) -> bool:
+        """Whether the gripping faces hold an object."""
+        return self._simulation.holds(self._robot.name, name)
+
+    def move(self, goal: ToolPose, speed: float | None = None, until: Callable[[], bool] | None = None) -> Step:
+        """Move the tool, no faster than ``speed`` (m/s), until something is the case.
+
+        Raises ``BehaviourError`` when the way leads beyond the joint limits or what is held gets lost.
+        """
+        limit = self._robot.model.tool_speed
         try:
-            motion = plan(self._arm, self._joints, goal, self._limits, self._robot.model.tool_speed)
+            motion = plan(self._arm, self._joints, goal, self._limits, min(limit, speed or limit))
         except Unreachable as error:
-            where = f"at {self._simulation.time:.2f} s, {error}"
+            where = f"at {self.time:.2f} s, {error}"
             raise BehaviourError(
                 f"{self._robot.name} cannot follow its path within its joint limits {where}"
             ) from error
@@ -146,37 +151,17 @@ class PickPlace:
             self._joints = joints
             self._set(joints, velocities)
             yield
-            missing = 0 if self._feels() else missing + 1
-            if missing == SLIPPED:
-                raise BehaviourError(f"gripper lost {self._held} at {self._simulation.time:.2f} s")
-
-    def _feels(self) -> bool:
-        return self._held is None or self._simulation.holds(self._robot.name, self._held)
-
-    def _close(self, name: str) -> Step:
-        held = 0
-        closed = self._robot.model.gripper_closed
-        for _ in range(int((self._opening - closed) / (CLOSING * TICK)) + PATIENCE):
-            self._opening = max(closed, self._opening - CLOSING * TICK)
-            self._set(self._joints, np.zeros_like(self._joints))
-            yield
-            held = held + 1 if self._simulation.holds(self._robot.name, name) else 0
-            if held == SQUEEZE:
-                self._opening = closed
-                yield from self._wait(SQUEEZE)
+            if until is not None and until():
                 return
-        raise BehaviourError(f"gripper closed beside {name} at {self._simulation.time:.2f} s")
+            missing = 0 if self._held is None or self.feels(self._held) else missing + 1
+            if missing == SLIPPED:
+                raise BehaviourError(f"gripper lost {self._held} at {self.time:.2f} s")
 
-    def _open(self) -> Step:
-        goal = self._robot.model.gripper_open
-        while self._opening < goal:
-            self._opening = min(goal, self._opening + CLOSING * TICK)
-            yield from self._wait(1)
-
-    def _wait(self, ticks: int) -> Step:
+    def wait(self, ticks: int) -> Step:
+        """Stay in place."""
         for _ in range(ticks):
             self._set(self._joints, np.zeros_like(self._joints))
             yield
 
     def _set(self, joints: FloatArray, velocities: FloatArray) -> None:
-        self._simulation.command(self._robot, joints + self._robot.lead * velocities, self._opening)
+        self._simulation.command(self._robot, joints + self._robot.lead * velocities, self.control)

@@ -12,7 +12,8 @@ import numpy as np
 from robbdd_tools.agent.clearance import Clearance
 from robbdd_tools.agent.engine import mujoco
 from robbdd_tools.agent.errors import BehaviourError
-from robbdd_tools.agent.grasp import Grasp, grasps
+from robbdd_tools.agent.grasp import Grasp
+from robbdd_tools.agent.gripper import gripper_of
 from robbdd_tools.agent.kinematics import Unreachable, arm_of
 from robbdd_tools.agent.motion import ToolPose, frame_of, tool_pose
 
@@ -68,7 +69,7 @@ def approaches(simulation: Simulation, robot: Robot, name: str, data: Any = None
     body = data.body(name)
     position, rotation = body.xpos.copy(), body.xmat.reshape(3, 3).copy()
     clearance = Clearance(simulation, robot, name, data)
-    for grasp in grasps(name, objects[name], position, rotation, robot.model.stroke):
+    for grasp in gripper_of(robot.model).grasps(name, objects[name], position, rotation):
         at = tool_pose(robot.base, grasp.position, grasp.closing)
         above = at_travel(robot.base, at)
         try:

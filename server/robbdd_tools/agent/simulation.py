@@ -10,6 +10,7 @@ import numpy as np
 from robbdd_tools.agent.engine import SUBSTEPS, TICK, mujoco
 from robbdd_tools.agent.errors import SimulationError
 from robbdd_tools.agent.recorder import Recorder
+from robbdd_tools.catalog.api import GripperKind
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.world import World
@@ -38,14 +39,20 @@ class Robot:
         joints = [model.joint(f"{name}/{joint}") for joint in robot.joints]
         self.joints = np.array([joint.qposadr[0] for joint in joints])
         self.speeds = np.array([joint.dofadr[0] for joint in joints])
-        driven = {int(model.actuator_trnid[motor, 0]): motor for motor in range(model.nu)}
+        on_joint = np.flatnonzero(model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_JOINT))
+        driven = {int(model.actuator_trnid[motor, 0]): int(motor) for motor in on_joint}
         self.motors = np.array([driven[joint.id] for joint in joints])
         self.gripper = int(model.actuator(f"{name}/{robot.gripper_actuator}").id)
         self.tool = int(model.site(f"{name}/{robot.tool_site}").id)
         self.pads = tuple(int(model.geom(f"{name}/{pad}").id) for pad in robot.pads)
+        self.threshold = (robot.gripper_open + robot.gripper_closed) / 2
         gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
         self.lead: FloatArray = -bias / gain
         """Seconds by which a joint's target must run ahead to make up for the servo's damping, shape (n,)."""
+
+    def may_grip(self, data: Any) -> bool:
+        """Whether contact is a grip: fingers grip what they both touch, a cup only while the vacuum is on."""
+        return self.model.gripper is not GripperKind.SUCTION or float(data.ctrl[self.gripper]) > self.threshold
 
 
 class Simulation:
@@ -193,6 +200,8 @@ class Simulation:
         for name, pads in self._pads.items():
             grip = self.grips[name]
             grip[:] = 0.0
+            if not self.robots[name].may_grip(self.data):
+                continue
             first, *others = (touching[pad] for pad in pads)
             for column in first.intersection(*others) - {-1}:
                 grip[column] = 1.0

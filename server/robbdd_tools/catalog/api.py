@@ -188,6 +188,13 @@ class ObjectModel:
     """Standard places (m; x, y on the surface below, z ignored for what stands on a table), one per copy."""
 
 
+class GripperKind(StrEnum):
+    """How a tool takes hold: between two fingers that close, or by a cup that sucks."""
+
+    PARALLEL = "parallel"
+    SUCTION = "suction"
+
+
 @dataclass(frozen=True, slots=True)
 class RobotModel:
     """A robot arm with its tool.
@@ -197,7 +204,8 @@ class RobotModel:
     ``torque_limits`` N m per arm joint, as published. ``joints``, ``tool_site`` and ``gripper_actuator`` are names
     inside the MJCF; ``gripper_open`` and ``gripper_closed`` its control values. ``pads`` are the geoms of the
     gripping faces. ``mount`` is where the base of the first such robot stands (m, world frame) and ``stroke`` the
-    widest opening between the gripping faces (m). ``source`` names the publications the numbers come from.
+    widest opening between the gripping faces, or the diameter of the suction cup (m). ``source`` names the
+    publications the numbers come from.
     """
 
     name: str
@@ -218,3 +226,4 @@ class RobotModel:
     source: str
     tool_speed: float = 0.5
     """Largest speed of the tool along a planned path, m/s (paper: what the Panda typically reached)."""
+    gripper: GripperKind = GripperKind.PARALLEL
