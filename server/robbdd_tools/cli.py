@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from robbdd_tools import __version__
-from robbdd_tools.commands import FAILED, INTERRUPTED
+from robbdd_tools.commands import FAILED, INTERRUPTED, OK
 
 FORMATS = ("ttl", "json-ld", "nt", "xml")
 
@@ -26,7 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.command
     try:
-        return command(options)
+        return _fetch_contexts(options) or command(options)
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
@@ -61,7 +61,26 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     run.add_argument("-o", "--output", metavar="DIR", type=Path, help="keep features, manifest and log here")
     run.set_defaults(command=_run)
+    _allow_hosts(check, graph, gherkin, run)
     return parser
+
+
+def _allow_hosts(*parsers: argparse.ArgumentParser) -> None:
+    for parser in parsers:
+        text = "fetch JSON-LD contexts from this host, once; may be repeated"
+        parser.add_argument("--allow-host", metavar="HOST", action="append", help=text)
+
+
+def _fetch_contexts(options: argparse.Namespace) -> int:
+    if not getattr(options, "allow_host", None):
+        return OK
+    from robbdd_tools.commands.models import fetch_contexts
+
+    failure = fetch_contexts(getattr(options, "paths", None) or [options.path], options.allow_host)
+    if failure is None:
+        return OK
+    print(failure, file=sys.stderr)
+    return FAILED
 
 
 def _check(options: argparse.Namespace) -> int:

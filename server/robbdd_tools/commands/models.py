@@ -10,8 +10,9 @@ from typing import Any, TextIO
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
-from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.files import path_to_uri, read_text, uri_to_path
 from robbdd_tools.features.diagnostics import all_diagnostics
+from robbdd_tools.graph.foreign import GRAPH_FORMATS, graph_format
 from robbdd_tools.names.index import FileIndex, language_of
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.syntax.parse import LANGUAGES
@@ -41,8 +42,28 @@ def model_files(paths: Iterable[Path]) -> list[Path]:
 def not_a_model(paths: Iterable[Path]) -> str | None:
     """Return what to say when one of some files cannot be a model by its name; ``None`` when all can."""
     for path in paths:
-        if not language_of(path.name) and not path.is_dir():
-            return f"robbdd: {path} is not a model: its name must end in .bdd or .scene"
+        if not (language_of(path.name) or graph_format(path.name) or path.is_dir()):
+            endings = ", ".join(f".{ending}" for ending in ("bdd", "scene", *GRAPH_FORMATS))
+            return f"robbdd: {path} is not a model: its name must end in one of {endings}"
+    return None
+
+
+def fetch_contexts(paths: Iterable[Path], hosts: Iterable[str]) -> str | None:
+    """Fetch the JSON-LD contexts of models from hosts that the user allows; returns what to say when one fails.
+
+    What was fetched is kept, so that reading the models later needs no network.
+    """
+    from robbdd_tools.graph.contexts import ContextLoader
+    from robbdd_tools.graph.serialize import UnreadableGraph, parse
+
+    loader = ContextLoader(frozenset(hosts))
+    for path in paths:
+        text = read_text(path) if graph_format(path.name) == "json-ld" else None
+        if isinstance(text, str):
+            try:
+                parse(text, "json-ld", path_to_uri(path), loader)
+            except UnreadableGraph as error:
+                return f"robbdd: {path}: {error}"
     return None
 
 

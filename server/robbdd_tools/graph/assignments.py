@@ -34,6 +34,7 @@ def add_assignments(derived: Derived, variant: Iri) -> None:
         return
     roles = roles_in(records, clauses_below(records, [templates[0], variant]))
     declared = _declared(records, templates[0], roles)
+    is_told = bool(records.all(templates[0], "rbw:variables"))
     variation = variations[0]
     assigned = records.iris(items_of(records, variation, "bdd:variable-list"))
     for variable in dict.fromkeys([*declared, *assigned]):
@@ -42,7 +43,7 @@ def add_assignments(derived: Derived, variant: Iri) -> None:
         node = derived.new_node(["rbw:Assignment", shape, *map(_kind_class, kinds)])
         derived.add(node, "rbw:variable", variable)
         derived.add(node, "rbw:times", assigned.count(variable))
-        derived.add(node, "rbw:declared", variable in declared)
+        derived.add(node, "rbw:declared", variable in declared or not is_told)
         if variable in assigned:
             derived.anchor(node, "", (variation, expand("bdd:variable-list"), variable))
             _add_choices(derived, node, variation, variable, assigned)

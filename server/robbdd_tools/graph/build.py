@@ -6,11 +6,13 @@ what a user wrote: a broken declaration, a name that leads nowhere or an IRI tha
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from robbdd_tools.graph.built import BuiltGraph as BuiltGraph
+from robbdd_tools.graph.built import Clash
 from robbdd_tools.graph.clauses import ClauseWriter, add_time
+from robbdd_tools.graph.foreign import graph_format, read_graph_file
 from robbdd_tools.graph.prefixes import bind_prefixes, prefix_for
 from robbdd_tools.graph.reach import Reached, doubtful, reach
 from robbdd_tools.graph.scenes import (
@@ -24,13 +26,13 @@ from robbdd_tools.graph.scenes import (
     add_similar_set,
 )
 from robbdd_tools.graph.sink import Frame, Sink, namespace_of
-from robbdd_tools.graph.source_map import Location, SourceMap
+from robbdd_tools.graph.source_map import Location
 from robbdd_tools.graph.stories import Known, add_story
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from rdflib import Graph, URIRef
+    from rdflib import URIRef
     from rdflib.term import Node
 
     from robbdd_tools.names.project import Snapshot
@@ -39,34 +41,14 @@ TEMPLATE_PARTS = ("-scene", "-scenario", "-scenario-given", "-scenario-when", "-
 SCENARIO_PARTS = {"given": "bdd:Given", "when": "bdd:When", "then": "bdd:Then"}
 
 
-@dataclass(frozen=True, slots=True)
-class Clash:
-    """Two declarations whose names make one IRI: the later one, which the graph leaves out, and the first."""
-
-    iri: str
-    location: Location
-    first: Location
-
-
-@dataclass(frozen=True, slots=True)
-class BuiltGraph:
-    """A graph with what is known of its origin.
-
-    ``names`` gives the qualified name that stands in the text for an IRI; ``doubtful`` the extents of declarations
-    that already have an error or build on one that has; ``doubtful_nodes`` what these declare.
-    """
-
-    uri: str
-    graph: Graph
-    sources: SourceMap
-    names: Mapping[str, str]
-    clashes: tuple[Clash, ...]
-    doubtful: tuple[Location, ...]
-    doubtful_nodes: frozenset[str]
-
-
 def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
-    """Return the graph of a file of a snapshot (an empty one when the file cannot be read)."""
+    """Return the graph of a file of a snapshot (an empty one when the file cannot be read).
+
+    A file that is a graph itself, by its ending, is read.
+    """
+    file = snapshot.file(uri) if graph_format(uri) else None
+    if file is not None:
+        return read_graph_file(file.document)
     reached = reach(snapshot.closure(uri))
     sink = Sink()
     _add_foundations(sink, reached)

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.graph.canonical import sort_text
-from robbdd_tools.graph.libraries import Json, bundled_context, json_object
+from robbdd_tools.graph.contexts import Json, bundled_context
+from robbdd_tools.graph.libraries import json_object
 from robbdd_tools.graph.lists import Lists
 from robbdd_tools.graph.vocabulary import PREFIXES, expand
 

@@ -30,6 +30,20 @@ def read_model(graph: Graph) -> AcceptanceModel:
     return AcceptanceModel(tuple(reader.story(node) for node in stories), kinds, sets, user_prefixes(graph))
 
 
+def incomplete_variants(graph: Graph) -> dict[Iri, str]:
+    """Return the variants that ``read_model`` leaves out, each with what it lacks."""
+    records = Records(graph)
+    sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
+    reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
+    found: dict[Iri, str] = {}
+    for node in records.instances("bdd:ScenarioVariant"):
+        try:
+            reader.variant(node)
+        except Incomplete as error:
+            found[node] = str(error)
+    return found
+
+
 def read_set(records: Records, node: str) -> tuple[Value, ...]:
     """Return the elements of a set in written order, repeated ones repeated."""
     listed = records.all(node, "rbw:element-list")
@@ -59,11 +73,12 @@ class _Reader:
     def _complete(self, criteria: Iterable[Iri]) -> Iterator[Variant]:
         for node in criteria:
             try:
-                yield self._variant(node)
+                yield self.variant(node)
             except Incomplete:
                 continue
 
-    def _variant(self, node: Iri) -> Variant:
+    def variant(self, node: Iri) -> Variant:
+        """Return a scenario variant; raises ``Incomplete``."""
         template = self._template(self.records.one(node, "bdd:of-template"))
         extra = self._extra_clauses(node)
         variation = self.variations.variation(self.records.one(node, "bdd:has-variation"))

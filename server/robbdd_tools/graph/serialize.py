@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
+from urllib.parse import urljoin
 
 from robbdd_tools.graph.canonical import canonical
+from robbdd_tools.graph.contexts import ContextLoader, Json, UnknownContext
 from robbdd_tools.graph.jsonld import context_for, expanded
-from robbdd_tools.graph.libraries import Json, compact, json_object, triples
+from robbdd_tools.graph.libraries import compact, json_object, triples
 from robbdd_tools.graph.prefixes import bind_prefixes, user_prefixes
 from robbdd_tools.graph.vocabulary import expand
 
@@ -20,7 +23,11 @@ FORMATS = {"ttl": "turtle", "json-ld": "json-ld", "nt": "nt", "xml": "xml"}
 
 
 class UnreadableGraph(Exception):
-    """A text is not a graph in the format it is said to be in; the message says where it breaks off."""
+    """A text is not a graph in the format it is said to be in; ``offset`` is where it breaks off, 0 if unknown."""
+
+    def __init__(self, message: str, offset: int = 0) -> None:
+        super().__init__(message)
+        self.offset = offset
 
 
 def serialize(graph: Graph, format: str) -> str:
@@ -41,26 +48,61 @@ def serialize(graph: Graph, format: str) -> str:
     return ordered.serialize(format=FORMATS[format]).strip("\n") + "\n"
 
 
-def parse(text: str, format: str) -> Graph:
+def parse(text: str, format: str, base: str = "", loader: ContextLoader | None = None) -> Graph:
     """Return the graph that a text says; raises ``UnreadableGraph``, and ``ValueError`` for an unknown format.
 
-    Contexts of JSON-LD must be inside the document; nothing is fetched.
+    Relative names are resolved against ``base``. Contexts that JSON-LD names by URL come from ``loader``, by default
+    one that fetches nothing.
     """
     from rdflib import Graph
 
     _check_format(format)
     graph = Graph(bind_namespaces="none")
+    loader = loader or ContextLoader()
     try:
         if format == "json-ld":
             document: Any = json.loads(text)
-            for subject, predicate, value in triples(document):
+            for subject, predicate, value in triples(document, base, loader):
                 graph.add((_node(subject), _node(predicate), _node(value)))
-            _bind_context(graph, document)
+            for name, namespace in context_prefixes(document, base, loader):
+                graph.bind(name, namespace, override=True, replace=True)
         else:
-            graph.parse(data=text, format=FORMATS[format])
+            graph.parse(data=text, format=FORMATS[format], publicID=base or None)
+    except UnknownContext as error:
+        raise UnreadableGraph(str(error)) from error
     except Exception as error:  # every rdflib parser has exceptions of its own
-        raise UnreadableGraph(f"this is no graph in the format {format}: {str(error).strip() or error!r}") from error
+        reason, offset = _fault(error)
+        raise UnreadableGraph(f"this is no graph in the format {format}: {reason}", offset) from error
     return graph
+
+
+def context_prefixes(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[str, str]]:
+    """Yield the prefixes that the contexts of a JSON-LD document declare."""
+    waiting: list[Any] = [json_object(document).get("@context")]
+    seen: set[str] = set()
+    while waiting:
+        context = waiting.pop(0)
+        if isinstance(context, list):
+            waiting += context
+        elif isinstance(context, str):
+            url = urljoin(base, context)
+            if url not in seen:
+                seen.add(url)
+                waiting.append(json_object(loader.document(url)).get("@context"))
+        for name, definition in json_object(context).items():
+            namespace = json_object(definition).get("@id") if isinstance(definition, dict) else definition
+            if isinstance(namespace, str) and namespace[-1:] in {"/", "#", ":"} and not name.startswith("@"):
+                yield name, namespace
+
+
+def _fault(error: Exception) -> tuple[str, int]:
+    """Return why and where a parser gave up; each has its own way of telling."""
+    if isinstance(error, json.JSONDecodeError):
+        return error.msg, error.pos
+    why, offset = getattr(error, "_why", None), getattr(error, "_i", None)
+    if isinstance(why, str) and isinstance(offset, int):
+        return why, offset
+    return str(error).strip() or repr(error), 0
 
 
 def _check_format(format: str) -> None:
@@ -80,12 +122,3 @@ def _node(term: Json) -> Node:
     if term.get("language"):
         return Literal(value, lang=term["language"])
     return Literal(value) if datatype in (None, expand("xsd:string")) else Literal(value, datatype=URIRef(datatype))
-
-
-def _bind_context(graph: Graph, document: Any) -> None:
-    """Keep the prefixes that a document's own context declares as such."""
-    context = json_object(json_object(document).get("@context"))
-    for name, definition in context.items():
-        namespace = json_object(definition).get("@id") if isinstance(definition, dict) else definition
-        if isinstance(namespace, str) and namespace[-1:] in {"/", "#", ":"}:
-            graph.bind(name, namespace, override=True, replace=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity, sort_key
 from robbdd_tools.base.document import Span
-from robbdd_tools.graph.build import BuiltGraph, Clash
+from robbdd_tools.graph.built import BuiltGraph, Clash
 from robbdd_tools.graph.derive import derive
 from robbdd_tools.graph.derived import Derived
 from robbdd_tools.graph.libraries import shacl_report
@@ -41,6 +41,7 @@ def validate(built: BuiltGraph, shapes: Graph | None = None) -> list[Diagnostic]
     writer = _Writer(built, derived)
     found = [diagnostic for result in _results(report) for diagnostic in writer.diagnostics(result)]
     found += [_clash(built, clash) for clash in built.clashes]
+    found += _faults(built, found)
     merged: dict[tuple[str, Span, str], Diagnostic] = {}
     for diagnostic in sorted(found, key=sort_key):
         merged.setdefault((diagnostic.uri, diagnostic.span, diagnostic.message), diagnostic)
@@ -135,7 +136,15 @@ class _Writer:
             values = self._derived(result.focus, name)
             return self._name(values[0]) if values else match[0]
 
-        return _PLACEHOLDER.sub(fill, result.message)
+        message = _PLACEHOLDER.sub(fill, result.message)
+        return f"'{self._subject(result.focus)}': {message}" if self.built.is_read else message
+
+    def _subject(self, focus: Node) -> str:
+        """Return the name of what a finding is about; a derived node is called after what it was derived from."""
+        names = self.built.names
+        anchors = self.derived.anchors.get((str(focus), ""), [])
+        roots = (str(focus), *(key[0] for key in anchors))
+        return next((names[node] for node in roots if node in names), str(focus))
 
     def _derived(self, node: Node, name: str) -> list[Node]:
         from rdflib import URIRef
@@ -144,6 +153,12 @@ class _Writer:
 
     def _name(self, node: Node | None) -> str:
         return self.built.names.get(str(node), str(node))
+
+
+def _faults(built: BuiltGraph, found: list[Diagnostic]) -> Iterator[Diagnostic]:
+    """Yield what is wrong with a graph file; that a variant is left out goes without saying where the cause is told."""
+    has_error = any(diagnostic.severity is Severity.ERROR for diagnostic in found)
+    return (fault for fault in built.faults if not (has_error and fault.code == "incomplete-variant"))
 
 
 def _clash(built: BuiltGraph, clash: Clash) -> Diagnostic:

@@ -1,0 +1,154 @@
+"""JSON-LD contexts by name: ours, one beside the model, or one that the user once allowed to be fetched."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import urllib.request
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, cast
+from urllib.error import URLError
+from urllib.parse import urlsplit
+
+from robbdd_tools.base.data import data_file
+from robbdd_tools.base.files import LARGEST_FILE, Unreadable, read_text, uri_to_path
+
+Json = dict[str, Any]
+CONTEXT_FILE = "context.jsonld"
+CONTEXT_IRI = f"https://robbdd.org/metamodels/{CONTEXT_FILE}"
+"""Under this name, or as ``context.jsonld`` beside a model, our context is known without any network."""
+TIMEOUT = 20.0
+"""Seconds that a server may take to answer."""
+_WANTED = "application/ld+json, application/json;q=0.9"
+
+
+class UnknownContext(Exception):
+    """A JSON-LD document names a context that cannot be had; the message says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContextLoader:
+    """Loads contexts for pyld. Only ``hosts``, named by the user, are ever asked, and each of their contexts once."""
+
+    hosts: frozenset[str] = frozenset()
+
+    def __call__(self, url: str, _options: Mapping[str, Any]) -> Json:
+        """Return what pyld expects of a document loader; raises ``UnknownContext``."""
+        return {
+            "contentType": "application/ld+json",
+            "contextUrl": None,
+            "documentUrl": url,
+            "document": self.document(url),
+        }
+
+    def document(self, url: str) -> Any:
+        """Return the JSON document behind a URL; raises ``UnknownContext``."""
+        path = uri_to_path(url)
+        if url in (CONTEXT_IRI, CONTEXT_FILE) or (path and path.name == CONTEXT_FILE and not path.is_file()):
+            return {"@context": bundled_context()}
+        if path is not None:
+            return _local(url, path)
+        if urlsplit(url).scheme not in ("http", "https"):
+            raise UnknownContext(f"the context '{url}' is neither a file nor a web address")
+        text = _cached(url)
+        return _json(url, self._fetch(url) if text is None else text)
+
+    def _fetch(self, url: str) -> str:
+        self._check(url)
+        opener = urllib.request.build_opener(_Redirects(self._check))
+        try:
+            with opener.open(urllib.request.Request(url, headers={"Accept": _WANTED}), timeout=TIMEOUT) as answer:
+                data = answer.read(LARGEST_FILE + 1)
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            raise UnknownContext(f"the context '{url}' is not UTF-8 text") from None
+        except (URLError, OSError) as error:
+            reason = getattr(error, "reason", None) or error
+            raise UnknownContext(f"the context '{url}' cannot be fetched: {reason}") from error
+        if len(data) > LARGEST_FILE:
+            raise UnknownContext(f"the context '{url}' is larger than {LARGEST_FILE // 1048576} MiB")
+        _json(url, text)
+        _keep(url, text)
+        return text
+
+    def _check(self, url: str) -> None:
+        host = urlsplit(url).hostname or ""
+        if urlsplit(url).scheme not in ("http", "https") or host not in self.hosts:
+            raise UnknownContext(
+                f"the context '{url}' is not fetched: allow it once with '--allow-host {host}', "
+                "or write the context into the document itself"
+            )
+
+
+class _Redirects(urllib.request.HTTPRedirectHandler):
+    """Follows a redirection only to a host that is allowed too."""
+
+    def __init__(self, check: Callable[[str], None]) -> None:
+        self._check_host = check
+
+    def redirect_request(self, req: Any, fp: Any, code: Any, msg: Any, headers: Any, newurl: str) -> Any:
+        self._check_host(newurl)
+        return super().redirect_request(req, fp, code, msg, headers, newurl)
+
+
+@cache
+def bundled_context() -> Json:
+    """Return our JSON-LD context."""
+    text = data_file("metamodels", CONTEXT_FILE).read_text(encoding="utf-8")
+    return cast(Json, json.loads(text)["@context"])
+
+
+def cache_folder() -> Path:
+    """Return where fetched contexts are kept: ``ROBBDD_CACHE``, else the user's cache folder."""
+    own = os.environ.get("ROBBDD_CACHE")
+    if own:
+        return Path(own) / "contexts"
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
+    return (Path(base) if base else Path.home() / ".cache") / "robbdd-tools" / "contexts"
+
+
+def _local(url: str, path: Path) -> Any:
+    text = read_text(path)
+    if isinstance(text, Unreadable):
+        raise UnknownContext(f"the context cannot be read: {text.reason}")
+    return _json(url, text)
+
+
+def _json(url: str, text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise UnknownContext(f"the context '{url}' is no JSON: {error}") from error
+
+
+def _place(url: str) -> Path:
+    return cache_folder() / f"{_hash(url)}.json"
+
+
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+def _cached(url: str) -> str | None:
+    """Return a kept copy whose text is still the one that was fetched."""
+    try:
+        entry = cast(Json, json.loads(_place(url).read_text(encoding="utf-8")))
+        text = str(entry["text"])
+        return text if entry["url"] == url and entry["sha256"] == _hash(text) else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _keep(url: str, text: str) -> None:
+    place = _place(url)
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        fresh = place.with_suffix(f".{os.getpid()}")
+        fresh.write_text(json.dumps({"url": url, "sha256": _hash(text), "text": text}), encoding="utf-8")
+        fresh.replace(place)
+    except OSError as error:
+        raise UnknownContext(f"the context '{url}' cannot be kept in {place.parent}: {error.strerror}") from error

@@ -1,0 +1,72 @@
+"""Models that are graphs, wherever a model may stand on the command line."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from kit import EXAMPLES
+
+PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
+
+
+def robbdd(*arguments: str | Path, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "robbdd_tools.cli", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=folder)
+    assert "Traceback" not in done.stderr
+    return done
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("graphs")
+    for form, name in (("ttl", "m.ttl"), ("json-ld", "m.json"), ("json-ld", "m.jsonld")):
+        (folder / name).write_text(robbdd("graph", PICKPLACE, "--format", form).stdout, encoding="utf-8")
+    return folder
+
+
+def test_graphs_are_checked_like_models(folder: Path) -> None:
+    done = robbdd("check", "m.ttl", "m.json", "m.jsonld", folder=folder)
+    assert (done.returncode, done.stdout) == (0, "3 files: 0 errors, 0 other remarks\n")
+
+
+@pytest.mark.parametrize("name", ["m.ttl", "m.json", "m.jsonld"])
+def test_a_graph_gives_the_features_and_the_graph_of_its_model(folder: Path, tmp_path: Path, name: str) -> None:
+    for path, place in ((PICKPLACE, "text"), (folder / name, "graph")):
+        assert robbdd("gherkin", path, "-o", tmp_path / place).returncode == 0
+    feature = "tidy-bench.feature"
+    assert (tmp_path / "graph" / feature).read_bytes() == (tmp_path / "text" / feature).read_bytes()
+    assert robbdd("graph", folder / name).stdout == robbdd("graph", PICKPLACE).stdout
+
+
+def test_an_error_in_a_graph_keeps_it_from_becoming_features(folder: Path, tmp_path: Path) -> None:
+    text = (folder / "m.ttl").read_text(encoding="utf-8").replace("bdd:of-template", "bdd:of-templat")
+    (tmp_path / "wrong.ttl").write_text(text, encoding="utf-8")
+    done = robbdd("gherkin", "wrong.ttl", "-o", "features", folder=tmp_path)
+    line = text[: text.index("crit:part-to-bin a")].count("\n") + 1
+    assert done.returncode == 2
+    assert f"wrong.ttl:{line}:1: error: 'crit:part-to-bin': " in done.stderr
+    assert not (tmp_path / "features").exists()
+
+
+def test_a_name_with_another_ending_is_refused_with_the_endings_that_there_are() -> None:
+    done = robbdd("check", "model.owl")
+    assert done.returncode == 2
+    assert "must end in one of .bdd, .scene, .ttl, .json, .jsonld" in done.stderr
+
+
+def test_a_context_that_may_not_be_fetched_ends_the_command(tmp_path: Path) -> None:
+    (tmp_path / "m.json").write_text('{"@context": "https://example.org/c.json"}', encoding="utf-8")
+    done = robbdd("check", "m.json", "--allow-host", "example.com", folder=tmp_path)
+    assert done.returncode == 2
+    assert "robbdd: m.json: the context 'https://example.org/c.json' is not fetched" in done.stderr
+
+
+@pytest.mark.physics
+def test_a_graph_runs_like_its_model(folder: Path) -> None:
+    done = robbdd("run", "m.jsonld", folder=folder)
+    assert done.returncode == 0, done.stdout
+    assert "4 scenarios: 4 hold, 0 violated, 0 unknown" in done.stdout
