@@ -25,7 +25,16 @@ def edited(old: str, new: str) -> str:
 
 
 def test_an_empty_file_offers_declarations() -> None:
-    assert labels("$0") == ["Event", "Scenario Template", "Task", "User Story", "const set", "import", "ns"]
+    assert labels("$0") == [
+        "Behaviour Tree",
+        "Event",
+        "Scenario Template",
+        "Task",
+        "User Story",
+        "const set",
+        "import",
+        "ns",
+    ]
 
 
 def test_behind_a_declaration_another_one_may_begin() -> None:

@@ -107,9 +107,9 @@ Evaluator = Callable[[Evidence, Arguments], "FloatArray"]
 class Predicate:
     """A predicate of fluents.
 
-    ``phrase`` is the surface form, slots in ``<…>`` (a reference), ``$…`` (a bare name) or as words;
-    ``sentence`` the Gherkin form with ``{slot}`` placeholders. ``unit`` is the SI unit of the margin (``""`` when
-    the margin is ±1). ``evaluate`` is ``None`` for what this installation can state but not judge yet: such a
+    ``phrase`` is the surface form, slots in ``<…>`` (a reference), ``$…`` (a bare name) or as words; ``aliases``
+    are other surface forms that are read as the same, with the same slots; ``sentence`` the Gherkin form with
+    ``{slot}`` placeholders. ``unit`` is the SI unit of the margin (``""`` when the margin is ±1). ``evaluate`` is ``None`` for what this installation can state but not judge yet: such a
     clause is *unknown*, never a pass. ``quantities`` are those that the evaluator needs beside poses and grips
     (``reach``): they cost time and are sampled only in the windows of clauses that ask.
     """
@@ -123,6 +123,7 @@ class Predicate:
     doc: str
     evaluate: Evaluator | None = None
     quantities: tuple[str, ...] = ()
+    aliases: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +131,7 @@ class Behaviour:
     """A behaviour that an agent executes in ``When``.
 
     ``events`` are the names of the events it emits, in order; the first and the last delimit its duration.
+    ``aliases`` are other surface forms of ``phrase``, with the same slots.
     """
 
     name: str
@@ -139,6 +141,7 @@ class Behaviour:
     sentence: str
     events: tuple[str, ...]
     doc: str
+    aliases: tuple[str, ...] = ()
 
 
 class ShapeKind(StrEnum):

@@ -24,6 +24,21 @@ ROLE_KINDS: Mapping[str, tuple[SymbolKind, ...]] = {
     "AgentSet": (SymbolKind.AGENT_SET,),
     "ConstantSet": (SymbolKind.CONSTANT_SET,),
     "AnySet": (*_ELEMENT_SETS, SymbolKind.CONSTANT_SET, SymbolKind.SET_VARIABLE),
+    "Agent": (SymbolKind.AGENT,),
+    "TreeNode": (SymbolKind.TREE_NODE,),
+    "Distribution": (SymbolKind.DISTRIBUTION,),
+    "Tree": (SymbolKind.TREE, SymbolKind.TREE_INSTANCE),
+    "TreeTemplate": (SymbolKind.TREE_TEMPLATE,),
+    "Frame": (SymbolKind.FRAME,),
+    "Body": (SymbolKind.BODY,),
+    "Joint": (SymbolKind.JOINT,),
+    "SceneInstance": (SymbolKind.SCENE_INSTANCE,),
+    "Variant": (SymbolKind.VARIANT,),
+    "Fluent": (SymbolKind.FLUENT,),
+    "Implementation": (SymbolKind.IMPLEMENTATION,),
+    "Provider": (SymbolKind.PROVIDER,),
+    "Observation": (SymbolKind.OBSERVATION,),
+    "Policy": (SymbolKind.POLICY,),
 }
 
 SCENE_KINDS = {*_ELEMENTS, *_ELEMENT_SETS, SymbolKind.COMPOSITION, SymbolKind.SCENE}

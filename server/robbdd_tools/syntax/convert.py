@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any, cast
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.phrases import word_of_rule
 from robbdd_tools.syntax.textx import RawNode
+from robbdd_tools.syntax.unnamed import name_template, name_variant, unnamed_at
 
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
 _KINDS = {"obj": "object", "ws": "workspace", "agn": "agent"}
@@ -74,28 +75,65 @@ def _number(raw: RawNode, span: Span, _: str) -> tree.Number:
     return tree.Number(span, int(digits) if whole else float(digits))
 
 
-def _element_set(kind: str) -> Callable[[RawNode, Span, str], tree.ElementSet]:
-    return lambda raw, span, text: _by_fields(tree.ElementSet, raw, span, text, kind=kind)
+def _inner(field: str) -> Callable[[RawNode, Span, str], Any]:
+    """A rule that only puts words around one of its parts."""
+    return lambda raw, _, text: _value(getattr(raw, field), text)
 
 
-def _variable(is_set: bool) -> Callable[[RawNode, Span, str], tree.Variable]:
-    return lambda raw, span, text: _by_fields(tree.Variable, raw, span, text, is_set=is_set)
+def _given(node: type[tree.Node], **given: Any) -> Callable[[RawNode, Span, str], Any]:
+    return lambda raw, span, text: _by_fields(node, raw, span, text, **given)
 
 
-def _alias(node: type[tree.Node]) -> Callable[[RawNode, Span, str], Any]:
-    return lambda raw, span, text: _by_fields(node, raw, span, text)
+def _clauses(raw: RawNode, span: Span, text: str) -> tree.Expression:
+    """Several clauses in a row mean *and*."""
+    found: tuple[tree.Expression, ...] = _value(raw.clauses, text)
+    return found[0] if len(found) == 1 else tree.Conjunction(span, found)
+
+
+def _bare_behaviour(raw: RawNode, span: Span, text: str) -> tree.BehaviourUse:
+    duration = _value(raw.duration, text)
+    return tree.BehaviourUse(span, None, unnamed_at(span), duration, convert(raw.action, text), None)
+
+
+def _listed_assignment(raw: RawNode, span: Span, text: str) -> tree.Assignment:
+    """``<v> can be:``; a variable without its template's name is one of the variant's template."""
+    variable: tree.Ref = convert(raw.variable, text)
+    template = _template_of(raw)
+    if template and "." not in variable.path:
+        variable = replace(variable, path=f"{template}.{variable.path}")
+    values = _value(raw.values, text)
+    return tree.Assignment(span, variable, tree.ValueList(Span(values[0].span.start, span.end), values))
+
+
+def _template_of(raw: RawNode) -> str:
+    while raw is not None and type(raw).__name__ != "Variant":
+        raw = getattr(raw, "parent", None)
+    return "" if raw is None else raw.template.path
 
 
 _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
     "Text": _text,
     "Number": _number,
-    "ObjectSet": _element_set("object"),
-    "WorkspaceSet": _element_set("workspace"),
-    "AgentSet": _element_set("agent"),
+    "ObjectSet": _given(tree.ElementSet, kind="object"),
+    "WorkspaceSet": _given(tree.ElementSet, kind="workspace"),
+    "AgentSet": _given(tree.ElementSet, kind="agent"),
     "SimilarSet": lambda raw, span, text: _by_fields(tree.SimilarSet, raw, span, text, kind=_KINDS[raw.kind]),
-    "SetVariable": _variable(True),
-    "PlainVariable": _variable(False),
-    **dict.fromkeys(("Object", "Workspace", "Agent"), _alias(tree.Member)),
+    "SetVariable": _given(tree.Variable, is_set=True),
+    "PlainVariable": _given(tree.Variable, is_set=False),
+    **dict.fromkeys(("Object", "Workspace", "Agent"), _given(tree.Member)),
+    "ModuleName": _given(tree.Name),
+    "Template": lambda raw, span, text: name_template(_by_fields(tree.Template, raw, span, text)),
+    "Variant": lambda raw, span, text: name_variant(_by_fields(tree.Variant, raw, span, text)),
+    "Clauses": _clauses,
+    **dict.fromkeys(
+        ("UnnamedFluent", "BareFluent"),
+        lambda raw, span, text: _by_fields(tree.Fluent, raw, span, text, name=unnamed_at(span)),
+    ),
+    "BareBehaviour": _bare_behaviour,
+    "HeadedVariation": _inner("variation"),
+    "ListedProduct": _given(tree.Product),
+    "ListedAssignment": _listed_assignment,
+    **dict.fromkeys(("ListedObject", "ListedWorkspace", "ListedAgent", "ListedPlain"), _inner("value")),
     **dict.fromkeys(
         (
             "CompositionMember",
@@ -105,8 +143,12 @@ _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
             "WorkspaceSetLink",
             "AgentSetLink",
             "ConstantSetLink",
+            "TargetVariable",
+            "TargetObject",
+            "TargetWorkspace",
+            "TargetAgent",
         ),
-        _alias(tree.Link),
+        _given(tree.Link),
     ),
     "SetsAssignment": lambda raw, span, text: tree.Assignment(
         span, convert(raw.variable, text), convert(raw.sets, text)
@@ -115,4 +157,20 @@ _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
         span, convert(raw.variable, text), convert(raw.values, text)
     ),
     "Table": lambda raw, span, text: tree.Table(span, _value(raw.header.variables, text), _value(raw.rows, text)),
+    **dict.fromkeys(("Covariance", "Deviation", "QuaternionVector"), _inner("value")),
+    "EulerAngles": lambda raw, span, text: tree.EulerAngles(
+        span, raw.axes or "", raw.extrinsic, convert(raw.angles, text), raw.unit or None
+    ),
+    **{
+        f"{quantity.capitalize()}Limit": _given(tree.Limit, quantity=quantity)
+        for quantity in ("position", "velocity", "acceleration", "effort")
+    },
+    **dict.fromkeys(
+        ("ModelledObject", "ModelledObjectSet", "ModelledAgent", "ModelledAgentSet", "ModelledWorkspace"),
+        _given(tree.Modelled),
+    ),
+    **dict.fromkeys(("BodyMapping", "TreeMapping"), _given(tree.Mapping)),
+    "ForceTorque": _given(tree.Sensor, kind="force-torque"),
+    "Imu": _given(tree.Sensor, kind="imu"),
+    "ObservedTarget": _inner("target"),
 }

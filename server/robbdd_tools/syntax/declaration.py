@@ -33,14 +33,39 @@ class SymbolKind(StrEnum):
     BEHAVIOUR = "behaviour"
     STORY = "user story"
     VARIANT = "scenario variant"
+    BEHAVIOUR_TREE = "behaviour tree"
+    TREE_NODE = "node of a behaviour tree"
+    DISTRIBUTION = "distribution"
+    TREE_TEMPLATE = "kinematic tree template"
+    TREE = "kinematic tree"
+    TREE_INSTANCE = "kinematic tree instance"
+    GRAPH = "kinematic graph"
+    BODY = "body"
+    FRAME = "frame"
+    POSE = "pose"
+    JOINT = "joint"
+    SCENE_INSTANCE = "scene instance"
+    MODEL = "model"
+    SENSOR = "sensor"
+    IMPLEMENTATION = "behaviour implementation"
+    PROVIDER = "observation provider"
+    OBSERVATION = "observation"
+    POLICY = "observation policy"
+    EXECUTION = "scenario execution"
+
+
+FILE_NAMESPACE = ""
+"""The namespace of a declaration that gives none where the language allows it: the only one of its file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
     """A declared name.
 
-    ``path`` is the qualified name (``parts.bolt``), ``span`` that of the name itself, ``extent`` that of the whole
-    thing it names; ``namespace`` is the name given by the nearest enclosing ``(ns=…)``.
+    ``path`` is the qualified name (``parts.bolt``), ``span`` that of the name itself (empty where the text gives
+    none), ``extent`` that of the whole thing it names. ``namespace`` is the name given by the nearest enclosing
+    ``(ns=…)``, ``FILE_NAMESPACE`` where that is left out, ``None`` for what has no IRI of its own. ``target`` is a
+    qualified name whose parts are parts of this one too: the template of a kinematic tree instance.
     """
 
     path: str
@@ -49,6 +74,7 @@ class Symbol:
     span: Span
     extent: Span
     namespace: str | None
+    target: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +86,20 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True)
+class SyntaxFix:
+    """Text that mends a fault when it is written over ``span`` (empty: put in)."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class SyntaxFault:
     """A place where the text does not follow the grammar, with what would have been accepted there."""
 
     span: Span
     message: str
+    fix: SyntaxFix | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

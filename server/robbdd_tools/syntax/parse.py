@@ -7,13 +7,14 @@ from functools import lru_cache
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.convert import convert
 from robbdd_tools.syntax.declaration import Declaration, SyntaxFault
-from robbdd_tools.syntax.symbols import references, salvage, symbols
+from robbdd_tools.syntax.salvage import salvage
+from robbdd_tools.syntax.symbols import references, symbols
 from robbdd_tools.syntax.textx import Expectation, Rejected, parse_chunk
 
 CACHED_CHUNKS = 20_000
 LONGEST_WORD = 40
 """Letters of the user's text that a message repeats."""
-LANGUAGES = ("bdd", "scene")
+LANGUAGES = ("bdd", "scene", "scenex", "ktree", "bddx")
 
 _RULE_WORDS = {
     "NameText": "a name",
@@ -22,6 +23,13 @@ _RULE_WORDS = {
     "TableRule": "the rule '|---|'",
     "NamespacePath": "the name of a namespace",
     "AnySetPath": "the name of a set",
+    "ModuleNameText": "the name of a module",
+    "TreePath": "the name of a kinematic tree",
+    "TreeTemplatePath": "the name of a kinematic tree template",
+    "TreeNodePath": "the name of a node of a behaviour tree",
+    "ImplementationPath": "the name of a behaviour implementation",
+    "ProviderPath": "the name of an observation provider",
+    "PolicyPath": "the name of an observation policy",
 }
 _STARTS = frozenset({"import", "ns"})
 

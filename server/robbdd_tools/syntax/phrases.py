@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping
 
 from robbdd_tools.catalog.api import Behaviour, Predicate
 from robbdd_tools.catalog.registry import Catalog
 
 PREDICATE_RULE = "Predicate_"
 ACTION_RULE = "Action_"
+ALIAS = "__"
 _PIECE = re.compile(r"<(?P<slot>\w+)>|\$(?P<name>\w+)|(?P<word>[^\W\d]\w*)|(?P<sign>[^\s\w])")
 
 
 def phrase_rules(catalog: Catalog) -> str:
-    """Return the rules ``Predicate`` and ``Action`` with one alternative per word of the catalog."""
-    predicates = ["TextPredicate", *_rule_names(PREDICATE_RULE, catalog.predicates)]
-    rules = [f"Predicate: {' | '.join(predicates)};"]
-    rules.append(f"Action: {' | '.join(_rule_names(ACTION_RULE, catalog.behaviours))};")
-    rules += [f"{_rule_name(PREDICATE_RULE, word.name)}: {_body(word.phrase)};" for word in catalog.predicates.values()]
-    rules += [f"{_rule_name(ACTION_RULE, word.name)}: {_body(word.phrase)};" for word in catalog.behaviours.values()]
+    """Return the rules ``Predicate`` and ``Action`` with one alternative per phrase of the catalog."""
+    predicates = dict(_phrases(PREDICATE_RULE, catalog.predicates))
+    actions = dict(_phrases(ACTION_RULE, catalog.behaviours))
+    rules = [f"Predicate: {' | '.join(['TextPredicate', *_longest_first(predicates)])};"]
+    rules.append(f"Action: {' | '.join(_longest_first(actions))};")
+    rules += [f"{name}: {_body(phrase)};" for name, phrase in (predicates | actions).items()]
     return "\n".join(rules) + "\n"
 
 
@@ -27,18 +28,22 @@ def word_of_rule(rule: str) -> str | None:
     """Return the catalog name behind a generated rule's name, ``None`` for any other rule."""
     for prefix in (PREDICATE_RULE, ACTION_RULE):
         if rule.startswith(prefix):
-            return rule[len(prefix) :].replace("_", "-")
+            return rule[len(prefix) :].partition(ALIAS)[0].replace("_", "-")
     return None
 
 
-def _rule_names(prefix: str, words: Mapping[str, Predicate] | Mapping[str, Behaviour]) -> Iterable[str]:
-    """Longest phrase first: ``picks <o> and places …`` must be tried before ``picks <o>``."""
-    ordered = sorted(words.values(), key=lambda word: (-len(word.phrase), word.name))
-    return (_rule_name(prefix, word.name) for word in ordered)
+def _phrases(prefix: str, words: Mapping[str, Predicate] | Mapping[str, Behaviour]) -> Iterator[tuple[str, str]]:
+    """Yield a rule name for each phrase of each word; textX needs a rule of its own for every phrase."""
+    for word in words.values():
+        name = prefix + word.name.replace("-", "_")
+        yield name, word.phrase
+        for number, alias in enumerate(word.aliases, start=1):
+            yield f"{name}{ALIAS}{number}", alias
 
 
-def _rule_name(prefix: str, word: str) -> str:
-    return prefix + word.replace("-", "_")
+def _longest_first(phrases: Mapping[str, str]) -> list[str]:
+    """``picks <o> and places …`` must be tried before ``picks <o>``."""
+    return sorted(phrases, key=lambda name: (-len(phrases[name]), name))
 
 
 def _body(phrase: str) -> str:

@@ -69,6 +69,21 @@ class NamespaceArgument(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class PythonAttribute(Node):
+    """``py { module: a.b, attr: c }``; imported in the agent only."""
+
+    module: Name
+    attribute: Name
+
+
+@dataclass(frozen=True, slots=True)
+class CatalogEntry(Node):
+    """``catalog "name"``: a word of this installation's catalog."""
+
+    name: Text
+
+
+@dataclass(frozen=True, slots=True)
 class Member(Node):
     """An object, workspace or agent inside its set."""
 

@@ -26,11 +26,26 @@ _STARTERS = {
     "bdd": (
         *_SHARED_STARTERS,
         rf"(?:Event|Task)(?:\s*\(|\s+{_NAME})",
+        r"Behaviour\s+Tree\b",
         r"const\s+set\b",
         r"Scenario\s+Template\b",
         r"User\s+Story\b",
     ),
+    "scenex": (
+        *_SHARED_STARTERS,
+        r"distrib\s*\(",
+        r"scene\s+inst\b",
+        rf"ktree(?:\s*\(|\s+{_NAME})",
+    ),
+    "bddx": (
+        *_SHARED_STARTERS,
+        r"bhv\s+impl\b",
+        r"obs\s+(?:provider|policy)\b",
+        r"observation\s*\(",
+        r"Scenario\s+Exec\b",
+    ),
 }
+_STARTERS["ktree"] = _STARTERS["scenex"]
 
 
 @dataclass(frozen=True, slots=True)

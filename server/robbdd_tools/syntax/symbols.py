@@ -1,15 +1,14 @@
-"""Names declared and used in a tree, and what can be saved of them from text that did not parse."""
+"""Names declared and used in a tree."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any, cast
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.declaration import Reference, Symbol, SymbolKind
+from robbdd_tools.syntax.declaration import FILE_NAMESPACE, Reference, Symbol, SymbolKind
 
 MOST_COPIES = 10_000
 """Members of a ``similar`` set that get a name; a larger count is a typing error."""
@@ -19,7 +18,7 @@ _SETS = {
     "workspace": SymbolKind.WORKSPACE_SET,
     "agent": SymbolKind.AGENT_SET,
 }
-_TOP = {
+_TOP: dict[type[tree.Node], SymbolKind] = {
     tree.Event: SymbolKind.EVENT,
     tree.Task: SymbolKind.TASK,
     tree.ConstantSet: SymbolKind.CONSTANT_SET,
@@ -27,6 +26,16 @@ _TOP = {
     tree.Scene: SymbolKind.SCENE,
     tree.Template: SymbolKind.TEMPLATE,
     tree.Story: SymbolKind.STORY,
+    tree.BehaviourTree: SymbolKind.BEHAVIOUR_TREE,
+    tree.Distribution: SymbolKind.DISTRIBUTION,
+    tree.KinematicTree: SymbolKind.TREE,
+    tree.TreeInstance: SymbolKind.TREE_INSTANCE,
+    tree.SceneInstance: SymbolKind.SCENE_INSTANCE,
+    tree.Implementation: SymbolKind.IMPLEMENTATION,
+    tree.Provider: SymbolKind.PROVIDER,
+    tree.Observation: SymbolKind.OBSERVATION,
+    tree.Policy: SymbolKind.POLICY,
+    tree.Execution: SymbolKind.EXECUTION,
 }
 
 
@@ -36,9 +45,13 @@ def symbols(root: tree.DeclarationTree) -> tuple[Symbol, ...]:
         return ()
     if isinstance(root, tree.Namespace):
         return (Symbol(root.name.text, root.name.text, SymbolKind.NAMESPACE, root.name.span, root.span, None),)
-    namespace = root.namespace.reference.path
+    if isinstance(root, tree.KinematicTree) and root.namespace is None:
+        own = Symbol(root.name.text, root.name.text, SymbolKind.TREE_TEMPLATE, root.name.span, root.span, None)
+        return (own, *_tree_parts(root, root.name.text))
+    namespace = FILE_NAMESPACE if root.namespace is None else root.namespace.reference.path
     kind = _SETS[root.kind] if isinstance(root, tree.ElementSet | tree.SimilarSet) else _TOP[type(root)]
-    own = Symbol(root.name.text, root.name.text, kind, root.name.span, root.span, namespace)
+    target = root.template.path if isinstance(root, tree.TreeInstance) else None
+    own = Symbol(root.name.text, root.name.text, kind, root.name.span, root.span, namespace, target)
     return (own, *_parts(root, root.name.text, namespace))
 
 
@@ -62,8 +75,54 @@ def _parts(root: tree.DeclarationTree, path: str, namespace: str) -> Iterator[Sy
             for variant in root.variants:
                 yield _symbol(path, variant.name, SymbolKind.VARIANT, variant.span, namespace)
                 yield from _clauses(variant, f"{path}.{variant.name.text}", namespace)
+        case tree.BehaviourTree():
+            for node in root.nodes:
+                yield _symbol(path, node.name, SymbolKind.TREE_NODE, node.span, namespace)
+        case tree.KinematicTree():
+            yield from _tree_parts(root, path)
+        case tree.SceneInstance():
+            yield from _instance_parts(root, path)
         case _:
             pass
+
+
+def _instance_parts(owner: tree.SceneInstance | tree.Modelled, path: str) -> Iterator[Symbol]:
+    """Graphs, models and sensors of a scene instance; elements that are modelled have their names elsewhere."""
+    for entry in owner.entries:
+        match entry:
+            case tree.Graph():
+                own = entry.namespace.reference.path
+                yield _symbol(path, entry.name, SymbolKind.GRAPH, entry.span, own)
+                yield from _tree_parts(entry, f"{path}.{entry.name.text}")
+            case tree.Model():
+                yield _symbol(path, entry.name, SymbolKind.MODEL, entry.span, None)
+            case tree.Camera() | tree.Sensor():
+                yield _symbol(path, entry.name, SymbolKind.SENSOR, entry.span, None)
+            case tree.Modelled():
+                yield from _instance_parts(entry, path)
+
+
+def _tree_parts(owner: tree.KinematicTree | tree.Graph, path: str) -> Iterator[Symbol]:
+    """Bodies with their frames and poses, and joints."""
+    for entry in owner.entries:
+        match entry:
+            case tree.RigidBody():
+                yield _symbol(path, entry.name, SymbolKind.BODY, entry.span, None)
+                yield from _body_parts(entry, f"{path}.{entry.name.text}")
+            case tree.Joints():
+                for joint in entry.entries:
+                    if isinstance(joint, tree.FixedJoint | tree.RevoluteJoint):
+                        yield _symbol(path, joint.name, SymbolKind.JOINT, joint.span, None)
+            case tree.TreeUse():
+                pass
+
+
+def _body_parts(body: tree.RigidBody, path: str) -> Iterator[Symbol]:
+    for frame in body.parts:
+        if isinstance(frame, tree.Frame):
+            yield _symbol(path, frame.name, SymbolKind.FRAME, frame.span, None)
+            for pose in frame.poses:
+                yield _symbol(f"{path}.{frame.name.text}", pose.name, SymbolKind.POSE, pose.span, None)
 
 
 def _clauses(node: tree.Node, path: str, namespace: str) -> Iterator[Symbol]:
@@ -73,7 +132,7 @@ def _clauses(node: tree.Node, path: str, namespace: str) -> Iterator[Symbol]:
             case tree.Fluent():
                 yield _symbol(path, part.name, SymbolKind.FLUENT, part.span, namespace)
             case tree.BehaviourUse():
-                own = part.namespace.reference.path
+                own = namespace if part.namespace is None else part.namespace.reference.path
                 yield _symbol(path, part.name, SymbolKind.BEHAVIOUR, part.span, own)
             case tree.ForAll() | tree.Exists():
                 yield _symbol(path, part.variable, SymbolKind.VARIABLE, part.variable.span, namespace)
@@ -81,7 +140,7 @@ def _clauses(node: tree.Node, path: str, namespace: str) -> Iterator[Symbol]:
                 pass
 
 
-def _symbol(path: str, name: tree.Name, kind: SymbolKind, extent: Span, namespace: str) -> Symbol:
+def _symbol(path: str, name: tree.Name, kind: SymbolKind, extent: Span, namespace: str | None) -> Symbol:
     return Symbol(f"{path}.{name.text}", name.text, kind, name.span, extent, namespace)
 
 
@@ -96,9 +155,9 @@ def _collect(node: tree.Node, scopes: tuple[str, ...], found: list[Reference]) -
     if isinstance(node, tree.Ref):
         found.append(Reference(node, scopes))
         return
-    if isinstance(node, tree.Template | tree.Story):
+    if isinstance(node, tree.Template | tree.Story | tree.KinematicTree | tree.SceneInstance):
         scopes = (node.name.text,)
-    elif isinstance(node, tree.Variant):
+    elif isinstance(node, tree.Variant | tree.Graph | tree.RigidBody):
         scopes = (f"{scopes[0]}.{node.name.text}", *scopes)
     for child in children(node):
         _collect(child, scopes, found)
@@ -123,51 +182,3 @@ def _nodes(value: Any) -> Iterator[tree.Node]:
     elif isinstance(value, tuple):
         for entry in cast(tuple[Any, ...], value):
             yield from _nodes(entry)
-
-
-_NAMED = r"\s*(?:\(\s*ns\s*=\s*(?P<ns>[^\W\d][\w\-]*)\s*\)\s*)?(?P<name>[^\W\d][\w\-]*)"
-_HEADERS = (
-    (re.compile(r"(?:similar\s+)?obj\s+set" + _NAMED), SymbolKind.OBJECT_SET),
-    (re.compile(r"(?:similar\s+)?ws\s+set" + _NAMED), SymbolKind.WORKSPACE_SET),
-    (re.compile(r"(?:similar\s+)?agn\s+set" + _NAMED), SymbolKind.AGENT_SET),
-    (re.compile(r"comp\b" + _NAMED), SymbolKind.COMPOSITION),
-    (re.compile(r"scene\b" + _NAMED), SymbolKind.SCENE),
-    (re.compile(r"Event\b" + _NAMED), SymbolKind.EVENT),
-    (re.compile(r"Task\b" + _NAMED), SymbolKind.TASK),
-    (re.compile(r"const\s+set" + _NAMED), SymbolKind.CONSTANT_SET),
-    (re.compile(r"Scenario\s+Template" + _NAMED), SymbolKind.TEMPLATE),
-    (re.compile(r"User\s+Story" + _NAMED), SymbolKind.STORY),
-    (re.compile(r"ns\s+(?P<name>[^\W\d][\w\-]*)(?P<ns>)"), SymbolKind.NAMESPACE),
-)
-_PART = re.compile(
-    r"(?<![\w\-.<])(?:(?P<kind>object|workspace|agent|set\s+var|var|Scenario)\s+(?P<name>[^\W\d][\w\-]*)"
-    r"|(?P<fluent>[^\W\d][\w\-]*)\s*:\s*holds\b)"
-)
-_PARTS = {
-    "object": SymbolKind.OBJECT,
-    "workspace": SymbolKind.WORKSPACE,
-    "agent": SymbolKind.AGENT,
-    "var": SymbolKind.VARIABLE,
-    "set var": SymbolKind.SET_VARIABLE,
-    "Scenario": SymbolKind.VARIANT,
-}
-
-
-def salvage(text: str) -> tuple[Symbol, ...]:
-    """Return the names that a broken declaration evidently declares, so that its users see no second error."""
-    for pattern, kind in _HEADERS:
-        match = pattern.match(text)
-        if match:
-            whole = Span(0, len(text.rstrip()))
-            path, namespace = match["name"], match["ns"] or None
-            own = Symbol(path, path, kind, Span(*match.span("name")), whole, namespace)
-            return (own, *_salvage_parts(text, match.end(), path, namespace))
-    return ()
-
-
-def _salvage_parts(text: str, start: int, path: str, namespace: str | None) -> Iterator[Symbol]:
-    for match in _PART.finditer(text, start):
-        group = "fluent" if match["fluent"] else "name"
-        kind = SymbolKind.FLUENT if match["fluent"] else _PARTS[" ".join(match["kind"].split())]
-        name, span = match[group], Span(*match.span(group))
-        yield Symbol(f"{path}.{name}", name, kind, span, Span(*match.span()), namespace)

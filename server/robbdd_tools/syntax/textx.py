@@ -44,7 +44,7 @@ class Parsed:
 
 
 def parse_chunk(language: str, text: str) -> Parsed | Rejected:
-    """Parse one chunk of a ``bdd`` or ``scene`` file."""
+    """Parse one chunk of a file whose name ends in ``language``."""
     textx: Any = import_module("textx")
     try:
         chunk = _metamodel(language).model_from_str(text)
@@ -67,23 +67,36 @@ def _expectation(rules: Any) -> Expectation:
     names: set[str] = set()
     for rule in rules or ():
         keyword = getattr(rule, "to_match", None)
-        if rule.rule_name:
+        # The separator of a repetition is a keyword that textX names "sep".
+        if rule.rule_name and rule.rule_name != "sep":
             names.add(str(rule.rule_name))
         elif keyword is not None:
             literals.add(str(keyword).removesuffix(r"\b"))
     return Expectation(frozenset(literals), frozenset(names))
 
 
+_GRAMMARS = {"ktree": "scenex"}
+"""File kinds that share the grammar of another one."""
+
+
 @cache
 def grammar_text(language: str) -> str:
     """Return the whole grammar of a file kind: its own rules, the shared ones, the phrases of the catalog."""
-    grammars = [data_file("grammar", f"{name}.tx").read_text(encoding="utf-8") for name in (language, "base")]
+    grammars = [data_file("grammar", f"{name}.tx").read_text(encoding="utf-8") for name in (_grammar(language), "base")]
     if language == "bdd":
         grammars.append(phrase_rules(load_catalog()))
     return "\n".join(grammars)
 
 
-@cache
+def _grammar(language: str) -> str:
+    return _GRAMMARS.get(language, language)
+
+
 def _metamodel(language: str) -> Any:
+    return _compiled(_grammar(language))
+
+
+@cache
+def _compiled(language: str) -> Any:
     textx: Any = import_module("textx")
     return textx.metamodel_from_str(grammar_text(language), autokwd=True, memoization=True)

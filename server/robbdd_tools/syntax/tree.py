@@ -1,331 +1,272 @@
-"""The syntax trees: one frozen class per grammar rule, fields named as in the grammar.
-
-Spans count from the start of the chunk, so that a tree stays valid wherever its text moves to.
-"""
+"""The syntax trees under one name: what the shared grammar and those of the file kinds are read into."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from robbdd_tools.syntax.scene_tree import (
-    Composition as Composition,
+from robbdd_tools.syntax.bdd_tree import (
+    After,
+    Assignment,
+    Before,
+    BehaviourTree,
+    BehaviourUse,
+    Body,
+    Conjunction,
+    ConstantSet,
+    Disjunction,
+    During,
+    Event,
+    Exists,
+    Expression,
+    Fluent,
+    ForAll,
+    Negation,
+    Occurrence,
+    PhraseUse,
+    Product,
+    Selection,
+    SetExpression,
+    SetList,
+    Story,
+    Table,
+    TableRow,
+    Task,
+    Template,
+    TextArgument,
+    TextClause,
+    TextPredicate,
+    TimeConstraint,
+    TreeNode,
+    Value,
+    ValueList,
+    Variable,
+    Variant,
+    When,
+)
+from robbdd_tools.syntax.bddx_tree import (
+    Between,
+    Distance,
+    Equals,
+    Evaluation,
+    Execution,
+    GreaterThan,
+    GroundTruth,
+    Implementation,
+    LessThan,
+    LinearDistance,
+    Observation,
+    Policy,
+    Provider,
+    RosAction,
+    RosTopic,
+    SimulatedStates,
+    StringMapper,
+    StringMapping,
+    Transforms,
+    TrinaryTopic,
+)
+from robbdd_tools.syntax.kinematics_tree import (
+    Actuation,
+    Axes,
+    DirectionCosines,
+    Euler,
+    EulerAngles,
+    FixedJoint,
+    Frame,
+    FrameAxis,
+    Graph,
+    Inertia,
+    JointOffset,
+    Joints,
+    KinematicTree,
+    Limit,
+    Limits,
+    Mimic,
+    Orientation,
+    ParallelChains,
+    Polarity,
+    Pose,
+    Quaternion,
+    RevoluteJoint,
+    RigidBody,
+    Sample,
+    SerialChain,
+    TreeEntry,
+    TreeInstance,
+    TreeUse,
+    Vector,
 )
 from robbdd_tools.syntax.scene_tree import (
-    ElementSet as ElementSet,
+    CatalogEntry,
+    Composition,
+    ElementSet,
+    Import,
+    Link,
+    Member,
+    Name,
+    Namespace,
+    NamespaceArgument,
+    Node,
+    Number,
+    PythonAttribute,
+    Ref,
+    Scene,
+    SimilarSet,
+    Text,
 )
-from robbdd_tools.syntax.scene_tree import (
-    Import as Import,
+from robbdd_tools.syntax.scenex_tree import (
+    Camera,
+    Distribution,
+    Mapping,
+    Model,
+    Modelled,
+    ModelSource,
+    Normal,
+    RosPath,
+    SceneInstance,
+    Sensor,
+    SystemPath,
+    Uniform,
+    UniformRotation,
 )
-from robbdd_tools.syntax.scene_tree import (
-    Link as Link,
-)
-from robbdd_tools.syntax.scene_tree import (
-    Member as Member,
-)
-from robbdd_tools.syntax.scene_tree import (
-    Name as Name,
-)
-from robbdd_tools.syntax.scene_tree import (
-    Namespace as Namespace,
-)
-from robbdd_tools.syntax.scene_tree import (
-    NamespaceArgument as NamespaceArgument,
-)
-from robbdd_tools.syntax.scene_tree import (
-    Node as Node,
-)
-from robbdd_tools.syntax.scene_tree import (
-    Number as Number,
-)
-from robbdd_tools.syntax.scene_tree import (
-    Ref as Ref,
-)
-from robbdd_tools.syntax.scene_tree import (
-    Scene as Scene,
-)
-from robbdd_tools.syntax.scene_tree import (
-    SimilarSet as SimilarSet,
-)
-from robbdd_tools.syntax.scene_tree import (
-    Text as Text,
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Event(Node):
-    """``Event (ns=…) name``."""
-
-    namespace: NamespaceArgument
-    name: Name
-
-
-@dataclass(frozen=True, slots=True)
-class Task(Node):
-    """``Task (ns=…) name``."""
-
-    namespace: NamespaceArgument
-    name: Name
-
-
-Value = Ref | Number | Text
-
-
-@dataclass(frozen=True, slots=True)
-class ConstantSet(Node):
-    """``const set (ns=…) name { … }``."""
-
-    namespace: NamespaceArgument
-    name: Name
-    values: tuple[Value, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class During(Node):
-    """``from <start> until <end>``."""
-
-    start: Ref
-    end: Ref
-
-
-@dataclass(frozen=True, slots=True)
-class Before(Node):
-    """``[h seconds] before <event>``."""
-
-    horizon: Number | None
-    event: Ref
-
-
-@dataclass(frozen=True, slots=True)
-class After(Node):
-    """``[h seconds] after <event>``."""
-
-    horizon: Number | None
-    event: Ref
-
-
-TimeConstraint = During | Before | After
-
-
-@dataclass(frozen=True, slots=True)
-class Variable(Node):
-    """``var name`` or ``set var name``."""
-
-    name: Name
-    is_set: bool
-
-
-@dataclass(frozen=True, slots=True)
-class PhraseUse(Node):
-    """A catalog phrase with its slots filled: ``word`` is the predicate's or behaviour's name."""
-
-    word: str
-    arguments: tuple[tuple[str, Ref | Name], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class TextArgument(Node):
-    """``name=<variable>`` inside ``pred(…)``."""
-
-    name: Name
-    value: Ref
-
-
-@dataclass(frozen=True, slots=True)
-class TextPredicate(Node):
-    """``pred("template", name=<variable>, …)``."""
-
-    template: Text
-    arguments: tuple[TextArgument, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Fluent(Node):
-    """``name: holds(predicate, time constraint)``."""
-
-    name: Name
-    predicate: PhraseUse | TextPredicate
-    time: TimeConstraint
-
-
-@dataclass(frozen=True, slots=True)
-class TextClause(Node):
-    """``"free text" time-constraint``."""
-
-    text: Text
-    time: TimeConstraint
-
-
-@dataclass(frozen=True, slots=True)
-class Negation(Node):
-    """``( not e )``."""
-
-    operand: Expression
-
-
-@dataclass(frozen=True, slots=True)
-class Conjunction(Node):
-    """``( e and e … )``, also a lone expression in parentheses."""
-
-    operands: tuple[Expression, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Disjunction(Node):
-    """``( e or e … )``."""
-
-    operands: tuple[Expression, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Exists(Node):
-    """``( var y exists in <set> ) such that { e }``."""
-
-    variable: Name
-    in_set: Ref
-    body: Expression
-
-
-Expression = Fluent | TextClause | Negation | Conjunction | Disjunction | Exists
-
-
-@dataclass(frozen=True, slots=True)
-class Occurrence(Node):
-    """``event <e> occurs``."""
-
-    event: Ref
-
-
-@dataclass(frozen=True, slots=True)
-class BehaviourUse(Node):
-    """``Behaviour (ns=…) name { duration: … action }``."""
-
-    namespace: NamespaceArgument
-    name: Name
-    duration: During
-    action: PhraseUse
-
-
-@dataclass(frozen=True, slots=True)
-class When(Node):
-    """``When:`` with its events and its behaviour."""
-
-    events: tuple[Occurrence, ...]
-    behaviour: BehaviourUse
-
-
-@dataclass(frozen=True, slots=True)
-class ForAll(Node):
-    """``for all ( var x in <set> ) { body }``."""
-
-    variable: Name
-    in_set: Ref
-    body: Body
-
-
-@dataclass(frozen=True, slots=True)
-class Body(Node):
-    """Given, then ``When`` or ``for all``, then Then."""
-
-    given: Expression | None
-    when: When | None
-    for_all: ForAll | None
-    then: Expression | None
-
-
-@dataclass(frozen=True, slots=True)
-class Template(Node):
-    """``Scenario Template (ns=…) name { … }``."""
-
-    namespace: NamespaceArgument
-    name: Name
-    duration: During | None
-    task: Ref | None
-    variables: tuple[Variable, ...]
-    body: Body
-
-
-@dataclass(frozen=True, slots=True)
-class ValueList(Node):
-    """``{ value, value }``."""
-
-    values: tuple[Value, ...]
-
-
-SetExpression = Link | ValueList
-
-
-@dataclass(frozen=True, slots=True)
-class Selection(Node):
-    """``select N [repeated] combinations|permutations from <set>``."""
-
-    count: Number
-    repeated: bool
-    kind: str
-    source: Ref
-
-
-@dataclass(frozen=True, slots=True)
-class SetList(Node):
-    """``{ { … }, { … } }``."""
-
-    sets: tuple[ValueList, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Assignment(Node):
-    """``var <v>: SET`` or ``set var <v>: SETS``."""
-
-    variable: Ref
-    choices: SetExpression | Selection | SetList
-
-
-@dataclass(frozen=True, slots=True)
-class Product(Node):
-    """Cartesian product of the assignments."""
-
-    assignments: tuple[Assignment, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class TableRow(Node):
-    """One row of values."""
-
-    cells: tuple[Value | SetExpression, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Table(Node):
-    """Header of variables and rows of values."""
-
-    header: tuple[Ref, ...]
-    rows: tuple[TableRow, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Variant(Node):
-    """``Scenario name { … }`` inside a user story."""
-
-    name: Name
-    template: Ref
-    scene: Ref
-    given: Expression | None
-    events: tuple[Occurrence, ...]
-    then: Expression | None
-    variation: Table | Product
-
-
-@dataclass(frozen=True, slots=True)
-class Story(Node):
-    """``User Story (ns=…) name { … }``."""
-
-    namespace: NamespaceArgument
-    name: Name
-    role: Text
-    feature: Text
-    benefit: Text
-    variants: tuple[Variant, ...]
-
 
 DeclarationTree = (
-    Import | Namespace | ElementSet | SimilarSet | Composition | Scene | Event | Task | ConstantSet | Template | Story
+    Import
+    | Namespace
+    | ElementSet
+    | SimilarSet
+    | Composition
+    | Scene
+    | Event
+    | Task
+    | BehaviourTree
+    | ConstantSet
+    | Template
+    | Story
+    | Distribution
+    | KinematicTree
+    | TreeInstance
+    | SceneInstance
+    | Implementation
+    | Provider
+    | Observation
+    | Policy
+    | Execution
 )
+
+__all__ = [
+    "Actuation",
+    "After",
+    "Assignment",
+    "Axes",
+    "Before",
+    "BehaviourTree",
+    "BehaviourUse",
+    "Between",
+    "Body",
+    "Camera",
+    "CatalogEntry",
+    "Composition",
+    "Conjunction",
+    "ConstantSet",
+    "DeclarationTree",
+    "DirectionCosines",
+    "Disjunction",
+    "Distance",
+    "Distribution",
+    "During",
+    "ElementSet",
+    "Equals",
+    "Euler",
+    "EulerAngles",
+    "Evaluation",
+    "Event",
+    "Execution",
+    "Exists",
+    "Expression",
+    "FixedJoint",
+    "Fluent",
+    "ForAll",
+    "Frame",
+    "FrameAxis",
+    "Graph",
+    "GreaterThan",
+    "GroundTruth",
+    "Implementation",
+    "Import",
+    "Inertia",
+    "JointOffset",
+    "Joints",
+    "KinematicTree",
+    "LessThan",
+    "Limit",
+    "Limits",
+    "LinearDistance",
+    "Link",
+    "Mapping",
+    "Member",
+    "Mimic",
+    "Model",
+    "ModelSource",
+    "Modelled",
+    "Name",
+    "Namespace",
+    "NamespaceArgument",
+    "Negation",
+    "Node",
+    "Normal",
+    "Number",
+    "Observation",
+    "Occurrence",
+    "Orientation",
+    "ParallelChains",
+    "PhraseUse",
+    "Polarity",
+    "Policy",
+    "Pose",
+    "Product",
+    "Provider",
+    "PythonAttribute",
+    "Quaternion",
+    "Ref",
+    "RevoluteJoint",
+    "RigidBody",
+    "RosAction",
+    "RosPath",
+    "RosTopic",
+    "Sample",
+    "Scene",
+    "SceneInstance",
+    "Selection",
+    "Sensor",
+    "SerialChain",
+    "SetExpression",
+    "SetList",
+    "SimilarSet",
+    "SimulatedStates",
+    "Story",
+    "StringMapper",
+    "StringMapping",
+    "SystemPath",
+    "Table",
+    "TableRow",
+    "Task",
+    "Template",
+    "Text",
+    "TextArgument",
+    "TextClause",
+    "TextPredicate",
+    "TimeConstraint",
+    "Transforms",
+    "TreeEntry",
+    "TreeInstance",
+    "TreeNode",
+    "TreeUse",
+    "TrinaryTopic",
+    "Uniform",
+    "UniformRotation",
+    "Value",
+    "ValueList",
+    "Variable",
+    "Variant",
+    "Vector",
+    "When",
+]

@@ -14,4 +14,5 @@ PICK_PLACE = Behaviour(
     sentence='"{agent}" picks "{object}" and places it at "{workspace}"',
     events=("pick-start", "pick-end", "place-start", "place-end"),
     doc="The agent grasps the object where it lies, carries it to the workspace and releases it there.",
+    aliases=("<agent> picks <object> and places it at <workspace>",),
 )

@@ -1,0 +1,306 @@
+"""The syntax trees of acceptance criteria: one frozen class per grammar rule, fields named as in the grammar.
+
+Spans count from the start of the chunk, so that a tree stays valid wherever its text moves to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from robbdd_tools.syntax.scene_tree import Link, Name, NamespaceArgument, Node, Number, PythonAttribute, Ref, Text
+
+
+@dataclass(frozen=True, slots=True)
+class Event(Node):
+    """``Event (ns=…) name``."""
+
+    namespace: NamespaceArgument | None
+    name: Name
+
+
+@dataclass(frozen=True, slots=True)
+class Task(Node):
+    """``Task (ns=…) name``."""
+
+    namespace: NamespaceArgument | None
+    name: Name
+
+
+Value = Ref | Number | Text
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantSet(Node):
+    """``const set (ns=…) name { … }``."""
+
+    namespace: NamespaceArgument | None
+    name: Name
+    values: tuple[Value, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class During(Node):
+    """``from <start> until <end>``."""
+
+    start: Ref
+    end: Ref
+
+
+@dataclass(frozen=True, slots=True)
+class Before(Node):
+    """``[h seconds] before <event>``."""
+
+    horizon: Number | None
+    event: Ref
+
+
+@dataclass(frozen=True, slots=True)
+class After(Node):
+    """``[h seconds] after <event>``."""
+
+    horizon: Number | None
+    event: Ref
+
+
+TimeConstraint = During | Before | After
+
+
+@dataclass(frozen=True, slots=True)
+class Variable(Node):
+    """``var name`` or ``set var name``."""
+
+    name: Name
+    is_set: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PhraseUse(Node):
+    """A catalog phrase with its slots filled: ``word`` is the predicate's or behaviour's name."""
+
+    word: str
+    arguments: tuple[tuple[str, Ref | Name], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TextArgument(Node):
+    """``name=<variable>`` inside ``pred(…)``."""
+
+    name: Name
+    value: Ref
+
+
+@dataclass(frozen=True, slots=True)
+class TextPredicate(Node):
+    """``pred("template", name=<variable>, …)``."""
+
+    template: Text
+    arguments: tuple[TextArgument, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Fluent(Node):
+    """``name: holds(predicate, time constraint)``; one written without a name is given one (``unnamed.py``)."""
+
+    name: Name
+    predicate: PhraseUse | TextPredicate
+    time: TimeConstraint
+
+
+@dataclass(frozen=True, slots=True)
+class TextClause(Node):
+    """``"free text" time-constraint``."""
+
+    text: Text
+    time: TimeConstraint
+
+
+@dataclass(frozen=True, slots=True)
+class Negation(Node):
+    """``( not e )``."""
+
+    operand: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Conjunction(Node):
+    """``( e and e … )``, also a lone expression in parentheses."""
+
+    operands: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Disjunction(Node):
+    """``( e or e … )``."""
+
+    operands: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Exists(Node):
+    """``( var y exists in <set> ) such that { e }``."""
+
+    variable: Name
+    in_set: Ref
+    body: Expression
+
+
+Expression = Fluent | TextClause | Negation | Conjunction | Disjunction | Exists
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrence(Node):
+    """``event <e> occurs``."""
+
+    event: Ref
+
+
+@dataclass(frozen=True, slots=True)
+class BehaviourUse(Node):
+    """``Behaviour (ns=…) name { duration: … action node: … }``.
+
+    ``duration`` is ``None`` where the published form gives none. ``node`` is that of a behaviour tree to link to.
+    """
+
+    namespace: NamespaceArgument | None
+    name: Name
+    duration: During | None
+    action: PhraseUse
+    node: Ref | None
+
+
+@dataclass(frozen=True, slots=True)
+class When(Node):
+    """``When:`` with its events and its behaviour."""
+
+    events: tuple[Occurrence, ...]
+    behaviour: BehaviourUse
+
+
+@dataclass(frozen=True, slots=True)
+class ForAll(Node):
+    """``for all ( var x in <set> ) { body }``."""
+
+    variable: Name
+    in_set: Ref
+    body: Body
+
+
+@dataclass(frozen=True, slots=True)
+class Body(Node):
+    """Given, then ``When`` or ``for all``, then Then."""
+
+    given: Expression | None
+    when: When | None
+    for_all: ForAll | None
+    then: Expression | None
+
+
+@dataclass(frozen=True, slots=True)
+class Template(Node):
+    """``Scenario Template (ns=…) name { … }``."""
+
+    namespace: NamespaceArgument | None
+    name: Name
+    duration: During | None
+    task: Ref | None
+    variables: tuple[Variable, ...]
+    body: Body
+
+
+@dataclass(frozen=True, slots=True)
+class TreeNode(Node):
+    """``node name`` inside a behaviour tree."""
+
+    name: Name
+
+
+@dataclass(frozen=True, slots=True)
+class BehaviourTree(Node):
+    """``Behaviour Tree (ns=…) name { py { … } node … }``: the nodes that behaviours can be linked to."""
+
+    namespace: NamespaceArgument | None
+    name: Name
+    source: PythonAttribute | None
+    nodes: tuple[TreeNode, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ValueList(Node):
+    """``{ value, value }``."""
+
+    values: tuple[Value, ...]
+
+
+SetExpression = Link | ValueList
+
+
+@dataclass(frozen=True, slots=True)
+class Selection(Node):
+    """``select N [repeated] combinations|permutations from <set>``."""
+
+    count: Number
+    repeated: bool
+    kind: str
+    source: Ref
+
+
+@dataclass(frozen=True, slots=True)
+class SetList(Node):
+    """``{ { … }, { … } }``."""
+
+    sets: tuple[ValueList, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment(Node):
+    """``var <v>: SET`` or ``set var <v>: SETS``."""
+
+    variable: Ref
+    choices: SetExpression | Selection | SetList
+
+
+@dataclass(frozen=True, slots=True)
+class Product(Node):
+    """Cartesian product of the assignments."""
+
+    assignments: tuple[Assignment, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TableRow(Node):
+    """One row of values."""
+
+    cells: tuple[Value | SetExpression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Table(Node):
+    """Header of variables and rows of values."""
+
+    header: tuple[Ref, ...]
+    rows: tuple[TableRow, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Variant(Node):
+    """``Scenario name { … }`` inside a user story."""
+
+    name: Name
+    template: Ref
+    scene: Ref
+    given: Expression | None
+    events: tuple[Occurrence, ...]
+    then: Expression | None
+    variation: Table | Product
+
+
+@dataclass(frozen=True, slots=True)
+class Story(Node):
+    """``User Story (ns=…) name { … }``."""
+
+    namespace: NamespaceArgument | None
+    name: Name
+    role: Text
+    feature: Text
+    benefit: Text
+    variants: tuple[Variant, ...]

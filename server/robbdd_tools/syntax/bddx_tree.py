@@ -1,0 +1,195 @@
+"""The syntax trees of executions: behaviour implementations, observations, policies, scenario executions.
+
+Numbers are kept as written, with their units beside them where the language leaves a choice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from robbdd_tools.syntax.scene_tree import (
+    CatalogEntry,
+    Link,
+    Name,
+    NamespaceArgument,
+    Node,
+    Number,
+    PythonAttribute,
+    Ref,
+    Text,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class RosAction(Node):
+    """``bhv action: "/name"``."""
+
+    action: Text
+
+
+@dataclass(frozen=True, slots=True)
+class Implementation(Node):
+    """``bhv impl (ns=…) name { … }``."""
+
+    namespace: NamespaceArgument
+    name: Name
+    source: RosAction | PythonAttribute | CatalogEntry
+
+
+@dataclass(frozen=True, slots=True)
+class RosTopic(Node):
+    """``ros topic: "/name" type: "pkg/msg/Type"``."""
+
+    topic: Text
+    type: Text
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedStates(Node):
+    """``ros simulation entity state update-rate: … Hz``."""
+
+    rate: Number
+
+
+@dataclass(frozen=True, slots=True)
+class Transforms(Node):
+    """``ros transform listener reference-frame: "…" update-rate: … Hz``."""
+
+    frame: Text
+    rate: Number
+
+
+@dataclass(frozen=True, slots=True)
+class GroundTruth(Node):
+    """``simulation ground truth update-rate: … Hz [noise: … unit] [latency: … s]``.
+
+    ``noise`` is the standard deviation of a position, by axis.
+    """
+
+    rate: Number
+    noise: Number | None
+    noise_unit: str | None
+    latency: Number | None
+
+
+@dataclass(frozen=True, slots=True)
+class Provider(Node):
+    """``obs provider (ns=…) name { … }``."""
+
+    namespace: NamespaceArgument
+    name: Name
+    source: RosTopic | SimulatedStates | Transforms | GroundTruth
+
+
+@dataclass(frozen=True, slots=True)
+class StringMapping(Node):
+    """``"name in the message" to obj <…>``."""
+
+    text: Text
+    target: Link
+
+
+@dataclass(frozen=True, slots=True)
+class StringMapper(Node):
+    """``string { … }``."""
+
+    entries: tuple[StringMapping, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Observation(Node):
+    """``observation (ns=…) name { provider: <…> observes … time extractor: … entity mapper: … }``."""
+
+    namespace: NamespaceArgument
+    name: Name
+    provider: Ref
+    targets: tuple[Link, ...]
+    time_extractor: PythonAttribute | None
+    entity_mapper: PythonAttribute | StringMapper | None
+
+
+@dataclass(frozen=True, slots=True)
+class Distance(Node):
+    """A length with its unit: ``mm``, ``cm`` or ``m``."""
+
+    value: Number
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class LessThan(Node):
+    """``less-than: d``."""
+
+    bound: Distance
+
+
+@dataclass(frozen=True, slots=True)
+class GreaterThan(Node):
+    """``greater-than: d``."""
+
+    bound: Distance
+
+
+@dataclass(frozen=True, slots=True)
+class Between(Node):
+    """``between: d and d``."""
+
+    lower: Distance
+    upper: Distance
+
+
+@dataclass(frozen=True, slots=True)
+class Equals(Node):
+    """``equals: d tolerance: d``."""
+
+    value: Distance
+    tolerance: Distance
+
+
+@dataclass(frozen=True, slots=True)
+class LinearDistance(Node):
+    """``linear distance { condition [max time offset: … s] }``."""
+
+    condition: LessThan | GreaterThan | Between | Equals
+    max_time_offset: Number | None
+
+
+@dataclass(frozen=True, slots=True)
+class TrinaryTopic(Node):
+    """``trinary topic: "/name"``."""
+
+    topic: Text
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation(Node):
+    """``observations: { … } evaluator: …``."""
+
+    observations: tuple[Ref, ...]
+    evaluator: LinearDistance | PythonAttribute
+
+
+@dataclass(frozen=True, slots=True)
+class Policy(Node):
+    """``obs policy (ns=…) name for <fluent> [horizon: … seconds] { … }``."""
+
+    namespace: NamespaceArgument
+    name: Name
+    fluent: Ref
+    horizon: Number | None
+    rule: TrinaryTopic | Evaluation
+
+
+@dataclass(frozen=True, slots=True)
+class Execution(Node):
+    """``Scenario Exec (ns=…) name { … }``; ``timeout`` in seconds of simulated time."""
+
+    namespace: NamespaceArgument
+    name: Name
+    variant: Ref
+    scene: Ref
+    behaviour: Ref
+    policies: tuple[Ref, ...]
+    repeat: Number | None
+    seed: Number | None
+    timeout: Number | None

@@ -1,0 +1,110 @@
+"""What can be saved of the names in a declaration that did not parse."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from robbdd_tools.base.document import Span
+from robbdd_tools.syntax.declaration import FILE_NAMESPACE, Symbol, SymbolKind
+
+_NAME = r"(?P<name>[^\W\d][\w\-]*)"
+_ARGUMENT = r"\(\s*ns\s*=\s*(?P<ns>[^\W\d][\w\-]*)\s*\)\s*"
+_NAMED = rf"\s*(?:{_ARGUMENT})?{_NAME}"
+_HEADERS = (
+    (re.compile(r"(?:similar\s+)?obj\s+set" + _NAMED), SymbolKind.OBJECT_SET),
+    (re.compile(r"(?:similar\s+)?ws\s+set" + _NAMED), SymbolKind.WORKSPACE_SET),
+    (re.compile(r"(?:similar\s+)?agn\s+set" + _NAMED), SymbolKind.AGENT_SET),
+    (re.compile(r"comp\b" + _NAMED), SymbolKind.COMPOSITION),
+    (re.compile(r"scene\s+inst\b" + _NAMED), SymbolKind.SCENE_INSTANCE),
+    (re.compile(r"scene\b" + _NAMED), SymbolKind.SCENE),
+    (re.compile(r"Event\b" + _NAMED), SymbolKind.EVENT),
+    (re.compile(r"Task\b" + _NAMED), SymbolKind.TASK),
+    (re.compile(r"Behaviour\s+Tree\b" + _NAMED), SymbolKind.BEHAVIOUR_TREE),
+    (re.compile(r"const\s+set" + _NAMED), SymbolKind.CONSTANT_SET),
+    (re.compile(r"Scenario\s+Template" + _NAMED), SymbolKind.TEMPLATE),
+    (re.compile(r"User\s+Story" + _NAMED), SymbolKind.STORY),
+    (re.compile(r"distrib\b" + _NAMED), SymbolKind.DISTRIBUTION),
+    (re.compile(rf"ktree\s+inst\s*{_ARGUMENT}{_NAME}"), SymbolKind.TREE_INSTANCE),
+    (re.compile(rf"ktree\s*{_ARGUMENT}{_NAME}"), SymbolKind.TREE),
+    (re.compile(rf"ktree\s+{_NAME}(?P<ns>)"), SymbolKind.TREE_TEMPLATE),
+    (re.compile(r"bhv\s+impl\b" + _NAMED), SymbolKind.IMPLEMENTATION),
+    (re.compile(r"obs\s+provider\b" + _NAMED), SymbolKind.PROVIDER),
+    (re.compile(r"obs\s+policy\b" + _NAMED), SymbolKind.POLICY),
+    (re.compile(r"observation\b" + _NAMED), SymbolKind.OBSERVATION),
+    (re.compile(r"Scenario\s+Exec\b" + _NAMED), SymbolKind.EXECUTION),
+    (re.compile(rf"ns\s+{_NAME}(?P<ns>)"), SymbolKind.NAMESPACE),
+)
+_WITHOUT_IRI = {SymbolKind.NAMESPACE, SymbolKind.TREE_TEMPLATE}
+_PART = re.compile(
+    r"(?<![\w\-.<])(?:(?P<kind>object|workspace|agent|set\s+var|var|Scenario|node)\s+(?P<name>[^\W\d][\w\-]*)"
+    r"|(?P<fluent>[^\W\d][\w\-]*)\s*:\s*holds\b)"
+)
+_PARTS = {
+    "object": SymbolKind.OBJECT,
+    "workspace": SymbolKind.WORKSPACE,
+    "agent": SymbolKind.AGENT,
+    "var": SymbolKind.VARIABLE,
+    "set var": SymbolKind.SET_VARIABLE,
+    "Scenario": SymbolKind.VARIANT,
+    "node": SymbolKind.TREE_NODE,
+}
+_KINEMATIC = {SymbolKind.TREE, SymbolKind.TREE_TEMPLATE, SymbolKind.SCENE_INSTANCE}
+_KINEMATIC_PART = re.compile(
+    r"(?<![\w\-.<])(?P<kind>kgraph|body|frame|pose|fixed|revolute|model|camera|force-torque|imu)"
+    rf"\s+(?:{_ARGUMENT})?{_NAME}"
+)
+_KINEMATIC_PARTS = {
+    "kgraph": SymbolKind.GRAPH,
+    "body": SymbolKind.BODY,
+    "frame": SymbolKind.FRAME,
+    "pose": SymbolKind.POSE,
+    "fixed": SymbolKind.JOINT,
+    "revolute": SymbolKind.JOINT,
+    "model": SymbolKind.MODEL,
+    "camera": SymbolKind.SENSOR,
+    "force-torque": SymbolKind.SENSOR,
+    "imu": SymbolKind.SENSOR,
+}
+
+
+def salvage(text: str) -> tuple[Symbol, ...]:
+    """Return the names that a broken declaration evidently declares, so that its users see no second error."""
+    for pattern, kind in _HEADERS:
+        match = pattern.match(text)
+        if match:
+            whole = Span(0, len(text.rstrip()))
+            namespace = None if kind in _WITHOUT_IRI else match["ns"] or FILE_NAMESPACE
+            own = Symbol(match["name"], match["name"], kind, Span(*match.span("name")), whole, namespace)
+            parts = _kinematic_parts if kind in _KINEMATIC else _parts
+            return (own, *parts(text, match.end(), own))
+    return ()
+
+
+def _parts(text: str, start: int, own: Symbol) -> Iterator[Symbol]:
+    for match in _PART.finditer(text, start):
+        group = "fluent" if match["fluent"] else "name"
+        kind = SymbolKind.FLUENT if match["fluent"] else _PARTS[" ".join(match["kind"].split())]
+        name, span = match[group], Span(*match.span(group))
+        yield Symbol(f"{own.path}.{name}", name, kind, span, Span(*match.span()), own.namespace)
+
+
+def _kinematic_parts(text: str, start: int, own: Symbol) -> Iterator[Symbol]:
+    """Yield bodies, frames and the like; a part belongs to the last thing above it that can hold such parts."""
+    graph = body = frame = own.path
+    for found in _KINEMATIC_PART.finditer(text, start):
+        name, kind = found["name"], _KINEMATIC_PARTS[found["kind"]]
+        match kind:
+            case SymbolKind.GRAPH:
+                path = graph = f"{own.path}.{name}"
+            case SymbolKind.BODY:
+                path = body = f"{graph}.{name}"
+            case SymbolKind.FRAME:
+                path = frame = f"{body}.{name}"
+            case SymbolKind.POSE:
+                path = f"{frame}.{name}"
+            case SymbolKind.JOINT:
+                path = f"{graph}.{name}"
+            case _:
+                path = f"{own.path}.{name}"
+        yield Symbol(path, name, kind, Span(*found.span("name")), Span(*found.span()), found["ns"])

@@ -1,0 +1,127 @@
+"""The syntax trees of executable scenes: distributions, models, sensors and scene instances."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from robbdd_tools.syntax.kinematics_tree import Graph, Vector
+from robbdd_tools.syntax.scene_tree import (
+    CatalogEntry,
+    Name,
+    NamespaceArgument,
+    Node,
+    Number,
+    PythonAttribute,
+    Ref,
+    Text,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Uniform(Node):
+    """``uniform { dimension lower upper }``."""
+
+    dimension: Number
+    lower: Vector | Number
+    upper: Vector | Number
+
+
+@dataclass(frozen=True, slots=True)
+class UniformRotation(Node):
+    """``uniform-rotation``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Normal(Node):
+    """``normal { dimension mean … }``; ``spread`` is a covariance matrix or a standard deviation."""
+
+    dimension: Number
+    mean: Vector | Number
+    spread: Vector | Number
+
+
+@dataclass(frozen=True, slots=True)
+class Distribution(Node):
+    """``distrib (ns=…) name { … }``."""
+
+    namespace: NamespaceArgument
+    name: Name
+    law: Uniform | UniformRotation | Normal
+
+
+@dataclass(frozen=True, slots=True)
+class SystemPath(Node):
+    """``sys path = '…'``: relative to the file; ``~`` is the user's home folder."""
+
+    path: Text
+
+
+@dataclass(frozen=True, slots=True)
+class RosPath(Node):
+    """``ros pkg = '…', path = '…'``."""
+
+    package: Text
+    path: Text
+
+
+ModelSource = SystemPath | RosPath | PythonAttribute | CatalogEntry
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping(Node):
+    """``map body <…> to "…"`` or ``map tree <…> to "…"``."""
+
+    reference: Ref
+    target: Text
+
+
+@dataclass(frozen=True, slots=True)
+class Model(Node):
+    """``model name as mjcf { source mappings }``."""
+
+    name: Name
+    kind: str
+    source: ModelSource
+    mappings: tuple[Mapping, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Camera(Node):
+    """``camera name { … }``: resolution in pixels, rate in Hz."""
+
+    name: Name
+    frame: Ref
+    type: str
+    resolution: Vector
+    fov: Number
+    fov_unit: str
+    rate: Number
+
+
+@dataclass(frozen=True, slots=True)
+class Sensor(Node):
+    """``force-torque name { … }`` or ``imu name { … }``: rate in Hz."""
+
+    kind: str
+    name: Name
+    frame: Ref
+    observes: tuple[str, ...]
+    rate: Number
+
+
+@dataclass(frozen=True, slots=True)
+class Modelled(Node):
+    """``obj <…> { … }``, ``obj set``, ``ws``, ``agn``, ``agn set``: what an element of the scene is realised by."""
+
+    reference: Ref
+    entries: tuple[Model | Camera | Sensor | Modelled, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SceneInstance(Node):
+    """``scene inst (ns=…) name { scene: <…> … }``."""
+
+    namespace: NamespaceArgument
+    name: Name
+    scene: Ref
+    entries: tuple[Graph | Model | Modelled, ...]
