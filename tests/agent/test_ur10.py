@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agent.worlds import BALL, BIN_WS, CUBE, OTHER_WS, SCENE, execution, pick_place
+from agent.worlds import BALL, BIN, BIN_WS, CUBE, OTHER_BIN, OTHER_WS, SCENE, execution, pick_place
 from robbdd_tools.agent.clauses import decide
 from robbdd_tools.agent.execution import Call, Execution
 from robbdd_tools.agent.kinematics import arm_of
@@ -20,6 +20,7 @@ from robbdd_tools.agent.sentences import read_clause
 from robbdd_tools.catalog.robots.ur10 import UR10
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.run.protocol import ConfigSpec
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 ARM = arm_of(UR10)
 AGENT = "env:ur10"
 BENCH = replace(SCENE, agents=(AGENT,))
+LOW = replace(BENCH, config=tuple(ConfigSpec(name, "height_scale", "0.8") for name in (BIN, OTHER_BIN)))
 DH = (
     (0.0, 0.1273, pi / 2),
     (-0.612, 0.0, 0.0),
@@ -98,7 +100,7 @@ def judged(run: Execution, sentence: str) -> Verdict:
 @pytest.mark.parametrize("thing", [CUBE, BALL])
 @pytest.mark.parametrize(("seed", "goal"), [(1, BIN_WS), (2, OTHER_WS)])
 def test_the_ur10_brings_a_thing_into_the_bin(thing: str, seed: int, goal: str) -> None:
-    run = execution([pick_place(thing, goal, AGENT)], BENCH, seed)
+    run = execution([pick_place(thing, goal, AGENT)], LOW, seed)
     trace = to_the_end(run)
     assert not trace.remark
     held = judged(run, f'"{thing}" is held by "{AGENT}" from "t:pick-end" until "t:place-start"')
@@ -110,7 +112,7 @@ def test_the_ur10_brings_a_thing_into_the_bin(thing: str, seed: int, goal: str) 
 
 @pytest.mark.physics
 def test_velocity_and_torque_stay_within_the_published_limits() -> None:
-    run = execution([pick_place(BALL, OTHER_WS, AGENT)], BENCH)
+    run = execution([pick_place(BALL, OTHER_WS, AGENT)], LOW)
     simulation = run.simulation
     robot = simulation.robots[AGENT]
     speeds: list[FloatArray] = []
@@ -126,6 +128,34 @@ def test_velocity_and_torque_stay_within_the_published_limits() -> None:
     assert (np.max(speeds, axis=0) <= UR10.velocity_limits).all()
     assert (np.max(torques, axis=0) <= UR10.torque_limits).all()
     assert np.max(speeds) > 0.5
+
+
+@pytest.mark.physics
+def test_what_hangs_under_the_cup_hits_a_bin_that_is_too_tall() -> None:
+    """The ball's lowest point travels at 0.24 m; the rims are at 0.22 m and 0.25 m."""
+    clause = f'"{AGENT}" does not collide "{BIN_WS}" from "t:pick-start" until "t:end"'
+    margins: list[float] = []
+    for scene in (LOW, BENCH):
+        run = execution([pick_place(BALL, BIN_WS, AGENT)], scene, seed=2)
+        to_the_end(run)
+        margins.append(judged(run, clause).robustness or 0.0)
+    assert margins[1] < 0.0 < margins[0]
+
+
+@pytest.mark.physics
+def test_a_cup_whose_lip_is_bent_off_lets_go() -> None:
+    run = execution([Call("pick", {"agent": AGENT, "object": CUBE})], BENCH)
+    run.run_behaviour(0)
+    simulation = run.simulation
+    body = simulation.model.body(CUBE)
+    simulation.data.xfrc_applied[body.id, 3] = 2.0
+    for _ in range(30):
+        simulation.tick()
+    assert not simulation.holds(AGENT, CUBE)
+    simulation.data.xfrc_applied[body.id] = 0.0
+    for _ in range(30):
+        simulation.tick()
+    assert simulation.data.body(CUBE).xpos[2] < 0.2
 
 
 @pytest.mark.physics

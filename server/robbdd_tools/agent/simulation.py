@@ -9,8 +9,8 @@ import numpy as np
 
 from robbdd_tools.agent.engine import SUBSTEPS, TICK, mujoco
 from robbdd_tools.agent.errors import SimulationError
+from robbdd_tools.agent.grips import Grips
 from robbdd_tools.agent.recorder import Recorder
-from robbdd_tools.catalog.api import GripperKind
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.world import World
@@ -45,14 +45,9 @@ class Robot:
         self.gripper = int(model.actuator(f"{name}/{robot.gripper_actuator}").id)
         self.tool = int(model.site(f"{name}/{robot.tool_site}").id)
         self.pads = tuple(int(model.geom(f"{name}/{pad}").id) for pad in robot.pads)
-        self.threshold = (robot.gripper_open + robot.gripper_closed) / 2
         gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
         self.lead: FloatArray = -bias / gain
         """Seconds by which a joint's target must run ahead to make up for the servo's damping, shape (n,)."""
-
-    def may_grip(self, data: Any) -> bool:
-        """Whether contact is a grip: fingers grip what they both touch, a cup only while the vacuum is on."""
-        return self.model.gripper is not GripperKind.SUCTION or float(data.ctrl[self.gripper]) > self.threshold
 
 
 class Simulation:
@@ -78,11 +73,9 @@ class Simulation:
         names = (*world.cast.objects, *world.cast.agents)
         self._column = {name: index for index, name in enumerate(names)}
         self._rows = np.array([self._column[name] for name in self._free], dtype=int)
-        self._owner = self._owners()
         self._positions: FloatArray = np.zeros((len(names), 3))
         self._orientations: FloatArray = np.zeros((len(names), 4))
-        self._pads = {name: robot.pads for name, robot in self.robots.items()}
-        self.grips: dict[str, FloatArray] = {name: np.zeros(len(names)) for name in self.robots}
+        self._grips = Grips(self.model, self.robots, self._column, self._free)
         self.recorder = Recorder(names, tuple(self.robots), int(self.model.nq))
         self._go_home()
         for name in world.cast.tables:
@@ -125,7 +118,7 @@ class Simulation:
         """Take a sample of the world as it is."""
         # Positions in the engine's data are those of one step ago until they are computed anew.
         mujoco.mj_kinematics(self.model, self.data)
-        self._find_grips()
+        self._grips.find(self.data)
         qpos = self.data.qpos
         self._positions[self._rows] = qpos[self._places]
         self._orientations[self._rows] = qpos[self._turns]
@@ -133,7 +126,7 @@ class Simulation:
             column = self._column[robot.name]
             self._positions[column] = self.data.site_xpos[robot.tool]
             mujoco.mju_mat2Quat(self._orientations[column], self.data.site_xmat[robot.tool])
-        self.recorder.append(self.time, self._positions, self._orientations, self.grips, qpos)
+        self.recorder.append(self.time, self._positions, self._orientations, self._grips.held, qpos)
 
     def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
         """Return what was recorded so far, without copying it."""
@@ -145,8 +138,8 @@ class Simulation:
         return body.xpos.copy(), body.xmat.reshape(3, 3).copy()
 
     def holds(self, agent: str, name: str) -> bool:
-        """Whether the agent's gripping faces all touch the object."""
-        return bool(self.grips[agent][self._column[name]])
+        """Whether the agent's gripper holds the object."""
+        return bool(self._grips.held[agent][self._column[name]])
 
     def joint_positions(self, robot: Robot) -> FloatArray:
         """Return the arm's joint positions, rad, shape (n,)."""
@@ -154,9 +147,10 @@ class Simulation:
         return positions
 
     def command(self, robot: Robot, joints: FloatArray, opening: float) -> None:
-        """Set the targets of the arm's servos (rad, shape (n,)) and of the gripper."""
+        """Set the targets of the arm's servos (rad, shape (n,)) and of the gripper; a cup that leaks has no vacuum."""
         self.data.ctrl[robot.motors] = joints
-        self.data.ctrl[robot.gripper] = opening
+        leaks = robot.name in self._grips.leaking
+        self.data.ctrl[robot.gripper] = robot.model.gripper_open if leaks else opening
 
     def open_fingers(self, robot: Robot, data: Any) -> None:
         """Put a robot's fingers into the open position in ``data``: the start, or a state that is only tried."""
@@ -179,29 +173,3 @@ class Simulation:
             self.open_fingers(robot, self.data)
             self.command(robot, home, robot.model.gripper_open)
         mujoco.mj_forward(self.model, self.data)
-
-    def _owners(self) -> dict[int, int]:
-        """Map each geom of a loose object to the object's column."""
-        owner: dict[int, int] = {}
-        for name in self._free:
-            body = self.model.body(name)
-            first = int(body.geomadr[0])
-            owner |= dict.fromkeys(range(first, first + int(body.geomnum[0])), self._column[name])
-        return owner
-
-    def _find_grips(self) -> None:
-        """Mark what touches every gripping face of an agent (contacts are few: plain sets are the fastest)."""
-        touching: dict[int, set[int]] = {pad: set() for pads in self._pads.values() for pad in pads}
-        for first, second in self.data.contact.geom.tolist():
-            if first in touching:
-                touching[first].add(self._owner.get(second, -1))
-            elif second in touching:
-                touching[second].add(self._owner.get(first, -1))
-        for name, pads in self._pads.items():
-            grip = self.grips[name]
-            grip[:] = 0.0
-            if not self.robots[name].may_grip(self.data):
-                continue
-            first, *others = (touching[pad] for pad in pads)
-            for column in first.intersection(*others) - {-1}:
-                grip[column] = 1.0
