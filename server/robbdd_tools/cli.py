@@ -44,6 +44,13 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("--json", action="store_true", help="one JSON object per diagnostic and line")
     check.set_defaults(command=_check)
 
+    layout = commands.add_parser("format", help="rewrite models in canonical layout")
+    layout.add_argument("paths", nargs="+", metavar="FILE|DIR", type=Path)
+    layout.add_argument(
+        "--check", action="store_true", help="only name the files that would change; exit code 1 if any"
+    )
+    layout.set_defaults(command=_format)
+
     graph = commands.add_parser("graph", help="print the knowledge graph of a model and its imports")
     graph.add_argument("path", metavar="FILE", type=Path)
     graph.add_argument("--format", choices=FORMATS, default="ttl")
@@ -87,6 +94,12 @@ def _check(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.check import check
 
     return check(options.paths, as_json=options.json)
+
+
+def _format(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.layout import format_models
+
+    return format_models(options.paths, options.check)
 
 
 def _graph(options: argparse.Namespace) -> int:

@@ -106,6 +106,15 @@ def test_a_graph_is_printed_in_each_form(folder: Path, form: str) -> None:
     assert "UserStory" in done.stdout
 
 
+def test_format_rewrites_what_is_not_in_canonical_layout(folder: Path) -> None:
+    (folder / "messy.scene").write_text("ns  e   = 'urn:x:'", encoding="utf-8")
+    assert robbdd("format", "--check", "messy.scene", folder=folder).returncode == 1
+    assert robbdd("format", "messy.scene", folder=folder).returncode == 0
+    assert (folder / "messy.scene").read_text(encoding="utf-8") == "ns e = 'urn:x:'\n"
+    done = robbdd("format", "--check", "messy.scene", folder=folder)
+    assert (done.returncode, done.stdout) == (0, "0 of 1 files would change\n")
+
+
 def test_gherkin_is_one_feature_per_story(folder: Path) -> None:
     done = robbdd("gherkin", "main.bdd", "-o", "out", folder=folder)
     assert (done.returncode, done.stdout) == (0, f"{Path('out', 'fetching.feature')}\n")

@@ -153,6 +153,16 @@ async def test_completion_and_definition_across_files(editor: Editor) -> None:
     assert found.uri.endswith("bench.scene")
 
 
+async def test_a_document_is_laid_out(editor: Editor) -> None:
+    tidy = editor.text
+    editor.open(tidy.replace("    var thing", "  var   thing"))
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    options = types.FormattingOptions(tab_size=4, insert_spaces=True)
+    params = types.DocumentFormattingParams(text_document=document, options=options)
+    edits = await editor.client.text_document_formatting_async(params) or []
+    assert [edit.new_text for edit in edits] == [tidy]
+
+
 async def test_the_quick_fix_mends_a_misspelt_name(editor: Editor) -> None:
     editor.open(editor.text.replace("template: <pick-place>", "template: <pick-plaice>"))
     (found,) = await editor.diagnostics("unknown-name")

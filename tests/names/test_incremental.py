@@ -18,7 +18,7 @@ from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names.analysis import FileAnalysis
 from robbdd_tools.names.project import Project
 
-SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "300"))
+SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "220"))
 PIECES = (
     "",
     " ",
@@ -67,15 +67,24 @@ def _texts() -> list[dict[str, str]]:
 
 
 TEXTS = _texts()
+WHOLE_TEXTS = [text for pair in TEXTS for text in pair.values()]
+
+
+@st.composite
+def foreign_pieces(draw: st.DrawFn) -> str:
+    """Some text of one of the files, as a user would paste it."""
+    text = draw(st.sampled_from(WHOLE_TEXTS))
+    start = int(draw(st.floats(0, 1)) * len(text))
+    return text[start : start + draw(st.integers(0, 60))]
+
+
 EDITS = st.builds(
     Edit,
     st.integers(0, 1),
     st.floats(0, 1),
     st.sampled_from([0, 0, 0, 1, 1, 2, 5, 20, 100, 400]),
-    st.one_of(st.sampled_from(PIECES), st.sampled_from([text for pair in TEXTS for text in pair.values()]).flatmap(
-        lambda text: st.integers(0, len(text)).flatmap(lambda start: st.integers(0, 60).map(lambda n: text[start : start + n]))
-    )),
-)  # fmt: skip
+    st.one_of(st.sampled_from(PIECES), foreign_pieces()),
+)
 
 
 def known(project: Project, uri: str) -> object:

@@ -7,11 +7,13 @@ from typing import Any
 
 from lsprotocol import types
 
+from robbdd_tools.base.document import Span
 from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.definition import definition
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.hover import hover
+from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.scenarios import RunnableScenario, runnable_scenarios
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
@@ -90,6 +92,18 @@ def _register_reading(server: RobbddServer) -> None:
                 return None
             contents = types.MarkupContent(kind=types.MarkupKind.Markdown, value=found.markdown)
             return types.Hover(contents=contents, range=ls.convert.range(document, found.span))
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
+    async def formatting(ls: RobbddServer, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
+        def find(snapshot: Snapshot) -> list[types.TextEdit]:
+            document = document_of(snapshot, params.text_document.uri)
+            laid_out = lay_out(document.text)
+            if laid_out == document.text:
+                return []
+            whole = ls.convert.range(document, Span(0, len(document.text)))
+            return [types.TextEdit(range=whole, new_text=laid_out)]
 
         return await ls.analyse(find)
 

@@ -1,0 +1,40 @@
+"""``robbdd format``: rewrite models in canonical layout, or tell which are not."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from robbdd_tools.base.files import Unreadable, read_text
+from robbdd_tools.commands import FAILED, FINDINGS, OK
+from robbdd_tools.commands.models import model_files, not_a_model
+from robbdd_tools.features.layout import lay_out
+
+
+def format_models(paths: Sequence[Path], check: bool) -> int:
+    """Lay out files and the models in folders; with ``check`` only name those that would change (exit code 1)."""
+    files = model_files(paths)
+    stranger = not_a_model(files)
+    if stranger is not None or not files:
+        print(stranger or f"robbdd: there is no model in {', '.join(map(str, paths))}", file=sys.stderr)
+        return FAILED
+    changed: list[Path] = []
+    for path in files:
+        text = read_text(path)
+        if isinstance(text, Unreadable):
+            print(f"{path}:1:1: error: {text.reason} [{text.code}]", file=sys.stderr)
+            return FAILED
+        laid_out = lay_out(text)
+        if laid_out == text:
+            continue
+        changed.append(path)
+        print(f"{path}: {'would change' if check else 'changed'}")
+        if not check:
+            try:
+                path.write_text(laid_out, encoding="utf-8", newline="\n")
+            except OSError as error:
+                print(f"robbdd: {path}: {error.strerror or error}", file=sys.stderr)
+                return FAILED
+    print(f"{len(changed)} of {len(files)} files {'would change' if check else 'changed'}")
+    return FINDINGS if check and changed else OK

@@ -1,0 +1,176 @@
+"""Canonical layout: indentation, spacing, aligned tables. Lines stay where their author broke them.
+
+Works on tokens, not on trees, so that comments keep their place and broken text is laid out as far as it goes.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+INDENT = "    "
+_STRING = r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'"
+_TOKEN = re.compile(
+    r"(?P<comment>//[^\n]*)"
+    rf"|(?P<string>{_STRING})"
+    r"|(?P<reference><\s*[^\W\d][\w\-.]*\s*>)"
+    r"|(?P<word>[^\W](?:[\w\-.+*^]|/(?!/))*|[-+.]?\d[\w.+\-]*)"
+    r"|(?P<sign>\S)",
+    re.DOTALL,
+)
+_LABEL = re.compile(r"(?:Given|When|Then|Scenarios|variation)\s*:|for\s+all\b")
+_CONTINUED = re.compile(r"- |for\s*<")
+_NAMESPACE = re.compile(r"\(\s*ns\s*=\s*([^\W\d][\w\-]*)\s*\)")
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line of tokens as it will be written, its comment apart; a row of a table has its cells apart too."""
+
+    text: str
+    comment: str
+    cells: tuple[str, ...] = ()
+
+    @property
+    def written(self) -> str:
+        """The line with its comment."""
+        return f"{self.text}  {self.comment}" if self.text and self.comment else self.text or self.comment
+
+
+@dataclass(slots=True)
+class _Levels:
+    """The open brackets; each knows whether a label stands above the lines inside it."""
+
+    labelled: list[bool] = field(default_factory=lambda: [False])
+
+    def indentation(self, text: str) -> str:
+        """Return what stands before a line: a closing bracket stands under the line that opened it."""
+        closing = len(text) - len(text.lstrip("})"))
+        inner = self.labelled[: max(1, len(self.labelled) - closing)]
+        depth = len(inner) - 1 + sum(inner)
+        if inner[-1] and _LABEL.match(text):
+            depth -= 1
+        if _CONTINUED.match(text):
+            depth += 1
+        return INDENT * depth
+
+    def pass_over(self, text: str) -> None:
+        """Take in the brackets and the label of a line."""
+        label = _LABEL.match(text)
+        if label:
+            self.labelled[-1] = not text[label.end() :].strip()
+        for match in _TOKEN.finditer(text):
+            if match["sign"] in ("{", "("):
+                self.labelled.append(False)
+            elif match["sign"] in ("}", ")") and len(self.labelled) > 1:
+                self.labelled.pop()
+
+
+def lay_out(text: str) -> str:
+    """Return a text in canonical layout; laying out twice changes nothing more."""
+    levels = _Levels()
+    written: list[str] = []
+    block: list[Line] = []
+    for line in [*_rows(_lines(text)), None]:
+        if line is not None and line.cells:
+            block.append(line)
+            continue
+        if block:
+            written += [f"{levels.indentation('|')}{row}" for row in _aligned(block)]
+            block = []
+        if line is None:
+            break
+        if not line.written:
+            if written and written[-1]:
+                written.append("")
+            continue
+        written.append(levels.indentation(line.text) + line.written)
+        levels.pass_over(line.text)
+    while written and not written[-1]:
+        written.pop()
+    return "\n".join(written) + "\n" if written else ""
+
+
+def _lines(text: str) -> Iterator[Line]:
+    """Yield the lines of a text with single spaces; a string keeps its own line breaks."""
+    pieces: list[str] = []
+    comment = ""
+    end = 0
+    for match in _TOKEN.finditer(text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")):
+        gap = match.string[end : match.start()]
+        for _ in range(gap.count("\n")):
+            yield _line(pieces, comment)
+            pieces, comment = [], ""
+        if pieces and gap:
+            pieces.append(" ")
+        if match["comment"] is not None:
+            comment = match["comment"].rstrip()
+        elif match["reference"] is not None:
+            pieces.append("<" + match["reference"][1:-1].strip() + ">")
+        else:
+            pieces.append(match[0])
+        end = match.end()
+    yield _line(pieces, comment)
+
+
+def _line(pieces: list[str], comment: str) -> Line:
+    spaced: list[str] = []
+    for index, piece in enumerate(pieces):
+        following = pieces[index + 1] if index + 1 < len(pieces) else ""
+        if piece == " " and following in (",", ":"):
+            continue
+        spaced.append(piece)
+        if piece == "," and following not in ("", " ", ",", ":"):
+            spaced.append(" ")
+    text = _NAMESPACE.sub(r"(ns=\1)", "".join(spaced).strip())
+    return Line(text, comment)
+
+
+def _rows(lines: Iterator[Line]) -> Iterator[Line]:
+    """Put the lines of a broken table row together, unless a comment stands between them."""
+    row: Line | None = None
+    for line in lines:
+        if row is not None and not row.comment and line.text.endswith("|") and not line.text.startswith("|"):
+            row = Line(f"{row.text} {line.text}", line.comment)
+            continue
+        if row is not None:
+            yield _with_cells(row)
+            row = None
+        if line.text.startswith("|"):
+            row = line
+        else:
+            yield line
+    if row is not None:
+        yield _with_cells(row)
+
+
+def _with_cells(row: Line) -> Line:
+    cells = [""]
+    for match in re.finditer(rf"{_STRING}|[^|\"']+|\||.", row.text, re.DOTALL):
+        if match[0] == "|":
+            cells.append("")
+        else:
+            cells[-1] += match[0]
+    return Line(row.text, row.comment, tuple(cell.strip() for cell in cells[1:-1]) if row.text.endswith("|") else ())
+
+
+def _aligned(block: list[Line]) -> Iterator[str]:
+    """Yield the rows of a table with their columns aligned; the rule under the header spans each column."""
+    columns = max(len(row.cells) for row in block)
+    widths = [3] * columns
+    for row in block:
+        if not _is_rule(row):
+            for column, cell in enumerate(row.cells):
+                widths[column] = max(widths[column], len(cell))
+    for row in block:
+        if _is_rule(row):
+            text = "|" + "|".join("-" * (width + 2) for width in widths) + "|"
+        else:
+            padded = (cell.ljust(widths[column]) for column, cell in enumerate(row.cells))
+            text = "| " + " | ".join(padded) + " |"
+        yield f"{text}  {row.comment}" if row.comment else text
+
+
+def _is_rule(row: Line) -> bool:
+    return all(cell and not cell.strip("-") for cell in row.cells)
