@@ -26,7 +26,7 @@ def count(variation: Product | Table) -> int:
     """Return the number of scenarios without making them."""
     if isinstance(variation, Table):
         return len(variation.rows)
-    return prod(_size(choices) for choices in variation.choices)
+    return prod(size_of(choices) for choices in variation.choices)
 
 
 def at(variation: Product | Table, index: int) -> Binding:
@@ -37,7 +37,7 @@ def at(variation: Product | Table, index: int) -> Binding:
         return dict(zip(variation.variables, variation.rows[index], strict=True))
     cells: list[Cell] = []
     for choices in reversed(variation.choices):
-        index, digit = divmod(index, _size(choices))
+        index, digit = divmod(index, size_of(choices))
         cells.append(_select(choices, digit) if isinstance(choices, Selection) else choices[digit])
     return dict(zip(variation.variables, reversed(cells), strict=True))
 
@@ -47,12 +47,13 @@ def _product(choices: tuple[tuple[Cell, ...] | Selection, ...]) -> Iterator[tupl
     if not choices:
         yield ()
         return
-    for cell in _cells(choices[0]):
+    for cell in cells_of(choices[0]):
         for rest in _product(choices[1:]):
             yield (cell, *rest)
 
 
-def _cells(choices: tuple[Cell, ...] | Selection) -> Iterable[Cell]:
+def cells_of(choices: tuple[Cell, ...] | Selection) -> Iterable[Cell]:
+    """Return the values that a variable of a product gets, one after the other."""
     if not isinstance(choices, Selection):
         return choices
     if choices.kind == "permutations":
@@ -62,7 +63,8 @@ def _cells(choices: tuple[Cell, ...] | Selection) -> Iterable[Cell]:
     return combinations(choices.source, choices.length)
 
 
-def _size(choices: tuple[Cell, ...] | Selection) -> int:
+def size_of(choices: tuple[Cell, ...] | Selection) -> int:
+    """Return the number of values that a variable of a product gets."""
     if not isinstance(choices, Selection):
         return len(choices)
     available, length = len(choices.source), choices.length
