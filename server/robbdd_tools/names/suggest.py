@@ -32,5 +32,5 @@ def closest(
         for known, found in table.kinds.items():
             if not set(found).isdisjoint(kinds):
                 names.setdefault(shortened(known, scopes) if position == 0 else known)
-    near = process.extract(path, list(names), scorer=ratio, limit=MOST, score_cutoff=LEAST_ALIKE)
+    near = process.extract(path, sorted(names), scorer=ratio, limit=MOST, score_cutoff=LEAST_ALIKE)
     return tuple(name for name, _, _ in near), bool(names)

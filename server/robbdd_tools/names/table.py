@@ -18,6 +18,11 @@ class Entry:
     declaration: int
     symbol: int
 
+    @property
+    def place(self) -> tuple[int, int]:
+        """Sorts entries as they stand in the text."""
+        return (self.declaration, self.symbol)
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class NameTable:
@@ -75,13 +80,11 @@ def _add(entries: dict[str, tuple[Entry, ...]], declarations: Iterable[tuple[int
         for number, symbol in enumerate(declaration.symbols):
             entry = Entry(symbol.kind, position, number)
             others = entries.get(symbol.path)
-            entries[symbol.path] = (entry,) if others is None else tuple(sorted((*others, entry), key=_place))
+            entries[symbol.path] = (
+                (entry,) if others is None else tuple(sorted((*others, entry), key=lambda entry: entry.place))
+            )
             added.add(symbol.path)
     return added
-
-
-def _place(entry: Entry) -> tuple[int, int]:
-    return (entry.declaration, entry.symbol)
 
 
 def _kinds(entries: tuple[Entry, ...]) -> tuple[SymbolKind, ...]:

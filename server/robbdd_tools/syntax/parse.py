@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.convert import convert
-from robbdd_tools.syntax.declaration import Declaration, SyntaxFault
+from robbdd_tools.syntax.declaration import Declaration, SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.recover import HOLE, Fault, recover
 from robbdd_tools.syntax.salvage import salvage
 from robbdd_tools.syntax.symbols import references, symbols
-from robbdd_tools.syntax.textx import Expectation, Rejected, parse_chunk
+from robbdd_tools.syntax.textx import Expectation, Parsed, Rejected, parse_chunk
 
 CACHED_CHUNKS = 20_000
 LONGEST_WORD = 40
@@ -38,17 +40,43 @@ _STARTS = frozenset({"import", "ns"})
 def parse_declaration(language: str, text: str) -> Declaration:
     """Parse one chunk. User text never raises: a broken chunk comes back with its faults and salvaged names."""
     parsed = parse_chunk(language, text)
-    if isinstance(parsed, Rejected):
-        return Declaration(text, None, salvage(text), (), (_rejected(text, parsed),))
-    root = convert(parsed.declaration, text)
-    faults = () if parsed.trailing is None else (_trailing(text, parsed.trailing),)
-    return Declaration(text, root, symbols(root), references(root), faults)
+    if isinstance(parsed, Parsed):
+        return _declaration(text, text, parsed, ())
+    recovered = recover(language, text, parsed)
+    faults = tuple(_fault(text, fault) for fault in recovered.faults)
+    if recovered.parsed is None:
+        return Declaration(text, None, salvage(text), (), faults)
+    return _declaration(text, recovered.text, recovered.parsed, faults)
+
+
+def _declaration(text: str, mended: str, parsed: Parsed, faults: tuple[SyntaxFault, ...]) -> Declaration:
+    """Return the declaration of a chunk whose ``mended`` text was parsed (the same text where nothing was broken)."""
+    root = convert(parsed.declaration, mended)
+    declared = symbols(root)
+    if faults:
+        # A name in a blanked part is declared all the same: its users are not at fault.
+        paths = {symbol.path for symbol in declared}
+        lost = (symbol for symbol in salvage(text) if symbol.path not in paths)
+        known = (symbol for symbol in declared if HOLE not in symbol.path)
+        declared = tuple(sorted((*known, *lost), key=lambda symbol: symbol.span))
+    if parsed.trailing is not None:
+        faults = (*faults, _trailing(text, parsed.trailing))
+    used = tuple(reference for reference in references(root) if reference.ref.path != HOLE)
+    return Declaration(text, root, declared, used, faults)
+
+
+def _fault(text: str, fault: Fault) -> SyntaxFault:
+    found = _rejected(text, fault.rejected)
+    if fault.repair is None or fault.repair.text is None:
+        return found
+    return replace(found, fix=SyntaxFix(fault.repair.span, fault.repair.text))
 
 
 def expected_words(expectation: Expectation) -> list[str]:
     """Say what could stand at a place, in words: keywords in quotes first, then names, strings and numbers."""
     literals = [f"'{literal}'" for literal in sorted(expectation.literals)]
-    rules = sorted({_RULE_WORDS.get(rule, _path_words(rule)) for rule in expectation.rules - {"TrailingText", "EOF"}})
+    named = (rule for rule in expectation.rules if rule in _RULE_WORDS or rule.endswith("Path"))
+    rules = sorted({_RULE_WORDS.get(rule) or _path_words(rule) for rule in named})
     return literals + rules
 
 
@@ -63,6 +91,8 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
         return SyntaxFault(span, f"'{found}' does not begin a declaration")
     words = expected_words(rejected.expected)
+    if not words:
+        return _trailing(text, rejected.offset)
     expected = " or ".join(words) if len(words) < 3 else ", ".join(words[:-1]) + " or " + words[-1]
     if not found:
         return SyntaxFault(_last_token(text), f"the declaration ends too early: expected {expected}")

@@ -1,0 +1,207 @@
+"""Finds all syntax errors of a chunk, and a tree of what is sound in it, by mending its text until it parses.
+
+Each repair keeps the length of the text: a sign is put in the place of white space, a misspelt keyword is overwritten
+into the white space behind it, and what cannot be mended is blanked. So every span of the tree is a span of the
+user's text. A repair counts when the parser then gets beyond the place of the error; the smallest that lets the
+whole chunk pass is taken, else the one with which the parser comes furthest.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from difflib import SequenceMatcher
+from itertools import islice
+
+from robbdd_tools.base.document import Span
+from robbdd_tools.syntax.textx import Expectation, Parsed, Rejected, parse_chunk
+
+MOST_FAULTS = 12
+MOST_PARSES = 48
+"""Attempts per chunk: an editor asks for a chunk's errors with each keystroke inside it."""
+ALIKE = 0.6
+"""Share of common letters from which a word counts as a misspelt keyword."""
+HOLE = "\u02ad"
+"""Stands for a missing name: a letter to the grammar, but of no alphabet, so that no user means it."""
+_BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(?P<open>[{(])|(?P<close>[})])")
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """A mended text of the same length; ``span`` is what was changed.
+
+    ``text`` is what the user may write there instead, ``None`` where text was blanked.
+    """
+
+    mended: str
+    span: Span
+    text: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """An error: where the parser stopped and what it expected, with the text that mends it where that is plain."""
+
+    rejected: Rejected
+    repair: Repair | None
+
+
+@dataclass(frozen=True, slots=True)
+class Recovered:
+    """All errors found, and what remains: the mended text with its parse, ``None`` where nothing helped."""
+
+    faults: tuple[Fault, ...]
+    text: str
+    parsed: Parsed | None
+
+
+def recover(language: str, text: str, first: Rejected) -> Recovered:
+    """Mend a chunk that was rejected; user text never raises."""
+    faults: list[Fault] = []
+    mended, result, left, shadow = text, first, MOST_PARSES, -1
+    while len(faults) < MOST_FAULTS:
+        # An error where an earlier repair already changed the text is that error still, or a consequence of it.
+        if result.offset > shadow:
+            faults.append(Fault(result, None))
+            shadow = _word(mended, result.offset).end
+        step = _best(language, mended, result, left)
+        if step is None:
+            break
+        left -= step.parses
+        if step.repair.text is not None and faults[-1].rejected is result:
+            faults[-1] = Fault(result, step.repair)
+        if isinstance(step.result, Parsed):
+            return Recovered(tuple(faults), step.repair.mended, step.result)
+        mended, result = step.repair.mended, step.result
+        if step.repair.text is None:
+            behind = len(mended) - len(mended[step.repair.span.end :].lstrip())
+            shadow = max(shadow, behind)
+    return Recovered(tuple(faults), mended, None)
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """The repair chosen for one error, what the parser then says, and how many attempts the choice took."""
+
+    repair: Repair
+    result: Parsed | Rejected
+    parses: int
+
+
+def _best(language: str, text: str, stopped: Rejected, most: int) -> _Step | None:
+    best: _Step | None = None
+    furthest = stopped.offset
+    own = _word(text, stopped.offset).end
+    next_word = _word(text, own + len(text[own:]) - len(text[own:].lstrip())).end
+    for parses, repair in enumerate(islice(_repairs(text, stopped), most), start=1):
+        found = _parse(language, repair.mended)
+        # Mended text beats blanked text, however far the parser runs on from a misreading of what is left. A sign
+        # has to show more than a keyword: it may fit by chance.
+        enough = next_word if repair.span.start == repair.span.end else own
+        if isinstance(found, Parsed) or (repair.text is not None and found.offset > enough):
+            return _Step(repair, found, parses)
+        if found.offset > max(furthest, repair.span.end - 1):
+            furthest = found.offset
+            best = _Step(repair, found, 0)
+        best = best and replace(best, parses=parses)
+    return best
+
+
+def _parse(language: str, text: str) -> Parsed | Rejected:
+    """Parse a mended chunk; text behind its end is an error like any other, or a bracket too many would mend all."""
+    found = parse_chunk(language, text)
+    if isinstance(found, Parsed) and found.trailing is not None:
+        return Rejected(found.trailing, Expectation(frozenset(), frozenset()))
+    return found
+
+
+def _repairs(text: str, stopped: Rejected) -> Iterator[Repair]:
+    """Yield the repairs of one error, the likeliest first."""
+    offset = stopped.offset
+    found = _word(text, offset)
+    literals = sorted(stopped.expected.literals)
+    yield from (repair for sign in literals if not sign[0].isalpha() for repair in _insertion(text, offset, sign))
+    if any(rule == "NameText" or rule.endswith("Path") for rule in stopped.expected.rules):
+        yield from _hole(text, offset)
+    yield from (repair for word in literals if word[0].isalpha() for repair in _spelling(text, found, word))
+    yield from _lines(text, offset, ((0, 0),))
+    if found.end > found.start:
+        yield _blanked(text, found)
+    yield from _lines(text, offset, ((1, 0), (0, 1), (1, 1), (2, 0)))
+    yield from _blocks(text, offset)
+
+
+def _insertion(text: str, offset: int, sign: str) -> Iterator[Repair]:
+    """Put a sign into the white space before the error, or behind the end of the text."""
+    place = len(text[:offset].rstrip())
+    room = text[place : place + len(sign)]
+    if place == len(text):
+        yield Repair(text + sign, Span(place, place), sign)
+    elif room.isspace() and len(room) == len(sign):
+        yield Repair(text[:place] + sign + text[place + len(sign) :], Span(place, place), sign)
+
+
+def _hole(text: str, offset: int) -> Iterator[Repair]:
+    """Put a stand-in for a missing name into the white space before the error."""
+    place = len(text[:offset].rstrip())
+    if not _continues(text, place - 1) and not (text[place:] and _continues(text, place + 1)):
+        for repair in _insertion(text, offset, HOLE):
+            yield Repair(repair.mended, repair.span, None)
+
+
+def _spelling(text: str, found: Span, keyword: str) -> Iterator[Repair]:
+    """Write a keyword over a word that resembles it, and over white space beside it where the keyword is longer."""
+    word = text[found.start : found.end]
+    if not word or SequenceMatcher(None, word.lower(), keyword.lower()).ratio() < ALIKE:
+        return
+    start, end = found.start, found.end
+    while end - start < len(keyword) and text[end : end + 1].isspace() and not _continues(text, end + 1):
+        end += 1
+    while end - start < len(keyword) and start > 0 and text[start - 1].isspace() and not _continues(text, start - 2):
+        start -= 1
+    if end - start >= len(keyword):
+        yield Repair(text[:start] + keyword.ljust(end - start) + text[end:], found, keyword)
+
+
+def _continues(text: str, place: int) -> bool:
+    """Tell whether a word would run into the letter at ``place``."""
+    letter = text[place : place + 1] if place >= 0 else ""
+    return letter.isalnum() or letter in {"_", "-"}
+
+
+def _lines(text: str, offset: int, windows: tuple[tuple[int, int], ...]) -> Iterator[Repair]:
+    """Blank the line of the error, with lines that hold text before and after it."""
+    lines = [match.span() for match in re.finditer(r"[^\n]*\S[^\n]*", text)]
+    own = next((index for index, (_, end) in enumerate(lines) if offset <= end), len(lines) - 1)
+    # The first line holds the declaration's own head, without which nothing can be read.
+    for before, after in windows:
+        if own - before > 0 and own + after < len(lines):
+            yield _blanked(text, Span(lines[own - before][0], lines[own + after][1]))
+
+
+def _blocks(text: str, offset: int) -> Iterator[Repair]:
+    """Blank the brackets around the error with the line of their head, innermost first; never the outermost."""
+    opened: list[int] = []
+    around: list[tuple[int, int]] = []
+    for match in _BRACKETS.finditer(text):
+        if match["open"]:
+            opened.append(match.start())
+        elif match["close"] and opened:
+            start = opened.pop()
+            if start <= offset <= match.end() and opened:
+                around.append((start, match.end()))
+    for start, end in around:
+        yield _blanked(text, Span(text.rfind("\n", 0, start) + 1, end))
+
+
+def _blanked(text: str, span: Span) -> Repair:
+    blank = re.sub(r"[^\n]", " ", text[span.start : span.end])
+    return Repair(text[: span.start] + blank + text[span.end :], span, None)
+
+
+def _word(text: str, offset: int) -> Span:
+    end = offset
+    while end < len(text) and (text[end].isalnum() or text[end] in "_-"):
+        end += 1
+    return Span(offset, end if end > offset else min(offset + 1, len(text)))

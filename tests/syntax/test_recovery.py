@@ -1,0 +1,182 @@
+"""All errors of a file are found, each once, and what is sound around them stays usable."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable
+
+import pytest
+
+from kit import MODEL, fixture
+from robbdd_tools.base.diagnostic import Diagnostic
+from robbdd_tools.syntax.parse import parse_declaration
+
+TEMPLATE = MODEL[MODEL.index("Scenario Template") : MODEL.index("User Story")]
+STORY = MODEL[MODEL.index("User Story") :]
+
+
+def faults(text: str) -> list[str]:
+    return [text[fault.span.start : fault.span.end] for fault in parse_declaration("bdd", text).faults]
+
+
+def mended(text: str) -> str:
+    """Apply the fixes that come with the faults, from the last to the first."""
+    for fault in reversed(parse_declaration("bdd", text).faults):
+        assert fault.fix is not None, fault
+        text = text[: fault.fix.span.start] + fault.fix.text + text[fault.fix.span.end :]
+    return text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        ("before <pick", "befor <pick", ["befor"]),
+        ("var robot", "vr robot", ["vr"]),
+        ("When:", "When", ["Behaviour"]),
+        ("<robot> picks", "<robot picks", ["picks"]),
+        ("task: <task>", "tsk: <task>", ["tsk"]),
+        ("Then:", "Than:", ["Than"]),
+    ],
+)
+def test_a_plain_mistake_has_a_fix_that_mends_it(old: str, new: str, found: list[str]) -> None:
+    broken = TEMPLATE.replace(old, new, 1)
+    assert faults(broken) == found
+    assert faults(mended(broken)) == []
+
+
+def test_several_mistakes_in_one_declaration_are_all_found() -> None:
+    broken = TEMPLATE.replace("var robot", "vr robot").replace("before", "bfore").replace("When:", "When")
+    broken = broken.replace("after", "aftr")
+    assert faults(broken) == ["vr", "bfore", "Behaviour", "aftr"]
+    assert mended(broken).split() == TEMPLATE.split()
+
+
+def test_the_sound_parts_of_a_broken_declaration_keep_their_tree_and_names() -> None:
+    declaration = parse_declaration("bdd", TEMPLATE.replace("var robot", "robot robot robot"))
+    assert declaration.tree is not None
+    paths = [symbol.path for symbol in declaration.symbols]
+    assert paths == ["fetch", "fetch.part", "fetch.goal", "fetch.on-bench", "fetch.carry", "fetch.in-tray"]
+    assert {reference.ref.path for reference in declaration.references} >= {"part", "goal", "pick-start"}
+
+
+def test_a_name_in_a_broken_line_is_still_declared() -> None:
+    declaration = parse_declaration("bdd", TEMPLATE.replace("var robot", "var robot !!"))
+    assert "fetch.robot" in [symbol.path for symbol in declaration.symbols]
+
+
+def test_a_missing_name_is_reported_once_and_invents_nothing() -> None:
+    declaration = parse_declaration("bdd", STORY.replace("Scenario bench-to-tray", "Scenario"))
+    assert [fault.message for fault in declaration.faults] == ["unexpected '{': expected a name"]
+    assert [symbol.path for symbol in declaration.symbols] == ["fetching"]
+
+
+def test_one_broken_scenario_leaves_its_siblings() -> None:
+    variant = STORY[STORY.index("        Scenario bench") : STORY.rindex("}")]
+    second = variant.replace("bench-to-tray", "again").replace("scene: <bench_scene>", "scene <bench_scene>")
+    third = variant.replace("bench-to-tray", "third")
+    text = STORY.replace(variant, variant + second + third)
+    declaration = parse_declaration("bdd", text)
+    assert len(declaration.faults) == 1
+    assert [symbol.path.split(".")[-1] for symbol in declaration.symbols] == [
+        "fetching",
+        "bench-to-tray",
+        "again",
+        "third",
+    ]
+
+
+Mistake = Callable[[str, random.Random], str | None]
+
+
+def _without(sign: str) -> Mistake:
+    return lambda line, _: line.replace(sign, "", 1) if sign in line else None
+
+
+def _misspell(line: str, dice: random.Random) -> str | None:
+    words = [match for match in re.finditer(r"(?<![\w<.-])[a-zA-Z]{4,}(?![\w>.-])", line) if match[0] in KEYWORDS]
+    if not words:
+        return None
+    word = dice.choice(words)
+    return f"{line[: word.start() + 1]}{line[word.start() + 2 :]}"
+
+
+def _unknown(line: str, dice: random.Random) -> str | None:
+    references = list(re.finditer(r"<[\w.-]+>", line))
+    if not references:
+        return None
+    reference = dice.choice(references)
+    return f"{line[: reference.end() - 1]}x{line[reference.end() - 1 :]}"
+
+
+def _garbage(line: str, _: random.Random) -> str | None:
+    return f"{line}\n    %% what is this" if line.strip().startswith("var ") else None
+
+
+KEYWORDS = {
+    "holds",
+    "located",
+    "before",
+    "after",
+    "until",
+    "from",
+    "task",
+    "duration",
+    "template",
+    "scene",
+    "variation",
+}
+MISTAKES: tuple[Mistake, ...] = (
+    _without(")"),
+    _without(">"),
+    _without(":"),
+    _without("}"),
+    _misspell,
+    _unknown,
+    _garbage,
+)
+
+
+def _plant(text: str, dice: random.Random, count: int) -> tuple[str, list[int]]:
+    """Make ``count`` mistakes on lines at least three apart; returns the text and the lines, from 0."""
+    lines = text.split("\n")
+    order = list(range(8, len(lines) - 1))
+    dice.shuffle(order)
+    planted: list[int] = []
+    for number in order:
+        if len(planted) == count or any(abs(number - other) < 3 for other in planted):
+            continue
+        mistakes = list(MISTAKES)
+        dice.shuffle(mistakes)
+        for mistake in mistakes:
+            changed = mistake(lines[number], dice)
+            if changed is not None:
+                lines[number] = changed
+                planted.append(number)
+                break
+    planted.sort()
+    grown = [sum("\n" in lines[before] for before in range(line)) for line in planted]
+    return "\n".join(lines), [line + more for line, more in zip(planted, grown, strict=True)]
+
+
+def _lines(found: list[Diagnostic], text: str) -> list[int]:
+    return [text.count("\n", 0, entry.span.start) for entry in found]
+
+
+def test_of_ten_planted_errors_nearly_all_are_reported_with_hardly_a_follow_up() -> None:
+    from tests.bench.models import model
+
+    text = model(160)
+    planted = reported = followed = 0
+    for seed in range(60):
+        broken, lines = _plant(text, random.Random(seed), 10)
+        case = fixture(broken)
+        analysis = case.snapshot.file(case.uri)
+        assert analysis is not None
+        places = _lines(list(analysis.diagnostics), broken)
+        planted += len(lines)
+        reported += sum(any(abs(place - line) <= 1 for place in places) for line in lines)
+        followed += sum(not any(abs(place - line) <= 1 for line in lines) for place in places)
+    assert planted == 600
+    assert reported / planted >= 0.95, reported
+    assert followed / planted <= 0.1, followed
