@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
 from robbdd_tools.names.analysis import Definition, FileAnalysis, ImportLink, PlacedDeclaration
+from robbdd_tools.names.namespaces import without_namespace
 from robbdd_tools.names.problems import repeated, unresolved
 from robbdd_tools.names.resolve import Resolution, Targets, resolve_file
 
@@ -57,7 +58,7 @@ def analyse(
         PlacedDeclaration(entry.declaration, entry.offset, Targets(scope, resolution.targets))
         for entry, resolution in zip(index.declarations, resolutions, strict=True)
     )
-    diagnostics = [*syntax_errors(index), *repeated(scope), *broken]
+    diagnostics = [*syntax_errors(index), *repeated(scope), *without_namespace(index), *broken]
     for entry, resolution in zip(index.declarations, resolutions, strict=True):
         if resolution.unresolved:
             diagnostics += unresolved(scope, resolution, entry.offset)

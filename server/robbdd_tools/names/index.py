@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
-from urllib.parse import quote, urljoin
 
 from robbdd_tools.base.document import Document, Span
+from robbdd_tools.names.imports import import_uri
 from robbdd_tools.names.table import Entry, NameTable, make_table, update_table
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.parse import LANGUAGES, parse_declaration
@@ -94,5 +94,5 @@ def _imports(document: Document, declarations: tuple[Placed, ...]) -> tuple[Impo
         if isinstance(placed.declaration.tree, tree.Import):
             path = placed.declaration.tree.path
             span = Span(path.span.start + 1, path.span.end - 1).shifted(placed.offset)
-            found.append(ImportPath(span, path.value, urljoin(document.uri, quote(path.value))))
+            found.append(ImportPath(span, path.value, import_uri(document.uri, path.value)))
     return tuple(found)

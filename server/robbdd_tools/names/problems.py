@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Related, Severity
 from robbdd_tools.names.index import language_of
+from robbdd_tools.names.nearest import nearest
 from robbdd_tools.names.resolve import define
-from robbdd_tools.names.roles import ROLE_KINDS, SCENE_KINDS
-from robbdd_tools.names.suggest import closest
+from robbdd_tools.names.roles import ROLE_KINDS, may_declare
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
@@ -54,9 +54,8 @@ def _same_variable(first: Declared, second: Declared) -> bool:
 
 def _could_be_unread(scope: Scope, reference: Reference) -> bool:
     """Tell whether an import that could not be read may declare the name; its own error is enough then."""
-    kinds = set(ROLE_KINDS[reference.ref.role])
-    languages = {language_of(uri) for uri in scope.unread}
-    return bool(kinds & SCENE_KINDS and "scene" in languages) or "bdd" in languages
+    kinds = ROLE_KINDS[reference.ref.role]
+    return any(may_declare(language_of(uri), kinds) for uri in scope.unread)
 
 
 def _wrong_kind(scope: Scope, problem: Unresolved, offset: int) -> Diagnostic:
@@ -77,7 +76,7 @@ def _unknown(scope: Scope, reference: Reference, offset: int) -> Diagnostic:
     ref = reference.ref
     uri = scope.files[0].document.uri
     span = ref.span.shifted(offset)
-    close, any_known = closest(scope.tables, ROLE_KINDS[ref.role], reference.scopes, ref.path)
+    close, any_known = nearest(scope, reference, ROLE_KINDS[ref.role])
     message = f"there is no {_wanted(ref.role, article=False)} '{ref.path}'"
     if close:
         message += f"; did you mean '{close[0]}'?"

@@ -11,6 +11,7 @@ from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text, too_large, uri_to_path
 from robbdd_tools.names.analyse import Resolved, analyse, syntax_errors
 from robbdd_tools.names.analysis import FileAnalysis, ImportLink
+from robbdd_tools.names.imports import missing_package, not_importable
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 from robbdd_tools.names.scope import Scope
 
@@ -158,7 +159,7 @@ class Snapshot:
     def _on_import_lines(self, index: FileIndex, imports: tuple[ImportLink, ...]) -> list[Diagnostic]:
         uri = index.document.uri
         unusable = [
-            Diagnostic(uri, link.span, Severity.ERROR, "import", link.problem)
+            Diagnostic(uri, link.span, _import_severity(link), "import", link.problem)
             for link in imports
             if link.problem is not None
         ]
@@ -167,8 +168,9 @@ class Snapshot:
     def _import_problem(self, index: FileIndex, uri: str) -> str | None:
         if uri == index.document.uri:
             return "the file imports itself: remove this import"
-        if not language_of(uri):
-            return "only '.bdd' and '.scene' files can be imported here"
+        problem = not_importable(language_of(index.document.uri), language_of(uri)) or missing_package(uri)
+        if problem is not None:
+            return problem
         source = self.sources.get(uri)
         return source.reason if isinstance(source, Unreadable) else None
 
@@ -194,9 +196,13 @@ class Snapshot:
             faults += [Related(error.uri, error.span, error.message) for error in syntax_errors(index)]
             for link in index.imports:
                 problem = self._import_problem(index, link.uri)
-                if problem is not None:
+                if problem is not None and missing_package(link.uri) is None:
                     faults.append(Related(index.document.uri, link.span, problem))
         return faults
+
+
+def _import_severity(link: ImportLink) -> Severity:
+    return Severity.ERROR if missing_package(link.uri) is None else Severity.WARNING
 
 
 def _errors(count: int) -> str:

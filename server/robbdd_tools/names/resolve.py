@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.names.analysis import Definition
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.table import changed_paths
+from robbdd_tools.names.through import ROLES, paths_through
 
 if TYPE_CHECKING:
     from robbdd_tools.names.scope import Scope
@@ -35,12 +36,16 @@ class Unresolved:
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """What the references of one declaration lead to; ``looked_up`` are all paths that the answer depends on."""
+    """What the references of one declaration lead to; ``looked_up`` are all paths that the answer depends on.
+
+    ``through_others`` when it also depends on what other names stand for, which no path tells.
+    """
 
     declaration: Declaration
     targets: Mapping[Ref, Target]
     unresolved: tuple[Unresolved, ...]
     looked_up: frozenset[str]
+    through_others: bool
 
 
 class Targets(Mapping["Ref", Definition]):
@@ -82,22 +87,28 @@ def _still_valid(scope: Scope, before: Scope | None, known: tuple[Resolution, ..
     changed: set[str] = set()
     for old, new in zip(before.tables, scope.tables, strict=True):
         changed |= changed_paths(old, new)
-    return {entry.declaration: entry for entry in known if changed.isdisjoint(entry.looked_up)}
+    return {
+        entry.declaration: entry for entry in known if not entry.through_others and changed.isdisjoint(entry.looked_up)
+    }
 
 
 def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
     targets: dict[Ref, Target] = {}
     unresolved: list[Unresolved] = []
     looked_up: set[str] = set()
+    through_others = False
     for reference in declaration.references:
         paths = candidates(reference)
         looked_up.update(paths)
         found, other = _lookup(scope, reference, paths)
+        if found is None and reference.ref.role in ROLES:
+            through_others = True
+            found, other = _lookup(scope, reference, [*paths, *paths_through(scope, paths)])
         if found is not None:
             targets[reference.ref] = found
         else:
             unresolved.append(Unresolved(reference, other))
-    return Resolution(declaration, targets, tuple(unresolved), frozenset(looked_up))
+    return Resolution(declaration, targets, tuple(unresolved), frozenset(looked_up), through_others)
 
 
 def candidates(reference: Reference) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -41,5 +41,28 @@ ROLE_KINDS: Mapping[str, tuple[SymbolKind, ...]] = {
     "Policy": (SymbolKind.POLICY,),
 }
 
-SCENE_KINDS = {*_ELEMENTS, *_ELEMENT_SETS, SymbolKind.COMPOSITION, SymbolKind.SCENE}
-"""What only a scene file declares."""
+_SCENE_KINDS = {*_ELEMENTS, *_ELEMENT_SETS, SymbolKind.COMPOSITION, SymbolKind.SCENE, SymbolKind.NAMESPACE}
+_TREE_KINDS = {
+    SymbolKind.NAMESPACE,
+    SymbolKind.DISTRIBUTION,
+    SymbolKind.TREE_TEMPLATE,
+    SymbolKind.TREE,
+    SymbolKind.TREE_INSTANCE,
+    SymbolKind.BODY,
+    SymbolKind.FRAME,
+    SymbolKind.POSE,
+    SymbolKind.JOINT,
+}
+_INSTANCE_KINDS = {SymbolKind.SCENE_INSTANCE, SymbolKind.GRAPH, SymbolKind.MODEL, SymbolKind.SENSOR}
+_DECLARED_BEHIND = {
+    "scene": _SCENE_KINDS,
+    "ktree": _TREE_KINDS,
+    "scenex": _SCENE_KINDS | _TREE_KINDS | _INSTANCE_KINDS,
+    "bdd": set(SymbolKind),
+    "bddx": set(SymbolKind),
+}
+
+
+def may_declare(language: str, kinds: Iterable[SymbolKind]) -> bool:
+    """Tell whether a file of a kind, or one that it imports, may declare a name of one of some kinds."""
+    return not _DECLARED_BEHIND.get(language, set()).isdisjoint(kinds)

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.names.analysis import Definition
+from robbdd_tools.names.namespaces import only_namespace
 from robbdd_tools.names.roles import ROLE_KINDS
-from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.names.through import instance_parts
+from robbdd_tools.syntax.declaration import FILE_NAMESPACE, SymbolKind
 from robbdd_tools.syntax.tree import Namespace
 
 if TYPE_CHECKING:
@@ -58,15 +60,18 @@ class Scope:
                 if found is not None:
                     written = shortened(path, scopes) if position == 0 else path
                     names.setdefault(written, (file, file.at(found)))
+        for written, file, declared in instance_parts(self, wanted):
+            names.setdefault(written, (file, declared))
         return names
 
     def _iri(self, file: FileIndex, declared: Declared) -> str | None:
         symbol = declared.symbol
-        if symbol.namespace is None:
+        namespace = only_namespace(file.names) if symbol.namespace == FILE_NAMESPACE else symbol.namespace
+        if namespace is None:
             return None
         # A declaration's namespace is looked up from its own file; the nearest one outside is a file it imports.
         for other in (file, *(other for other in self.files if other is not file)):
-            for entry in other.names.entries.get(symbol.namespace, ()):
+            for entry in other.names.entries.get(namespace, ()):
                 root = other.declarations[entry.declaration].declaration.tree
                 if isinstance(root, Namespace):
                     return root.iri.value + _local_name(declared)

@@ -1,0 +1,64 @@
+"""What the path of an import means, and which kind of file may import which."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from importlib.machinery import PathFinder
+from pathlib import Path
+from urllib.parse import quote, urljoin
+
+from robbdd_tools.base.files import path_to_uri
+
+IMPORTABLE: Mapping[str, tuple[str, ...]] = {
+    "scene": ("scene",),
+    "bdd": ("bdd", "scene"),
+    "ktree": ("ktree",),
+    "scenex": ("ktree", "scene", "scenex"),
+    "bddx": ("bdd", "scenex"),
+}
+"""The kinds of file that each kind may import."""
+_PACKAGE = "package:"
+
+
+def import_uri(importer: str, path: str) -> str:
+    """Return the URI that an import's path means: relative to its file, or ``package:path`` inside a package.
+
+    A file of a package that is not installed has a URI by which ``missing_package`` knows it.
+    """
+    package, colon, inside = path.partition(":")
+    # One letter is a drive of Windows; a package's code must not run, so that only its place is looked up.
+    if not colon or not package.isidentifier() or len(package) == 1 or inside.startswith("//"):
+        return urljoin(importer, quote(path))
+    folder = _package_folder(package)
+    if folder is None:
+        return f"{_PACKAGE}{quote(package)}/{quote(inside)}"
+    return path_to_uri(folder / inside)
+
+
+def missing_package(uri: str) -> str | None:
+    """Say that the package of an import is not installed; ``None`` when the import is none of a package."""
+    if not uri.startswith(_PACKAGE):
+        return None
+    package, _, inside = uri.removeprefix(_PACKAGE).partition("/")
+    return (
+        f"the package '{package}' is not installed here, so that the names of '{inside}' are unknown: "
+        "install it, or import the file by its path"
+    )
+
+
+def not_importable(importer: str, imported: str) -> str | None:
+    """Say which kinds of file a kind may import when ``imported`` (``""``: not ours) is none of them."""
+    kinds = IMPORTABLE.get(importer, ())
+    if imported in kinds:
+        return None
+    *others, last = (f"'.{kind}'" for kind in kinds)
+    listed = f"{', '.join(others)} and {last}" if others else last
+    return f"only {listed} files can be imported here"
+
+
+@cache
+def _package_folder(package: str) -> Path | None:
+    found = PathFinder.find_spec(package)
+    places = None if found is None else found.submodule_search_locations
+    return None if not places else Path(next(iter(places)))

@@ -1,0 +1,25 @@
+"""Did you mean, for references that may lead through another name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.names.suggest import closest
+from robbdd_tools.names.through import ROLES, instances
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.scope import Scope
+    from robbdd_tools.syntax.declaration import Reference, SymbolKind
+
+
+def nearest(scope: Scope, reference: Reference, kinds: tuple[SymbolKind, ...]) -> tuple[tuple[str, ...], bool]:
+    """Return the names nearest to a reference, and whether there is any: ``closest``, but through instances too."""
+    path = reference.ref.path
+    if reference.ref.role in ROLES:
+        for name, target in instances(scope):
+            if path.startswith(f"{name}."):
+                close, _ = closest(scope.tables, kinds, (), target + path[len(name) :])
+                parts = tuple(name + other[len(target) :] for other in close if other.startswith(f"{target}."))
+                if parts:
+                    return parts, True
+    return closest(scope.tables, kinds, reference.scopes, path)

@@ -1,0 +1,103 @@
+"""Names that lead through another one: parts of a tree's instance, of a tree in a tree, clauses of a variant.
+
+``ktree inst … arm of <gen3>`` makes every part of the template a part of the instance (``arm.base.origin``);
+``tree <arm>`` inside a tree makes it ``cell.arm.base.origin``; and a clause of a variant may be named without the
+user story around it. All of these have their declaration under another path, which is found here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.index import Declared, FileIndex
+    from robbdd_tools.names.scope import Scope
+    from robbdd_tools.syntax.declaration import Declaration
+
+ROLES = frozenset({"Frame", "Body", "Joint", "Tree", "Fluent"})
+"""What a reference may lead to through another name."""
+MOST_PATHS = 50
+"""Paths that are tried for one reference: trees that contain one another must not go round for ever."""
+_PARTS = frozenset({SymbolKind.BODY, SymbolKind.FRAME, SymbolKind.POSE, SymbolKind.JOINT})
+
+
+def paths_through(scope: Scope, paths: Iterable[str]) -> list[str]:
+    """Return the paths under which what some qualified names mean may be declared, nearest first."""
+    waiting = list(paths)
+    found: dict[str, None] = {}
+    for path in waiting:
+        for other in _rewritten(scope, path):
+            if other not in found and len(found) < MOST_PATHS:
+                found[other] = None
+                waiting.append(other)
+    return list(found)
+
+
+def instance_parts(scope: Scope, kinds: Iterable[SymbolKind]) -> Iterator[tuple[str, FileIndex, Declared]]:
+    """Yield each part of each instance of a tree as it is written, with the declaration in the template."""
+    wanted = _PARTS.intersection(kinds)
+    if not wanted:
+        return
+    for name, target in instances(scope):
+        for file in scope.files:
+            for path, entries in file.names.entries.items():
+                if path.startswith(f"{target}."):
+                    fitting = (entry for entry in entries if entry.kind in wanted)
+                    for entry in fitting:
+                        yield name + path[len(target) :], file, file.at(entry)
+
+
+def instances(scope: Scope) -> Iterator[tuple[str, str]]:
+    """Yield the name of each instance of a tree with that of its template."""
+    for file in scope.files:
+        for placed in file.declarations:
+            for symbol in placed.declaration.symbols[:1]:
+                if symbol.target is not None:
+                    yield symbol.path, symbol.target
+
+
+def _rewritten(scope: Scope, path: str) -> Iterator[str]:
+    """Replace the beginning of a path by what it stands for."""
+    parts = path.split(".")
+    for length in range(1, len(parts) + 1):
+        head, rest = ".".join(parts[:length]), path[len(".".join(parts[:length])) :]
+        for file in scope.files:
+            for target in _targets(file).get(head, ()):
+                yield target + rest
+
+
+@lru_cache(maxsize=64)
+def _targets(file: FileIndex) -> Mapping[str, tuple[str, ...]]:
+    """Map each name of a file that stands for others to these."""
+    found: dict[str, tuple[str, ...]] = {}
+    for placed in file.declarations:
+        for name, target in _of_declaration(placed.declaration):
+            found[name] = (*found.get(name, ()), target)
+    return found
+
+
+def _of_declaration(declaration: Declaration) -> Iterator[tuple[str, str]]:
+    root = declaration.tree
+    for symbol in declaration.symbols[:1]:
+        if symbol.target is not None:
+            yield symbol.path, symbol.target
+        elif symbol.kind is SymbolKind.STORY:
+            variants = (part for part in declaration.symbols if part.kind is SymbolKind.VARIANT)
+            yield from ((variant.name, variant.path) for variant in variants)
+    if isinstance(root, tree.KinematicTree):
+        yield from _used_trees(root.name.text, root)
+    elif isinstance(root, tree.SceneInstance):
+        for entry in root.entries:
+            if isinstance(entry, tree.Graph):
+                yield from _used_trees(f"{root.name.text}.{entry.name.text}", entry)
+
+
+def _used_trees(path: str, owner: tree.KinematicTree | tree.Graph) -> Iterator[tuple[str, str]]:
+    for entry in owner.entries:
+        if isinstance(entry, tree.TreeUse):
+            yield f"{path}.{entry.reference.path.rpartition('.')[2]}", entry.reference.path
