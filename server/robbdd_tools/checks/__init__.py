@@ -1,19 +1,67 @@
-"""Semantic rules, one file per diagnostic code, beyond syntax, names and shapes."""
+"""Semantic rules, one file per diagnostic code, beyond syntax, names and shapes.
+
+A rule looks either at one declaration and what it refers to, and is asked again only when one of these changed, or
+at a whole file; the latter must do no more than a few operations for each declaration.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robbdd_tools.checks.contradictory_order import contradictory_order
+from robbdd_tools.checks.duplicate_iri import duplicate_iri
+from robbdd_tools.checks.empty_duration import empty_duration
+from robbdd_tools.checks.empty_set import empty_set
+from robbdd_tools.checks.foreign_variable import foreign_variable
+from robbdd_tools.checks.many_scenarios import many_scenarios
+from robbdd_tools.checks.memo import findings_in
+from robbdd_tools.checks.missing_value import missing_value
 from robbdd_tools.checks.namespace_iri import namespace_iri
 from robbdd_tools.checks.no_scenario import no_scenario
+from robbdd_tools.checks.not_in_scene import not_in_scene
+from robbdd_tools.checks.repeated_value import repeated_value
+from robbdd_tools.checks.row_width import row_width
+from robbdd_tools.checks.selection_size import selection_size
+from robbdd_tools.checks.type_conflict import type_conflict
+from robbdd_tools.checks.unused_event import unused_event
+from robbdd_tools.checks.unused_import import unused_import
+from robbdd_tools.checks.unused_set import unused_set
+from robbdd_tools.checks.unused_task import unused_task
+from robbdd_tools.checks.unused_variable import unused_variable
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
-    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
 
-CHECKS = (namespace_iri, no_scenario)
+DECLARATION_RULES = (
+    contradictory_order,
+    empty_duration,
+    empty_set,
+    foreign_variable,
+    many_scenarios,
+    missing_value,
+    not_in_scene,
+    repeated_value,
+    row_width,
+    selection_size,
+    type_conflict,
+)
+FILE_RULES = (
+    duplicate_iri,
+    namespace_iri,
+    no_scenario,
+    unused_event,
+    unused_import,
+    unused_set,
+    unused_task,
+    unused_variable,
+)
 
 
-def run_checks(analysis: FileAnalysis) -> list[Diagnostic]:
+def run_checks(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     """Return the findings of every rule on one file."""
-    return [diagnostic for check in CHECKS for diagnostic in check(analysis)]
+    file = snapshot.file(uri)
+    if file is None:
+        return []
+    found = [diagnostic for rule in FILE_RULES for diagnostic in rule(snapshot, file)]
+    return [*found, *findings_in(snapshot, file, DECLARATION_RULES)]

@@ -11,12 +11,13 @@ from robbdd_tools.syntax.tree import Namespace
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
 
 # RFC 3987: a scheme, then anything but the characters that no IRI may hold.
 _IRI = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\s<>\"{}|\\^`]*")
 
 
-def namespace_iri(analysis: FileAnalysis) -> Iterator[Diagnostic]:
+def namespace_iri(_: Snapshot, analysis: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each namespace that is not an absolute IRI."""
     for placed in analysis.declarations:
         root = placed.declaration.tree

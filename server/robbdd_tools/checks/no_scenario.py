@@ -12,9 +12,10 @@ from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
 
 
-def no_scenario(analysis: FileAnalysis) -> Iterator[Diagnostic]:
+def no_scenario(_: Snapshot, analysis: FileAnalysis) -> Iterator[Diagnostic]:
     """Tell once, at the start of the file, that there is nothing to run."""
     uri = analysis.document.uri
     if language_of(uri) == "bdd" and not _has_variant(analysis):

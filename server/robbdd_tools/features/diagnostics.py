@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks import run_checks
+from robbdd_tools.checks.superseded import without_superseded
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
@@ -20,17 +21,23 @@ def fast_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
-    return sorted([*analysis.diagnostics, *run_checks(analysis)], key=sort_key)
+    return sorted([*analysis.diagnostics, *run_checks(snapshot, uri)], key=sort_key)
 
 
 def shape_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-    """Return the SHACL findings on the graph of a file merged with its imports, each in the file it belongs to."""
+    """Return the SHACL findings on the graph of a file merged with its imports, each in the file it belongs to.
+
+    What the fast rules report at the same place is left out.
+    """
     from robbdd_tools.graph.build import build_graph
     from robbdd_tools.graph.validate import validate
 
     if snapshot.file(uri) is None:
         return []
-    return validate(build_graph(snapshot, uri))
+    found = validate(build_graph(snapshot, uri))
+    files = dict.fromkeys(diagnostic.uri for diagnostic in found)
+    told = [diagnostic for name in files for diagnostic in fast_diagnostics(snapshot, name)]
+    return without_superseded(found, told)
 
 
 def all_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:

@@ -1,0 +1,90 @@
+"""``duplicate-iri``: two declarations whose namespaces and names make one IRI, so that the graph merges them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.checks.facts import SHARED_KINDS, facts_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import Definition, FileAnalysis
+    from robbdd_tools.names.index import FileIndex
+    from robbdd_tools.names.project import Snapshot
+
+Taken = Mapping[str, Mapping[str, int]]
+"""IRI of a namespace → name → how often it is declared there."""
+
+
+def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report each declaration of the file whose IRI is taken, here or in a file that it imports."""
+    uri = file.document.uri
+    files = snapshot.scope(uri).files
+    own, imported = _taken_by(files[:1], files), _taken(files[1:])
+    names: set[str] = set()
+    for namespace, counted in own.items():
+        names |= counted.keys() & imported.get(namespace, {}).keys()
+        names.update(name for name, count in counted.items() if count > 1)
+    if not names:
+        return
+    first: dict[str, Definition] = {}
+    for other in snapshot.closure(uri)[:0:-1]:
+        for definition in _definitions(other, names):
+            first.setdefault(str(definition.iri), definition)
+    for definition in _definitions(file, names):
+        other = first.setdefault(str(definition.iri), definition)
+        # The members of a similar set come from one piece of text.
+        if (other.uri, other.span) != (definition.uri, definition.span):
+            yield _report(other, definition)
+
+
+def _report(first: Definition, second: Definition) -> Diagnostic:
+    message = (
+        f"'{second.symbol.name}' already stands for something else in this namespace (both are <{second.iri}>): "
+        "give one of the two another name or namespace"
+    )
+    related = (Related(first.uri, first.span, "the first declaration"),)
+    return Diagnostic(second.uri, second.span, Severity.ERROR, "duplicate-iri", message, related)
+
+
+def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
+    """Yield what a file declares under some names and with an IRI of its own."""
+    for path in file.definitions:
+        if path.rpartition(".")[2] in names:
+            definition = file.definitions[path]
+            if definition.iri is not None and definition.kind not in SHARED_KINDS:
+                yield definition
+
+
+@lru_cache(maxsize=64)
+def _taken(files: tuple[FileIndex, ...]) -> Taken:
+    return _taken_by(files, files)
+
+
+def _taken_by(files: Iterable[FileIndex], scope: tuple[FileIndex, ...]) -> Taken:
+    """Count the names of some files, whose namespaces are declared in the files themselves or else in a scope."""
+    outer = _namespaces(scope)
+    found: dict[str, dict[str, int]] = {}
+    for file in files:
+        namespaces = {**outer, **_namespaces((file,))}
+        for placed in file.declarations:
+            for namespace, names in facts_of(placed.declaration).own_names.items():
+                counted = found.setdefault(namespaces.get(namespace, ""), {})
+                for name in names:
+                    counted[name] = counted.get(name, 0) + 1
+    found.pop("", None)
+    return found
+
+
+def _namespaces(files: Iterable[FileIndex]) -> dict[str, str]:
+    """Return the namespaces of some files by name, the nearest file's first."""
+    found: dict[str, str] = {}
+    for file in files:
+        for placed in file.declarations:
+            root = placed.declaration.tree
+            if isinstance(root, tree.Namespace):
+                found.setdefault(root.name.text, root.iri.value)
+    return found

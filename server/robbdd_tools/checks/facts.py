@@ -1,0 +1,82 @@
+"""What the rules need of each declaration by itself; collected once, however often the file is checked."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from robbdd_tools.names.uses import KEPT_DECLARATIONS, Bound, Clauses, clauses_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.syntax.declaration import Declaration
+
+SHARED_KINDS = (SymbolKind.NAMESPACE, SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE, SymbolKind.BEHAVIOUR)
+"""Kinds that may share an IRI: related scenarios speak of the same variables and behaviours by their names."""
+_REFERRED = re.compile(r"(?:<\s*|\bns\s*=\s*)([^\W\d][\w\-]*)")
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """Names in a declaration: no target is looked up, so that they hold wherever it stands.
+
+    ``own_names`` are the names it declares by the namespace that makes IRIs of them, but for those that may share one.
+
+    ``heads`` are the first parts of all names it refers to, ``clause_paths`` the names of variables in its clauses
+    as written, ``unused`` the variables that neither a clause nor a quantifier of their own template uses, and
+    ``unused_bounds`` the quantified ones.
+    """
+
+    own_names: Mapping[str, tuple[str, ...]]
+    heads: frozenset[str]
+    clause_paths: frozenset[str]
+    unused: tuple[tree.Variable, ...]
+    unused_bounds: tuple[Bound, ...]
+
+
+@lru_cache(maxsize=KEPT_DECLARATIONS)
+def facts_of(declaration: Declaration) -> Facts:
+    """Return the facts of a declaration."""
+    root = declaration.tree
+    heads = frozenset(reference.ref.path.partition(".")[0] for reference in declaration.references)
+    if declaration.faults:
+        # What the parser passed over may use names as well.
+        heads |= frozenset(_REFERRED.findall(declaration.text))
+    names = _own_names(declaration)
+    clauses = clauses_of(declaration)
+    bounds = tuple(bound for entry in clauses for bound in _unused_bounds(entry))
+    unused = _unused(declaration, root) if isinstance(root, tree.Template) else ()
+    return Facts(names, heads, _clause_paths(clauses), unused, bounds)
+
+
+def _own_names(declaration: Declaration) -> dict[str, tuple[str, ...]]:
+    found: dict[str, list[str]] = {}
+    for symbol in declaration.symbols:
+        if symbol.namespace is not None and symbol.kind not in SHARED_KINDS:
+            found.setdefault(symbol.namespace, []).append(symbol.name)
+    return {namespace: tuple(names) for namespace, names in found.items()}
+
+
+def _unused(declaration: Declaration, template: tree.Template) -> tuple[tree.Variable, ...]:
+    if declaration.faults:
+        return ()
+    prefix = f"{template.name.text}."
+    used = {reference.ref.path.removeprefix(prefix) for reference in declaration.references}
+    return tuple(variable for variable in template.variables if variable.name.text not in used)
+
+
+def _unused_bounds(clauses: Clauses) -> tuple[Bound, ...]:
+    used = {use.bound for use in clauses.uses} if clauses.bounds else set[Bound | None]()
+    return tuple(bound for bound in clauses.bounds if bound not in used)
+
+
+def _clause_paths(clauses: tuple[Clauses, ...]) -> frozenset[str]:
+    found: set[str] = set()
+    for entry in clauses:
+        found.update(use.ref.path for use in entry.uses)
+        found.update(bound.in_set.path for bound in entry.bounds)
+    return frozenset(found)

@@ -1,0 +1,63 @@
+"""Makes diagnostics and edits out of places in trees."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Related
+from robbdd_tools.base.document import Span
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Severity
+    from robbdd_tools.base.document import Document
+    from robbdd_tools.names.elements import Site
+    from robbdd_tools.syntax.tree import Node
+
+
+def finding(
+    site: Site,
+    node: Node,
+    severity: Severity,
+    code: str,
+    message: str,
+    related: tuple[Related, ...] = (),
+    fixes: tuple[Fix, ...] = (),
+) -> Diagnostic:
+    """Return a diagnostic on a node of a declaration."""
+    return Diagnostic(site.uri, site.span(node), severity, code, message, related, fixes)
+
+
+def related_to(site: Site, node: Node, message: str) -> Related:
+    """Return a node of a declaration as the other place of a diagnostic."""
+    return Related(site.uri, site.span(node), message)
+
+
+def change(site: Site, title: str, node: Node, text: str) -> Fix:
+    """Return the fix that replaces a node by a text."""
+    return Fix(title, (Edit(site.uri, site.span(node), text),))
+
+
+def removal(document: Document, title: str, span: Span) -> Fix:
+    """Return the fix that removes a piece of text, with its lines where nothing else stands on them."""
+    text = document.text
+    start, end = span.start, span.end
+    line_start = document.line_starts[document.position(start).line]
+    line_end = end + len(document.line_text(document.position(end).line)) - document.position(end).column
+    if not text[line_start:start].strip() and not text[end:line_end].strip():
+        start, end = line_start, line_end
+        if text[end : end + 2] == "\r\n":
+            end += 2
+        elif end < len(text):
+            end += 1
+    return Fix(title, (Edit(document.uri, Span(start, end), ""),))
+
+
+def listed(names: list[str]) -> str:
+    """Return names in quotes, joined as in a sentence."""
+    quoted = [f"'{name}'" for name in names]
+    return quoted[0] if len(quoted) == 1 else ", ".join(quoted[:-1]) + f" and {quoted[-1]}"
+
+
+def article(words: str) -> str:
+    """Return words with their indefinite article."""
+    return f"an {words}" if words[0] in "aeio" else f"a {words}"

@@ -1,0 +1,60 @@
+"""``foreign-variable``: a variant that speaks of a variable of another template than its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Related, Severity
+from robbdd_tools.checks.finding import change, finding
+from robbdd_tools.checks.variants import VARIABLES, Scenario, scenarios
+from robbdd_tools.names.types import variable_key
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.elements import Site
+
+
+def foreign_variable(site: Site) -> Iterator[Diagnostic]:
+    """Report the variables of other templates in variations and clauses."""
+    for scenario in scenarios(site):
+        own = scenario.declared()
+        if scenario.template is None:
+            continue
+        for ref in _variables(scenario):
+            found = site.target(ref)
+            if found is not None and variable_key(found) not in own and _is_of_template(scenario, found):
+                yield _report(scenario, ref, found, own)
+
+
+def _variables(scenario: Scenario) -> Iterator[tree.Ref]:
+    """Yield what is written for variables, in the variation first."""
+    yield from (column.ref for column in scenario.columns)
+    yield from (use.ref for use in scenario.clauses.uses if use.bound is None)
+    yield from (bound.in_set for bound in scenario.clauses.bounds)
+
+
+def _is_of_template(scenario: Scenario, found: Definition) -> bool:
+    """Tell whether a name is a variable of a template; one that the variant quantifies itself is not."""
+    extent = scenario.site.span(scenario.variant)
+    inside = found.uri == scenario.site.uri and extent.contains(found.span.start)
+    return found.kind in VARIABLES and not inside
+
+
+def _report(scenario: Scenario, ref: tree.Ref, found: Definition, own: dict[str, Definition]) -> Diagnostic:
+    template = scenario.variant.template.path
+    same = [variable for variable in own.values() if variable.symbol.name == found.symbol.name]
+    return finding(
+        scenario.site,
+        ref,
+        Severity.ERROR,
+        "foreign-variable",
+        f"'{ref.path}' is no variable of '{template}', the template of this scenario: "
+        + (f"write '{same[0].symbol.path}'" if same else "name one of its variables, or another template"),
+        (Related(found.uri, found.span, f"'{ref.path}' is declared here"),),
+        tuple(
+            change(scenario.site, f"Change to '{variable.symbol.path}'", ref, variable.symbol.path) for variable in same
+        ),
+    )

@@ -1,0 +1,59 @@
+"""``not-in-scene``: a value that the variant's scene does not hold, though it holds others of that kind.
+
+It is allowed, the element then belongs to that scenario only; a scene without any agent, say, leaves the choice of
+agents to its variants on purpose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Related, Severity
+from robbdd_tools.checks.finding import finding
+from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.names.elements import Element, elements_of, scene_members
+from robbdd_tools.names.types import written_elements
+from robbdd_tools.names.uses import ELEMENTS
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.elements import Site
+
+_BROUGHT = ("ObjectSet", "WorkspaceSet", "AgentSet")
+
+
+def not_in_scene(site: Site) -> Iterator[Diagnostic]:
+    """Report each element once per variant, where it is first written."""
+    for scenario in scenarios(site):
+        members = scene_members(site.follow(scenario.variant.scene))
+        if members is not None:
+            yield from _strangers(scenario, members)
+
+
+def _strangers(scenario: Scenario, members: frozenset[Element]) -> Iterator[Diagnostic]:
+    site, scene = scenario.site, scenario.variant.scene
+    kinds = {element.kind for element in members}
+    told = {element.key for element in members} | {element.key for element in _brought(scenario)}
+    definition = site.target(scene)
+    for column in scenario.columns:
+        for written in column.written:
+            for node, element in written_elements(site, written):
+                if element.kind not in kinds & ELEMENTS or element.key in told or definition is None:
+                    continue
+                told.add(element.key)
+                message = (
+                    f"'{element.name}' is not in '{scene.path}', so it belongs to this scenario only: "
+                    "add it to the scene if it is always there"
+                )
+                related = (Related(definition.uri, definition.span, "the scene"),)
+                yield finding(site, node, Severity.INFORMATION, "not-in-scene", message, related)
+
+
+def _brought(scenario: Scenario) -> Iterator[Element]:
+    """Yield the members of element sets in the variation: naming a whole set brings it into the scene."""
+    for column in scenario.columns:
+        for written in column.written:
+            if isinstance(written, tree.Link) and written.reference.role in _BROUGHT:
+                yield from elements_of(scenario.site.follow(written.reference)) or ()

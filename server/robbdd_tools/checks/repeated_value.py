@@ -1,0 +1,46 @@
+"""``repeated-value``: a variation that gives one variable its values twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.checks.finding import finding, related_to, removal
+from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.names.types import variable_key
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic, Fix
+    from robbdd_tools.names.elements import Site
+
+
+def repeated_value(site: Site) -> Iterator[Diagnostic]:
+    """Report each further column or line of a variable."""
+    for scenario in scenarios(site):
+        first: dict[str, tree.Ref] = {}
+        for column in scenario.columns:
+            if column.variable is None:
+                continue
+            before = first.setdefault(variable_key(column.variable), column.ref)
+            if before is not column.ref:
+                what = "column" if isinstance(scenario.variant.variation, tree.Table) else "line"
+                yield finding(
+                    site,
+                    column.ref,
+                    Severity.ERROR,
+                    "repeated-value",
+                    f"'{column.ref.path}' has its values already: remove this {what} or the first one",
+                    (related_to(site, before, "the first values"),),
+                    _removals(scenario, column.ref),
+                )
+
+
+def _removals(scenario: Scenario, ref: tree.Ref) -> tuple[Fix, ...]:
+    variation = scenario.variant.variation
+    lines = variation.assignments if isinstance(variation, tree.Product) else ()
+    document = scenario.site.file.document
+    return tuple(
+        removal(document, "Remove this line", scenario.site.span(line)) for line in lines if line.variable is ref
+    )

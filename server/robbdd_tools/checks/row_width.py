@@ -1,0 +1,65 @@
+"""``row-width``: a table row that has more or fewer cells than the table has columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Edit, Fix, Severity
+from robbdd_tools.base.document import Span
+from robbdd_tools.checks.finding import finding, related_to
+from robbdd_tools.checks.variants import scenarios
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.elements import Site
+
+
+def row_width(site: Site) -> Iterator[Diagnostic]:
+    """Report each row of the wrong width; a short one may be completed with the cells of a row beside it."""
+    for scenario in scenarios(site):
+        table = scenario.variant.variation
+        for row in table.rows if isinstance(table, tree.Table) else ():
+            if isinstance(table, tree.Table) and len(row.cells) != len(table.header):
+                yield _report(site, table, row)
+
+
+def _report(site: Site, table: tree.Table, row: tree.TableRow) -> Diagnostic:
+    cells, columns = len(row.cells), len(table.header)
+    if cells < columns:
+        mend = "add a value for " + ", ".join(f"'{ref.path}'" for ref in table.header[cells:])
+    else:
+        mend = "remove what is too much"
+    message = f"this row has {_counted(cells, 'cell')}, but the table has {_counted(columns, 'column')}: {mend}"
+    header = related_to(site, table.header[0], "the columns")
+    return finding(site, row, Severity.ERROR, "row-width", message, (header,), tuple(_fixes(site, table, row)))
+
+
+def _fixes(site: Site, table: tree.Table, row: tree.TableRow) -> Iterator[Fix]:
+    cells, columns = len(row.cells), len(table.header)
+    document = site.file.document
+    if cells > columns:
+        end = _cell_span(site, row.cells[columns - 1]).end
+        yield Fix("Remove the surplus cells", (Edit(site.uri, Span(end, site.span(row).end), " |"),))
+        return
+    complete = [other for other in table.rows if len(other.cells) == columns]
+    if complete:
+        nearest = min(complete, key=lambda other: (abs(other.span.start - row.span.start), other.span))
+        missing = [_cell_span(site, cell) for cell in nearest.cells[cells:]]
+        text = "".join(f" {document.text[span.start : span.end]} |" for span in missing)
+        end = site.span(row).end
+        yield Fix("Complete the row as the one beside it", (Edit(site.uri, Span(end, end), text),))
+
+
+def _cell_span(site: Site, cell: tree.Node) -> Span:
+    """Return the span of all that is written in a cell; that of a reference leaves its brackets out."""
+    span = site.span(cell)
+    if not isinstance(cell, tree.Ref):
+        return span
+    text = site.file.document.text
+    return Span(text.rindex("<", 0, span.start), text.index(">", span.end) + 1)
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"

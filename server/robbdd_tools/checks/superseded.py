@@ -1,0 +1,40 @@
+"""Which findings of the shapes tell again what a rule has told already."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.base.document import Span
+
+SUPERSEDED = {
+    "duplicate-iri": ("duplicate-iri",),
+    "empty-duration": ("shacl-empty-duration",),
+    "empty-set": ("shacl-set-elements", "shacl-variable-empty"),
+    "foreign-variable": ("shacl-variable-foreign",),
+    "missing-value": ("shacl-variable-missing",),
+    "repeated-value": ("shacl-variable-repeated",),
+    "row-width": ("shacl-row-width",),
+    "selection-size": ("shacl-selection-size", "shacl-selection-length"),
+    "type-conflict": ("shacl-object-value", "shacl-workspace-value", "shacl-agent-value", "shacl-element-value"),
+}
+"""Code of a rule → codes of the shapes that find the same mistake."""
+
+
+def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Leave out the shapes' findings at a place that a rule for the same mistake names.
+
+    What no rule found stays, so that nothing is lost where the two see different things.
+    """
+    told: dict[tuple[str, str], list[Span]] = {}
+    for finding in fast:
+        for code in SUPERSEDED.get(finding.code, ()):
+            for uri, span in ((finding.uri, finding.span), *((place.uri, place.span) for place in finding.related)):
+                told.setdefault((uri, code), []).append(span)
+    return [shape for shape in shapes if not _is_told(shape, told.get((shape.uri, shape.code), []))]
+
+
+def _is_told(shape: Diagnostic, spans: list[Span]) -> bool:
+    return any(shape.span.start <= span.end and span.start <= shape.span.end for span in spans)

@@ -1,0 +1,121 @@
+"""``type-conflict``: a variable that stands for an object here and for a workspace there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.checks.finding import article, finding, related_to
+from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.names.elements import Element, Site, elements_of
+from robbdd_tools.names.types import kind_words, narrowed, uses_by_variable, variable_key, written_elements
+from robbdd_tools.names.uses import ANYTHING, Clauses, Kinds, Use, clauses_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+
+CODE = "type-conflict"
+Placed = tuple[Site, Use]
+
+
+def type_conflict(site: Site) -> Iterator[Diagnostic]:
+    """Report phrases and values that take one variable for different kinds of things, at both places."""
+    for clauses in clauses_of(site.placed.declaration):
+        yield from _quantified(site, clauses)
+        if isinstance(clauses.node, tree.Template):
+            for uses in uses_by_variable(site, clauses).values():
+                yield from _between_phrases([(site, use) for use in uses], site)
+    for scenario in scenarios(site):
+        yield from _in_scenario(scenario)
+
+
+def _in_scenario(scenario: Scenario) -> Iterator[Diagnostic]:
+    site, template = scenario.site, scenario.template
+    own = uses_by_variable(site, scenario.clauses)
+    outer: dict[str, list[Use]] = {}
+    if template is not None and scenario.outer is not None:
+        outer = uses_by_variable(template, scenario.outer)
+    for key, uses in own.items():
+        inherited = [(template, use) for use in outer.get(key, ()) if template is not None]
+        yield from _between_phrases([*inherited, *((site, use) for use in uses)], site)
+    for column in scenario.columns:
+        if column.variable is None:
+            continue
+        key = variable_key(column.variable)
+        placed = [(template, use) for use in outer.get(key, ()) if template is not None]
+        placed += [(site, use) for use in own.get(key, ())]
+        values = chain.from_iterable(written_elements(site, written) for written in column.written)
+        yield from _values(scenario, column.ref, values, placed)
+
+
+def _between_phrases(uses: list[Placed], own: Site) -> Iterator[Diagnostic]:
+    """Report the uses of ``own`` that no kind fits which the uses before them leave."""
+    left: Kinds = ANYTHING
+    seen: list[Placed] = []
+    for site, use in uses:
+        if left & use.kinds:
+            left &= use.kinds
+            seen.append((site, use))
+            continue
+        if site is not own:
+            continue
+        other = next((entry for entry in seen if not entry[1].kinds & use.kinds), seen[0])
+        message = (
+            f"'{use.ref.path}' stands for {article(kind_words(left))} in '{other[1].phrase}', "
+            f"so it cannot be {article(kind_words(use.kinds))} in '{use.phrase}': use two variables"
+        )
+        related = (related_to(other[0], other[1].ref, f"here it is {article(kind_words(other[1].kinds))}"),)
+        yield finding(site, use.ref, Severity.ERROR, CODE, message, related)
+        yield from _other_place(other, site, use.ref, f"elsewhere it is {article(kind_words(use.kinds))}")
+
+
+def _other_place(other: Placed, own: Site, node: tree.Node, words: str) -> Iterator[Diagnostic]:
+    """Point from the phrase that tells the type to the place that contradicts it, where both are in one file."""
+    site, use = other
+    if site.uri == own.uri:
+        message = f"'{use.ref.path}' is {article(kind_words(use.kinds))} here, but {words}"
+        related = (related_to(own, node, "the conflict"),)
+        yield finding(site, use.ref, Severity.HINT, CODE, message, related)
+
+
+def _values(
+    scenario: Scenario, variable: tree.Ref, values: Iterable[tuple[tree.Node, Element]], uses: list[Placed]
+) -> Iterator[Diagnostic]:
+    """Report each value that a phrase cannot take, once for each set that is named."""
+    kinds = narrowed(use for _, use in uses)
+    told: set[tree.Node] = set()
+    for node, element in values:
+        if element.kind in kinds or not kinds or node in told:
+            continue
+        told.add(node)
+        other = next(entry for entry in uses if element.kind not in entry[1].kinds)
+        wanted = kind_words(kinds)
+        message = (
+            f"'{element.name}' is {article(element.kind)}, but '{variable.path}' stands for {article(wanted)} "
+            f"in '{other[1].phrase}': give it {article(wanted)}"
+        )
+        related = (related_to(other[0], other[1].ref, f"here it is {article(kind_words(other[1].kinds))}"),)
+        yield finding(scenario.site, node, Severity.ERROR, CODE, message, related)
+        if len(told) == 1:
+            words = f"scenario '{scenario.variant.name.text}' gives it {article(element.kind)}"
+            yield from _other_place(other, scenario.site, node, words)
+
+
+def _quantified(site: Site, clauses: Clauses) -> Iterator[Diagnostic]:
+    """Report phrases that the elements of a written set do not fit, through the variable that runs over it."""
+    for use in clauses.uses:
+        if use.bound is None:
+            continue
+        elements = elements_of(site.follow(use.bound.in_set)) or ()
+        wrong = next((element for element in elements if element.kind not in use.kinds), None)
+        if wrong is not None:
+            message = (
+                f"'{use.ref.path}' runs over '{use.bound.in_set.path}', where '{wrong.name}' is "
+                f"{article(wrong.kind)}, but '{use.phrase}' takes {article(kind_words(use.kinds))}: "
+                "name another set"
+            )
+            related = (related_to(site, use.bound.in_set, f"the set has {article(wrong.kind)}"),)
+            yield finding(site, use.ref, Severity.ERROR, CODE, message, related)

@@ -1,0 +1,48 @@
+"""``unused-import``: an import of which nothing is used, neither from the file nor from what it imports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.checks.finding import removal
+from robbdd_tools.checks.usage import has_story, used_names
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import FileAnalysis, ImportLink
+    from robbdd_tools.names.project import Snapshot
+
+
+def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Hint at imports without a use; a library, and a file that others import, hand their imports on."""
+    if not has_story(file):
+        return
+    used = used_names(file)
+    found = [link for link in file.imports if link.problem is None and _is_unused(snapshot, file, link, used)]
+    if not found or snapshot.importers(file.document.uri):
+        return
+    for link in found:
+        name = link.uri.rsplit("/", 1)[-1]
+        spans = [
+            placed.declaration.tree.span.shifted(placed.offset)
+            for placed in file.declarations
+            if isinstance(placed.declaration.tree, tree.Import) and placed.span.contains(link.span.start)
+        ]
+        fixes = tuple(removal(file.document, f"Remove the import of '{name}'", span) for span in spans[:1])
+        message = f"nothing of '{name}' is used: remove this import"
+        yield Diagnostic(file.document.uri, link.span, Severity.HINT, "unused-import", message, fixes=fixes)
+
+
+def _is_unused(snapshot: Snapshot, file: FileAnalysis, link: ImportLink, used: frozenset[str]) -> bool:
+    """Tell whether no name behind an import is used; with an error behind it that is not certain."""
+    scope = snapshot.scope(link.uri)
+    if scope.unread:
+        return False
+    for index in scope.files:
+        if index.document.uri == file.document.uri:
+            continue
+        if not used.isdisjoint(index.names.entries) or any(placed.declaration.faults for placed in index.declarations):
+            return False
+    return True

@@ -1,0 +1,20 @@
+"""``unused-set``: a constant set that nothing in its file refers to and that no other file can use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.checks.usage import unused, unused_declarations
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+
+
+def unused_set(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Hint at each constant set without a use."""
+    for definition in unused_declarations(snapshot, file, SymbolKind.CONSTANT_SET):
+        yield unused(file, definition, "unused-set")

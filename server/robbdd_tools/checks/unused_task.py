@@ -1,0 +1,20 @@
+"""``unused-task``: a task that nothing in its file refers to and that no other file can use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.checks.usage import unused, unused_declarations
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+
+
+def unused_task(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Hint at each task without a use."""
+    for definition in unused_declarations(snapshot, file, SymbolKind.TASK):
+        yield unused(file, definition, "unused-task")

@@ -1,0 +1,51 @@
+"""Which names a file uses, and whether anybody else could use what it declares."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.checks.facts import facts_of
+from robbdd_tools.checks.finding import removal
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import Definition, FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import Declaration, SymbolKind
+
+
+def used_names(file: FileAnalysis) -> frozenset[str]:
+    """Return the first parts of all names that a file refers to."""
+    return _used_by(tuple(placed.declaration for placed in file.declarations))
+
+
+@lru_cache(maxsize=8)
+def _used_by(declarations: tuple[Declaration, ...]) -> frozenset[str]:
+    return frozenset[str]().union(*(facts_of(declaration).heads for declaration in declarations))
+
+
+def has_story(file: FileAnalysis) -> bool:
+    """Tell whether a file holds scenarios; one without is a library, whose names wait for their users."""
+    return any(isinstance(placed.declaration.tree, tree.Story) for placed in file.declarations)
+
+
+def unused_declarations(snapshot: Snapshot, file: FileAnalysis, kind: SymbolKind) -> Iterator[Definition]:
+    """Yield the declarations of a kind that surely nobody uses: a story is there, but no importer."""
+    if not has_story(file):
+        return
+    used = used_names(file)
+    declared = (placed.declaration.symbols[0] for placed in file.declarations if placed.declaration.symbols)
+    paths = [symbol.path for symbol in declared if symbol.kind is kind and symbol.path not in used]
+    if paths and not snapshot.importers(file.document.uri):
+        yield from (file.definitions[path] for path in dict.fromkeys(paths))
+
+
+def unused(file: FileAnalysis, definition: Definition, code: str) -> Diagnostic:
+    """Return the hint that a declaration can go, with the fix that removes it."""
+    words = f"{definition.kind} '{definition.symbol.path}'"
+    fix = removal(file.document, f"Remove {words}", definition.extent)
+    message = f"the {words} is never used: use it, or remove it"
+    return Diagnostic(file.document.uri, definition.span, Severity.HINT, code, message, fixes=(fix,))

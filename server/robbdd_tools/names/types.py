@@ -1,0 +1,177 @@
+"""Types of variables, which the language does not write: inferred from clauses and from the values given.
+
+A type is a set of kinds: what a variable, or each element of the set it stands for, may be. A phrase narrows it to
+what its slot takes; values in variants narrow it further where the phrases leave it open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.names.elements import Element, Site, element_of, elements_of, site_of
+from robbdd_tools.names.uses import ANYTHING, Clauses, Kinds, Use, clauses_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.project import Snapshot
+
+_ORDER = ("object", "workspace", "agent", "number", "string")
+
+
+@dataclass(frozen=True, slots=True)
+class VariableType:
+    """What a variable may stand for; with ``is_set`` what each element of its set may be."""
+
+    kinds: Kinds
+    is_set: bool
+
+    @property
+    def is_known(self) -> bool:
+        """Tell whether anything narrows the type."""
+        return bool(self.kinds) and self.kinds != ANYTHING
+
+    def __str__(self) -> str:
+        words = kind_words(self.kinds)
+        if not self.is_set:
+            return words
+        return "set of " + " or ".join(f"{word}s" for word in words.split(" or "))
+
+
+def kind_words(kinds: Kinds) -> str:
+    """Return kinds in words: ``object or workspace``; ``anything`` when nothing is excluded."""
+    if kinds == ANYTHING:
+        return "anything"
+    return " or ".join(kind for kind in _ORDER if kind in kinds)
+
+
+def narrowed(uses: Iterable[Use]) -> Kinds:
+    """Return what fits all of some uses."""
+    return ANYTHING.intersection(*(use.kinds for use in uses))
+
+
+def variable_of(site: Site, use: Use) -> Definition | None:
+    """Return the variable that a use narrows: a quantified one stands for the elements of its set variable."""
+    found = site.target(use.bound.in_set if use.bound is not None else use.ref)
+    variable = found is not None and found.kind in (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
+    return found if variable else None
+
+
+def variable_key(definition: Definition) -> str:
+    """Return what tells variables apart: templates of one namespace share those of one name."""
+    return definition.iri or f"{definition.uri} {definition.symbol.path}"
+
+
+def uses_by_variable(site: Site, clauses: Clauses) -> dict[str, list[Use]]:
+    """Return the uses in the clauses of a template or variant by the key of the variable that they narrow."""
+    found: dict[str, list[Use]] = {}
+    for use in clauses.uses:
+        variable = variable_of(site, use)
+        if variable is not None:
+            found.setdefault(variable_key(variable), []).append(use)
+    return found
+
+
+Written = tree.Value | tree.Link | tree.ValueList | tree.Selection | tree.SetList
+
+
+def written_elements(site: Site, written: Written) -> Iterator[tuple[tree.Node, Element]]:
+    """Yield each element that a cell or a line gives, with the node to point at."""
+    match written:
+        case tree.Number() | tree.Text() | tree.Ref():
+            element = element_of(site, written)
+            if element is not None:
+                yield written, element
+        case tree.Link():
+            for element in elements_of(site.follow(written.reference)) or ():
+                yield written.reference, element
+        case tree.Selection():
+            for element in elements_of(site.follow(written.source)) or ():
+                yield written.source, element
+        case tree.ValueList():
+            for value in written.values:
+                yield from written_elements(site, value)
+        case tree.SetList():
+            for values in written.sets:
+                yield from written_elements(site, values)
+
+
+def columns_of(variation: tree.Table | tree.Product) -> Iterator[tuple[tree.Ref, tuple[Written, ...]]]:
+    """Yield each column or line of a variation: its variable and what is written for it."""
+    if isinstance(variation, tree.Product):
+        for line in variation.assignments:
+            yield line.variable, (line.choices,)
+        return
+    for index, variable in enumerate(variation.header):
+        yield variable, tuple(row.cells[index] for row in variation.rows if index < len(row.cells))
+
+
+def variable_type(snapshot: Snapshot, definition: Definition) -> VariableType:
+    """Return what a variable stands for, told from its template and from the variants that are known of it."""
+    is_set = definition.kind is SymbolKind.SET_VARIABLE
+    site = site_of(snapshot, definition)
+    owner = None if site is None else _owner(site, definition)
+    if site is None or owner is None:
+        return VariableType(ANYTHING, is_set)
+    bound = _bound_uses(site, owner, definition)
+    if bound is not None:
+        return VariableType(bound, False)
+    kinds = narrowed(uses_by_variable(site, owner).get(variable_key(definition), ()))
+    if len(kinds) > 1:
+        kinds = _narrowed_by_variants(snapshot, definition, kinds)
+    return VariableType(kinds, is_set)
+
+
+def _owner(site: Site, definition: Definition) -> Clauses | None:
+    """Return the clauses of the template or variant that declares a variable."""
+    every = clauses_of(site.placed.declaration)
+    return next((clauses for clauses in every if site.span(clauses.node).contains(definition.span.start)), None)
+
+
+def _bound_uses(site: Site, owner: Clauses, definition: Definition) -> Kinds | None:
+    """Return what a quantified variable stands for; ``None`` when the variable is not quantified."""
+    bounds = [bound for bound in owner.bounds if site.span(bound.variable) == definition.span]
+    if not bounds:
+        return None
+    kinds = narrowed(use for use in owner.uses if use.bound == bounds[0])
+    elements = elements_of(site.follow(bounds[0].in_set))
+    if elements:
+        return kinds & {element.kind for element in elements}
+    found = site.target(bounds[0].in_set)
+    if len(kinds) > 1 and found is not None and found.kind is SymbolKind.SET_VARIABLE:
+        return variable_type(site.snapshot, found).kinds
+    return kinds
+
+
+def _narrowed_by_variants(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> Kinds:
+    """Return what both the phrases and the values of all known variants allow."""
+    given: set[str] = set()
+    key = variable_key(definition)
+    for site, variant, clauses in _variants(snapshot, definition):
+        kinds &= narrowed(uses_by_variable(site, clauses).get(key, ()))
+        for ref, written in columns_of(variant.variation):
+            target = site.target(ref)
+            if target is not None and variable_key(target) == key:
+                given |= {element.kind for cell in written for _, element in written_elements(site, cell)}
+    return kinds & given if kinds & given else kinds
+
+
+def _variants(snapshot: Snapshot, definition: Definition) -> Iterator[tuple[Site, tree.Variant, Clauses]]:
+    """Yield the variants of the template that declares a variable, in its own file and in those that import it."""
+    template = definition.symbol.path.partition(".")[0]
+    for uri in (definition.uri, *snapshot.importers(definition.uri)):
+        file = snapshot.file(uri)
+        for placed in file.declarations if file is not None else ():
+            if file is None or not isinstance(placed.declaration.tree, tree.Story):
+                continue
+            site = Site(snapshot, file, placed)
+            for clauses in clauses_of(placed.declaration):
+                variant = clauses.node
+                if not isinstance(variant, tree.Variant):
+                    continue
+                found = site.target(variant.template)
+                if found is not None and (found.uri, found.symbol.path) == (definition.uri, template):
+                    yield site, variant, clauses

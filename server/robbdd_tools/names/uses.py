@@ -1,0 +1,144 @@
+"""What clauses say about variables and events by themselves: one walk over each declaration, kept with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.syntax.declaration import Declaration
+
+Kinds = frozenset[str]
+ELEMENTS: Kinds = frozenset({"object", "workspace", "agent"})
+ANYTHING: Kinds = ELEMENTS | {"number", "string"}
+KEPT_DECLARATIONS = 20_000
+_SLOTS: Mapping[Kind, Kinds] = {
+    Kind.OBJECT: frozenset({"object"}),
+    Kind.OBJECT_SET: frozenset({"object"}),
+    Kind.WORKSPACE: frozenset({"workspace"}),
+    Kind.WORKSPACE_SET: frozenset({"workspace"}),
+    Kind.AGENT: frozenset({"agent"}),
+    Kind.ANY: ELEMENTS,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A variable that a quantifier introduces."""
+
+    variable: tree.Name
+    in_set: tree.Ref
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """A variable in a slot of a phrase: what the slot takes, and the phrase it belongs to.
+
+    ``bound`` is the quantifier that the variable belongs to, if any.
+    """
+
+    ref: tree.Ref
+    kinds: Kinds
+    phrase: str
+    bound: Bound | None
+
+
+@dataclass(frozen=True, slots=True)
+class Clauses:
+    """The clauses of one template or variant.
+
+    ``once`` are the durations outside of every ``for all``, whose events come again in each round.
+    """
+
+    node: tree.Template | tree.Variant
+    uses: tuple[Use, ...]
+    bounds: tuple[Bound, ...]
+    durations: tuple[tree.During, ...]
+    once: tuple[tree.During, ...]
+
+
+@lru_cache(maxsize=KEPT_DECLARATIONS)
+def clauses_of(declaration: Declaration) -> tuple[Clauses, ...]:
+    """Return the clauses of a template, or of each variant of a story; nothing for any other declaration."""
+    match declaration.tree:
+        case tree.Template() as template:
+            return (_collected(template, (template.duration, template.body)),)
+        case tree.Story() as story:
+            return tuple(_collected(variant, (variant.given, variant.then)) for variant in story.variants)
+        case _:
+            return ()
+
+
+def _collected(node: tree.Template | tree.Variant, parts: tuple[tree.Node | None, ...]) -> Clauses:
+    collector = _Collector()
+    for part in parts:
+        collector.visit(part, {}, repeated=False)
+    uses = tuple(sorted(collector.uses, key=lambda use: use.ref.span))
+    return Clauses(node, uses, tuple(collector.bounds), tuple(collector.durations), tuple(collector.once))
+
+
+@dataclass(slots=True)
+class _Collector:
+    uses: list[Use] = field(default_factory=list[Use])
+    bounds: list[Bound] = field(default_factory=list[Bound])
+    durations: list[tree.During] = field(default_factory=list[tree.During])
+    once: list[tree.During] = field(default_factory=list[tree.During])
+
+    def visit(self, node: tree.Node | None, bound: Mapping[str, Bound], *, repeated: bool) -> None:
+        match node:
+            case tree.Body():
+                for part in (node.given, node.when and node.when.behaviour, node.for_all, node.then):
+                    self.visit(part, bound, repeated=repeated)
+            case tree.BehaviourUse():
+                self.visit(node.duration, bound, repeated=repeated)
+                self._phrase(node.action, bound)
+            case tree.Fluent():
+                self.visit(node.time, bound, repeated=repeated)
+                self._phrase(node.predicate, bound)
+            case tree.TextClause():
+                self.visit(node.time, bound, repeated=repeated)
+            case tree.During():
+                self.durations.append(node)
+                if not repeated:
+                    self.once.append(node)
+            case tree.Negation():
+                self.visit(node.operand, bound, repeated=repeated)
+            case tree.Conjunction() | tree.Disjunction():
+                for operand in node.operands:
+                    self.visit(operand, bound, repeated=repeated)
+            case tree.ForAll() | tree.Exists():
+                self.bounds.append(Bound(node.variable, node.in_set))
+                inner = {**bound, node.variable.text: self.bounds[-1]}
+                self.visit(node.body, inner, repeated=repeated or isinstance(node, tree.ForAll))
+            case _:
+                pass
+
+    def _phrase(self, node: tree.PhraseUse | tree.TextPredicate, bound: Mapping[str, Bound]) -> None:
+        if isinstance(node, tree.TextPredicate):
+            refs = [(argument.value, ANYTHING) for argument in node.arguments]
+            phrase = "pred(…)"
+        else:
+            slots, phrase = slot_kinds(node.word), phrase_words(node.word)
+            refs = [(value, slots[name]) for name, value in node.arguments if isinstance(value, tree.Ref)]
+        self.uses += [Use(ref, kinds, phrase, bound.get(ref.path)) for ref, kinds in refs]
+
+
+@cache
+def slot_kinds(word: str) -> Mapping[str, Kinds]:
+    """Return what each slot of a word of the catalog takes."""
+    catalog = load_catalog()
+    known = catalog.predicates.get(word) or catalog.behaviours[word]
+    return {slot.name: _SLOTS.get(slot.kind, ANYTHING) for slot in known.slots}
+
+
+@cache
+def phrase_words(word: str) -> str:
+    """Return the phrase of a word of the catalog."""
+    catalog = load_catalog()
+    return (catalog.predicates.get(word) or catalog.behaviours[word]).phrase

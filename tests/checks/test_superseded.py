@@ -1,0 +1,50 @@
+"""A mistake is told once: what a rule has found, no shape repeats; what no rule found, the shapes still tell."""
+
+import pytest
+
+from checks.models import LINES, SETS, story
+from kit import EVENTS, MODEL, STORY, TEMPLATE, corpus, fixture
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.features.diagnostics import all_diagnostics
+from robbdd_tools.names.project import Project
+
+TABLE = "| <fetch.part> | <fetch.robot> | <fetch.goal> |\n|---|\n| <parts.bolt> | <arms.panda> |\n"
+GOALS = "set var <fetch.goals>: select 3 combinations from <places>\n"
+MISTAKES = {
+    "missing-value": EVENTS + TEMPLATE + STORY.replace("var <fetch.robot>: { <arms.panda> }", ""),
+    "repeated-value": story(LINES + "var <fetch.part>: { <parts.bolt> }\n"),
+    "row-width": story(TABLE),
+    "selection-size": story(LINES + GOALS, SETS),
+    "empty-set": MODEL.replace("{ <arms.panda> }", "{ }"),
+    "type-conflict": MODEL.replace("{ <arms.panda> }", "{ <arms.panda>, <parts.bolt> }"),
+    "empty-duration": MODEL.replace("until <end>", "until <start>").replace("after <place-end>", "after <end>"),
+    "duplicate-iri": MODEL + TEMPLATE.replace("fetch", "bring").replace("in-tray", "at-tray"),
+    "foreign-variable": MODEL.replace("ns t =", "ns o = 'https://example.org/o/'\nns t =")
+    + TEMPLATE.replace("fetch", "bring").replace("(ns=t)", "(ns=o)")
+    + STORY.replace("fetching", "more")
+    .replace("bench-to-tray", "again")
+    .replace("var <fetch.part>: obj", "var <fetch.part>: { <parts.nut> } var <bring.part>: obj"),
+}
+
+
+@pytest.mark.parametrize("code", sorted(MISTAKES))
+def test_a_mistake_is_reported_once(code: str) -> None:
+    case = fixture(MISTAKES[code])
+    found = [entry for entry in all_diagnostics(case.snapshot, case.uri) if entry.severity < Severity.INFORMATION]
+    assert [entry.code for entry in found] == [code], found
+
+
+def test_what_only_a_shape_finds_is_still_told() -> None:
+    case = fixture(MODEL.replace("0.5 seconds", "-1 seconds"))
+    assert [entry.code for entry in all_diagnostics(case.snapshot, case.uri)] == ["shacl-horizon"]
+
+
+def test_foreign_models_raise_no_false_alarm() -> None:
+    project = Project()
+    uris = [path_to_uri(path) for path in corpus(".bdd", ".scene")]
+    for uri in uris:
+        project.load(uri)
+    snapshot = project.snapshot()
+    alarms = [entry for uri in uris for entry in all_diagnostics(snapshot, uri) if entry.severity <= Severity.WARNING]
+    assert alarms == []
