@@ -1,4 +1,4 @@
-"""The command line: ``robbdd check | graph | gherkin | run``.
+"""The command line: ``robbdd check | graph | gherkin | run | import | query``.
 
 Exit codes: 0 all well; 1 errors found (check) or a clause violated or unknown (run); 2 the command could not do its
 work; 130 interrupted.
@@ -68,7 +68,20 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     run.add_argument("-o", "--output", metavar="DIR", type=Path, help="keep features, manifest and log here")
     run.set_defaults(command=_run)
-    _allow_hosts(check, graph, gherkin, run)
+
+    view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
+    view.add_argument("path", metavar="FILE", type=Path)
+    view.add_argument("--scenario", metavar="NAME", help="this scenario or variant (default: the first)")
+    view.add_argument("--seed", type=int, default=None, help="decides everything random (default: 1)")
+    view.add_argument("-o", "--output", metavar="FILE.png", type=Path, help="default: the model's name with .png")
+    view.set_defaults(command=_view)
+
+    imported = commands.add_parser("import", help="write a graph (.ttl, .json, .jsonld) as RobBDD text")
+    imported.add_argument("path", metavar="FILE", type=Path)
+    imported.add_argument("-o", "--output", metavar="MODEL.bdd", type=Path, required=True)
+    imported.add_argument("--force", action="store_true", help="replace files that are there already")
+    imported.set_defaults(command=_import)
+    _allow_hosts(check, graph, gherkin, run, imported)
     return parser
 
 
@@ -118,6 +131,18 @@ def _run(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.run import run
 
     return run(options.path, options.seed, options.scenario, options.json, options.output)
+
+
+def _import(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.import_model import import_model
+
+    return import_model(options.path, options.output, overwrite=options.force)
+
+
+def _view(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.view import view
+
+    return view(options.path, options.scenario, options.seed, options.output)
 
 
 if __name__ == "__main__":

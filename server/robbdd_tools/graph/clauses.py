@@ -179,7 +179,8 @@ class ClauseWriter:
         self._start(node, ["bdd:WhenBehaviour"], "when", self.frame.at(use.name))
         self._sink.add(node, "bhv:of-behaviour", behaviour, self.frame.at(use.name))
         self._arguments(node, word.slots, use.action)
-        self._time(node, use.duration)
+        if use.duration is not None:
+            self._time(node, use.duration)
         return [node]
 
     def _arguments(self, node: URIRef, slots: Iterable[Slot], phrase: tree.PhraseUse) -> None:

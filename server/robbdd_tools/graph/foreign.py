@@ -41,12 +41,12 @@ def read_graph_file(document: Document) -> BuiltGraph:
         fault = Diagnostic(uri, Span(error.offset, error.offset), Severity.ERROR, "graph-syntax", str(error))
         return BuiltGraph(uri, Graph(), SourceMap({}), {}, (), (), frozenset(), (fault,), True)
     places = _places(document, graph)
-    names = _names(graph)
+    names = node_names(graph)
     faults = (*_strangers(uri, graph), *_left_out(uri, graph, places, names))
     return BuiltGraph(uri, graph, places, names, (), (), frozenset(), faults, True)
 
 
-def _names(graph: Graph) -> dict[str, str]:
+def node_names(graph: Graph) -> dict[str, str]:
     """Return what findings call the nodes: CURIEs; a blank node is called after the node that it belongs to."""
     from rdflib import BNode, Graph, URIRef
 

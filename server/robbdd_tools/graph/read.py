@@ -25,7 +25,7 @@ def read_model(graph: Graph) -> AcceptanceModel:
     records = Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
     kinds = {node: kind for kind, type_ in ELEMENT_TYPES.items() for node in records.instances(type_)}
-    stories = sorted(records.instances("bdd:UserStory"), key=lambda node: (_position(records, node), node))
+    stories = story_order(records)
     reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
     return AcceptanceModel(tuple(reader.story(node) for node in stories), kinds, sets, user_prefixes(graph))
 
@@ -52,6 +52,11 @@ def read_set(records: Records, node: str) -> tuple[Value, ...]:
     if items is None or set(items) != set(elements):
         items = elements
     return tuple(records.value(item) for item in items)
+
+
+def story_order(records: Records) -> list[Iri]:
+    """Return the stories of a graph in written order where it tells it."""
+    return sorted(records.instances("bdd:UserStory"), key=lambda node: (_position(records, node), node))
 
 
 def _position(records: Records, node: str) -> float:

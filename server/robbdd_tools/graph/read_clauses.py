@@ -40,9 +40,10 @@ class ClauseReader:
 
     def clauses(self, owner: str, term: str = "bdd:has-clause", inside: tuple[str, ...] = ()) -> tuple[Clause, ...]:
         """Return the clauses of an owner in order."""
-        return tuple(self._clause(node, (*inside, owner)) for node in self.records.list_of(owner, term))
+        return tuple(self.clause(node, (*inside, owner)) for node in self.records.list_of(owner, term))
 
-    def _clause(self, node: Node, inside: tuple[str, ...]) -> Clause:
+    def clause(self, node: Node, inside: tuple[str, ...] = ()) -> Clause:
+        """Return one clause; ``inside`` are the nodes that hold it, outermost first."""
         iri = Iri(node)
         if iri in inside:
             raise Incomplete(f"{iri} contains itself")

@@ -1,0 +1,72 @@
+"""``robbdd import``: a graph as RobBDD text, with what the language cannot say."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.commands import FAILED, OK
+from robbdd_tools.commands.models import sound_model
+from robbdd_tools.names.project import Project
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+    from robbdd_tools.graph.losses import Losses
+    from robbdd_tools.graph.text import ModelText
+
+
+def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
+    """Write a model as RobBDD text to ``output`` and, where it has scenes, to a ``.scene`` beside it."""
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.losses import compare
+    from robbdd_tools.graph.text import write_model
+
+    if output.suffix != ".bdd":
+        print(f"robbdd: {output} cannot hold the text: its name must end in .bdd", file=sys.stderr)
+        return FAILED
+    scene = output.with_suffix(".scene")
+    present = [file for file in (output, scene) if file.exists()]
+    if present and not overwrite:
+        print(f"robbdd: {present[0]} is there already; --force replaces it", file=sys.stderr)
+        return FAILED
+    snapshot = sound_model(path)
+    if snapshot is None:
+        return FAILED
+    graph = build_graph(snapshot, path_to_uri(path)).graph
+    text = write_model(graph, scene.name)
+    again = graph_of(text, scene.name)
+    _report(path, text, compare(graph, again, text.renamed))
+    try:
+        for file, content in ((output, text.criteria), (scene, text.scene)):
+            if content:
+                file.write_text(content, encoding="utf-8", newline="\n")
+                print(file)
+    except OSError as error:
+        print(f"robbdd: cannot write {error.filename or output}: {error.strerror or error}", file=sys.stderr)
+        return FAILED
+    return OK
+
+
+def graph_of(text: ModelText, scene_name: str) -> Graph:
+    """Return the graph that a text gives, without writing it anywhere."""
+    from robbdd_tools.graph.build import build_graph
+
+    project = Project()
+    folder = "file:///imported/"
+    project.open(f"{folder}model.bdd", 1, text.criteria)
+    project.open(folder + scene_name, 1, text.scene)
+    return build_graph(project.snapshot(), f"{folder}model.bdd").graph
+
+
+def _report(path: Path, text: ModelText, losses: Losses) -> None:
+    for node, reason in text.left_out.items():
+        print(f"{path}: warning: {node} is not written: {reason} [left-out]", file=sys.stderr)
+    for old, new in losses.renamed:
+        print(f"{path}: warning: {old} becomes {new}: the language makes names so [renamed]", file=sys.stderr)
+    for line in losses.lost:
+        print(f"{path}: warning: the language cannot say: {line} [lost]", file=sys.stderr)
+    for line in losses.added:
+        print(f"{path}: warning: the text says besides: {line} [added]", file=sys.stderr)
