@@ -99,7 +99,7 @@ class TextPredicate(Node):
 
 @dataclass(frozen=True, slots=True)
 class Fluent(Node):
-    """``name: holds(predicate, time constraint)``; one written without a name is given one (``unnamed.py``)."""
+    """``name: holds(predicate, time constraint)``; one written without a name is given one (``published``)."""
 
     name: Name
     predicate: PhraseUse | TextPredicate
@@ -158,7 +158,8 @@ class Occurrence(Node):
 class BehaviourUse(Node):
     """``Behaviour (ns=…) name { duration: … action node: … }``.
 
-    ``duration`` is ``None`` where the published form gives none. ``node`` is that of a behaviour tree to link to.
+    ``duration`` is ``None`` where the published form gives none and the clauses do not tell it. ``node`` is that of
+    a behaviour tree to link to.
     """
 
     namespace: NamespaceArgument | None

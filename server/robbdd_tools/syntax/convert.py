@@ -10,8 +10,8 @@ from typing import Any, cast
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.phrases import word_of_rule
+from robbdd_tools.syntax.published import complete_template, complete_variant, unnamed_at
 from robbdd_tools.syntax.textx import RawNode
-from robbdd_tools.syntax.unnamed import name_template, name_variant, unnamed_at
 
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
 _KINDS = {"obj": "object", "ws": "workspace", "agn": "agent"}
@@ -122,8 +122,8 @@ _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
     "PlainVariable": _given(tree.Variable, is_set=False),
     **dict.fromkeys(("Object", "Workspace", "Agent"), _given(tree.Member)),
     "ModuleName": _given(tree.Name),
-    "Template": lambda raw, span, text: name_template(_by_fields(tree.Template, raw, span, text)),
-    "Variant": lambda raw, span, text: name_variant(_by_fields(tree.Variant, raw, span, text)),
+    "Template": lambda raw, span, text: complete_template(_by_fields(tree.Template, raw, span, text)),
+    "Variant": lambda raw, span, text: complete_variant(_by_fields(tree.Variant, raw, span, text)),
     "Clauses": _clauses,
     **dict.fromkeys(
         ("UnnamedFluent", "BareFluent"),

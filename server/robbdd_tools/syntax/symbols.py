@@ -148,7 +148,8 @@ def references(root: tree.DeclarationTree) -> tuple[Reference, ...]:
     """Return every use of a name in a declaration, in the order of the text."""
     found: list[Reference] = []
     _collect(root, (), found)
-    return tuple(sorted(found, key=lambda reference: reference.ref.span))
+    # An event from which a duration was told stands in the tree twice, but once in the text.
+    return tuple(sorted(dict.fromkeys(found), key=lambda reference: reference.ref.span))
 
 
 def _collect(node: tree.Node, scopes: tuple[str, ...], found: list[Reference]) -> None:

@@ -1,7 +1,8 @@
-"""Names for what the published form leaves without one, so that every clause has an IRI and can be referred to.
+"""What the published form leaves out of templates and variants: names of clauses, name and duration of behaviours.
 
-A name is that of the template or variant, the role, and a number: ``fetch-given-1``. Names that stand in the text
-are not given a second time.
+A clause is called after its template or variant, its role, and a number (``fetch-given-1``), so that it has an IRI
+and can be referred to; names that stand in the text are not given a second time. A behaviour lasts from the event
+before which something is given until the event after which something then holds.
 """
 
 from __future__ import annotations
@@ -12,15 +13,20 @@ from itertools import count
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.bdd_tree import (
+    After,
+    Before,
     BehaviourUse,
     Body,
     Conjunction,
     Disjunction,
+    During,
     Exists,
     Expression,
     Fluent,
     Negation,
     Template,
+    TextClause,
+    TimeConstraint,
     Variant,
     When,
 )
@@ -32,14 +38,14 @@ def unnamed_at(span: Span) -> Name:
     return Name(Span(span.start, span.start), "")
 
 
-def name_template(template: Template) -> Template:
-    """Give a name to each clause and behaviour of a template that has none."""
+def complete_template(template: Template) -> Template:
+    """Return a template with all its clauses and behaviours named, and durations where the clauses tell them."""
     namer = _Namer(template.name.text, frozenset(_names(template.body)))
     return replace(template, body=namer.body(template.body, ""))
 
 
-def name_variant(variant: Variant) -> Variant:
-    """Give a name to each clause of a variant that has none."""
+def complete_variant(variant: Variant) -> Variant:
+    """Return a variant with all its clauses named."""
     taken = frozenset((*_names(variant.given), *_names(variant.then)))
     namer = _Namer(variant.name.text, taken)
     return replace(variant, given=namer.clauses(variant.given, "given"), then=namer.clauses(variant.then, "then"))
@@ -57,7 +63,7 @@ class _Namer:
         return replace(
             body,
             given=self.clauses(body.given, f"{prefix}given"),
-            when=None if body.when is None else self._when(body.when),
+            when=None if body.when is None else self._when(body.when, body),
             for_all=inner,
             then=self.clauses(body.then, f"{prefix}then"),
         )
@@ -84,12 +90,39 @@ class _Namer:
             case _:
                 return expression
 
-    def _when(self, when: When) -> When:
+    def _when(self, when: When, body: Body) -> When:
         behaviour: BehaviourUse = when.behaviour
-        if behaviour.name.text:
-            return when
-        name = replace(behaviour.name, text=f"{self.owner}-{behaviour.action.word}")
-        return replace(when, behaviour=replace(behaviour, name=name))
+        if not behaviour.name.text:
+            name = replace(behaviour.name, text=f"{self.owner}-{behaviour.action.word}")
+            behaviour = replace(behaviour, name=name)
+        if behaviour.duration is None:
+            behaviour = replace(behaviour, duration=_duration(behaviour, body))
+        return replace(when, behaviour=behaviour)
+
+
+def _duration(behaviour: BehaviourUse, body: Body) -> During | None:
+    before = [time.event for time in _times(body.given) if isinstance(time, Before)]
+    after = [time.event for time in _times(body.then) if isinstance(time, After)]
+    while_it_lasts = [time for time in _times(body.then) if isinstance(time, During)]
+    start = before[:1] or [time.start for time in while_it_lasts[:1]]
+    end = after[:1] or [time.end for time in while_it_lasts[:1]]
+    return During(behaviour.span, start[0], end[0]) if start and end else None
+
+
+def _times(expression: Expression | None) -> Iterator[TimeConstraint]:
+    """Yield the time constraints of an expression in the order of the text."""
+    match expression:
+        case Fluent() | TextClause():
+            yield expression.time
+        case Negation():
+            yield from _times(expression.operand)
+        case Exists():
+            yield from _times(expression.body)
+        case Conjunction() | Disjunction():
+            for operand in expression.operands:
+                yield from _times(operand)
+        case None:
+            pass
 
 
 def _names(node: Body | Expression | None) -> Iterator[str]:
