@@ -1,0 +1,102 @@
+"""Takes pictures of a simulated world, with its workspaces drawn in and labelled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.agent.engine import mujoco
+from robbdd_tools.agent.scene import local_name
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from robbdd_tools.agent.simulation import Simulation
+    from robbdd_tools.catalog.api import FloatArray, Region
+
+WIDTH, HEIGHT = 1280, 800
+COLORS = ((0.10, 0.55, 0.90), (0.95, 0.55, 0.10), (0.25, 0.70, 0.30), (0.80, 0.25, 0.55), (0.55, 0.45, 0.85))
+OPACITY = 0.20
+THIN = 0.06
+"""Opacity of a workspace that other workspaces lie in, such as a table's."""
+AIM = (-0.05, 0.0, 0.12)
+"""What the camera looks at, m from the middle of the tables' tops."""
+LABEL = 0.012
+"""Radius (m) of the dot that a label is put beside."""
+LONGEST = 90
+"""Bytes of a label that the engine can hold."""
+
+
+class NoPicture(Exception):
+    """Nothing here can render; the message says what was tried."""
+
+
+class Camera:
+    """Renders a simulation from a place beside the table. Raises ``NoPicture`` where nothing can render."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        model = simulation.model
+        model.vis.global_.offwidth, model.vis.global_.offheight = WIDTH, HEIGHT
+        model.vis.quality.shadowsize = 2048
+        try:
+            self._renderer: Any = mujoco.Renderer(model, HEIGHT, WIDTH)
+        except Exception as error:  # the back ends fail in ways of their own, import errors included
+            raise NoPicture(f"{type(error).__name__}: {error}") from error
+        self._view: Any = mujoco.MjvCamera()
+        tables = [simulation.data.body(name).xpos for name in simulation.world.cast.tables]
+        self._view.lookat[:] = np.mean(tables, axis=0) + np.array(AIM)
+        self._view.distance, self._view.azimuth, self._view.elevation = 2.15, 128.0, -36.0
+
+    def take(self, data: Any) -> NDArray[np.uint8]:
+        """Return the picture of a state as pixels (height, width, 3)."""
+        self._renderer.update_scene(data, self._view)
+        scene = self._renderer.scene
+        for index, (name, carrier, region) in enumerate(self._regions()):
+            self._draw(scene, data, carrier, region, COLORS[index % len(COLORS)], local_name(name))
+        pixels: NDArray[np.uint8] = self._renderer.render()
+        return pixels
+
+    def close(self) -> None:
+        """Give the graphics context back."""
+        self._renderer.close()
+
+    def _regions(self) -> Iterator[tuple[str, str, Region]]:
+        for name, boxes in self._simulation.world.cast.regions.items():
+            for carrier, region in boxes:
+                yield name, carrier, region
+
+    def _draw(
+        self, scene: Any, data: Any, carrier: str, region: Region, color: tuple[float, float, float], name: str
+    ) -> None:
+        body = data.body(carrier)
+        turn: FloatArray = body.xmat.reshape(3, 3)
+        center: FloatArray = body.xpos + turn @ np.array(region.center)
+        half = np.array(region.half)
+        free = self._simulation.world.cast.objects[carrier].free
+        opacity = OPACITY if free else THIN
+        _add(scene, mujoco.mjtGeom.mjGEOM_BOX, half, center, turn, (*color, opacity), "")
+        # The middle of a table is where things lie: its label goes to a corner.
+        corner = np.array([0.0, 0.0, 1.0]) if free else np.array([-1.0, 1.0, 1.0])
+        above = center + turn @ (corner * half + np.array([0.0, 0.0, 2 * LABEL]))
+        _add(scene, mujoco.mjtGeom.mjGEOM_SPHERE, np.full(3, LABEL), above, turn, (*color, 1.0), name)
+
+
+def _add(
+    scene: Any,
+    kind: Any,
+    size: FloatArray,
+    position: FloatArray,
+    turn: FloatArray,
+    color: tuple[float, float, float, float],
+    label: str,
+) -> None:
+    """Add a shape that is only drawn; when the scene is full, it stays as it is."""
+    if scene.ngeom >= scene.maxgeom:
+        return
+    geom = scene.geoms[scene.ngeom]
+    mujoco.mjv_initGeom(geom, kind, size, position, turn.flatten(), np.array(color, dtype=np.float32))
+    geom.label = label.encode("ascii", "replace")[:LONGEST].decode("ascii")
+    scene.ngeom += 1

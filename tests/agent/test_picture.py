@@ -1,0 +1,84 @@
+"""Pictures: files that viewers read, of scenes with their workspaces, and plain words where nothing can render."""
+
+from __future__ import annotations
+
+import os
+import struct
+import subprocess
+import sys
+import zlib
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from agent.worlds import SCENE, Steps, write_run
+from robbdd_tools.agent.png import SIGNATURE, write_png
+
+
+def read_png(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
+    data = path.read_bytes()
+    assert data.startswith(SIGNATURE)
+    chunks: dict[bytes, bytes] = {}
+    at = len(SIGNATURE)
+    while at < len(data):
+        (length,) = struct.unpack_from(">I", data, at)
+        kind, body = data[at + 4 : at + 8], data[at + 8 : at + 8 + length]
+        assert struct.unpack_from(">I", data, at + 8 + length) == (zlib.crc32(kind + body),)
+        chunks[kind] = body
+        at += length + 12
+    assert list(chunks) == [b"IHDR", b"IDAT", b"IEND"]
+    width, height = struct.unpack_from(">II", chunks[b"IHDR"])
+    rows = np.frombuffer(zlib.decompress(chunks[b"IDAT"]), np.uint8).reshape(height, 1 + 3 * width)
+    assert not rows[:, 0].any()
+    return rows[:, 1:].reshape(height, width, 3)
+
+
+def render(folder: Path, output: Path, index: str = "0", **environment: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "robbdd_tools.agent.render", str(folder), index, str(output)]
+    merged: Mapping[str, str] = {**os.environ, **environment}
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=merged)
+
+
+def test_a_picture_reads_back_as_it_was_written(tmp_path: Path) -> None:
+    pixels = np.arange(5 * 7 * 3, dtype=np.uint8).reshape(5, 7, 3)
+    write_png(tmp_path / "a.png", pixels)
+    assert (read_png(tmp_path / "a.png") == pixels).all()
+
+
+@pytest.mark.physics
+def test_a_scene_is_rendered_or_the_reason_is_given(tmp_path: Path) -> None:
+    """Where no graphics library is installed, there is a sentence instead of a picture."""
+    write_run(tmp_path / "run", [Steps(())])
+    done = render(tmp_path / "run", tmp_path / "a.png", MUJOCO_GL="egl")
+    assert "Traceback" not in done.stderr
+    if done.returncode == 3:
+        assert done.stderr.strip()
+        assert not (tmp_path / "a.png").exists()
+        return
+    assert done.returncode == 0, done.stderr
+    pixels = read_png(tmp_path / "a.png").astype(int)
+    assert pixels.shape == (800, 1280, 3)
+    reddish = (pixels[..., 0] > 90) & (pixels[..., 1:].max(axis=2) < 80)
+    greenish = pixels[..., 1] > pixels[..., [0, 2]].max(axis=2) + 30
+    assert reddish.sum() > 50, "the cube"
+    assert greenish.sum() > 1000, "a workspace"
+
+
+def test_a_back_end_that_does_not_work_is_a_sentence(tmp_path: Path) -> None:
+    write_run(tmp_path / "run", [Steps(())])
+    done = render(tmp_path / "run", tmp_path / "a.png", MUJOCO_GL="nonsense")
+    assert done.returncode == 3
+    assert done.stderr.strip()
+    assert "Traceback" not in done.stderr
+
+
+def test_a_scene_that_cannot_be_set_up_is_explained(tmp_path: Path) -> None:
+    write_run(tmp_path / "run", [Steps((), replace(SCENE, objects=(*SCENE.objects, "env:gizmo")))])
+    done = render(tmp_path / "run", tmp_path / "a.png", MUJOCO_GL="egl")
+    assert done.returncode in (2, 3)
+    assert "Traceback" not in done.stderr
+    assert done.returncode == 3 or "there is no model for object 'env:gizmo'" in done.stderr
+    assert render(tmp_path / "run", tmp_path / "a.png", "first").stderr.startswith("usage: ")
