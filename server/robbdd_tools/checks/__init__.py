@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robbdd_tools.checks.catalog_entry import catalog_entry
 from robbdd_tools.checks.contradictory_order import contradictory_order
 from robbdd_tools.checks.duplicate_iri import duplicate_iri
 from robbdd_tools.checks.empty_duration import empty_duration
@@ -16,6 +17,7 @@ from robbdd_tools.checks.foreign_variable import foreign_variable
 from robbdd_tools.checks.many_scenarios import many_scenarios
 from robbdd_tools.checks.memo import findings_in
 from robbdd_tools.checks.missing_value import missing_value
+from robbdd_tools.checks.model_file import model_file
 from robbdd_tools.checks.namespace_iri import namespace_iri
 from robbdd_tools.checks.no_scenario import no_scenario
 from robbdd_tools.checks.not_in_scene import not_in_scene
@@ -47,7 +49,9 @@ DECLARATION_RULES = (
     type_conflict,
 )
 FILE_RULES = (
+    catalog_entry,
     duplicate_iri,
+    model_file,
     namespace_iri,
     no_scenario,
     unused_event,

@@ -1,0 +1,44 @@
+"""``catalog-entry``: ``catalog "…"`` names nothing that the catalog of this installation has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+
+
+def catalog_entry(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report each model or behaviour that the catalog is asked for in vain."""
+    for placed in file.declarations:
+        root = placed.declaration.tree
+        if not isinstance(root, tree.SceneInstance | tree.Implementation):
+            continue
+        what, known = _known(root)
+        for node in walk(root):
+            if isinstance(node, tree.CatalogEntry) and node.name.value not in known:
+                yield _unknown(file.document.uri, node.name, placed.offset, what, known)
+
+
+def _known(root: tree.SceneInstance | tree.Implementation) -> tuple[str, Mapping[str, object]]:
+    catalog = load_catalog()
+    if isinstance(root, tree.Implementation):
+        return "behaviour", catalog.behaviours
+    return "model", {**catalog.robots, **catalog.objects}
+
+
+def _unknown(uri: str, name: tree.Text, offset: int, what: str, known: Mapping[str, object]) -> Diagnostic:
+    span = name.span.shifted(offset)
+    close = get_close_matches(name.value, known, n=3, cutoff=0.6)
+    message = f"the catalog has no {what} '{name.value}'"
+    message += f"; did you mean '{close[0]}'?" if close else f": it has {', '.join(sorted(known))}"
+    fixes = tuple(Fix(f"Change to '{choice}'", (Edit(uri, span, f'"{choice}"'),)) for choice in close)
+    return Diagnostic(uri, span, Severity.ERROR, "catalog-entry", message, fixes=fixes)
