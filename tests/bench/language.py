@@ -12,9 +12,9 @@ from kit import FOLDER, SCENE
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names.project import Project
+from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.split import split
-from robbdd_tools.syntax.textx import parse_chunk
 
 KEYSTROKES = 40
 

@@ -10,29 +10,41 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.cursor import Cursor, cursor_at
+from robbdd_tools.features.value_types import fits, kinds_in_text, slot_wanted, values_wanted
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
+from robbdd_tools.names.uses import ANYTHING
+from robbdd_tools.syntax.chunk import Expectation, Parsed, grammar_text, parse_chunk
 from robbdd_tools.syntax.parse import LANGUAGES
-from robbdd_tools.syntax.textx import Expectation, Parsed, grammar_text, parse_chunk
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.names.project import Snapshot
 
 
+_VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet", "AgentSet", "ConstantSet", "AnySet")}
+
+
 @dataclass(frozen=True, slots=True)
 class Completion:
-    """One proposal: ``kind`` is ``keyword``, ``file`` or the kind of a symbol; ``text`` replaces ``span``."""
+    """One proposal: ``kind`` is ``keyword``, ``file`` or the kind of a symbol; ``text`` replaces ``span``.
+
+    Of two proposals the one with the smaller ``rank`` fits better.
+    """
 
     label: str
     kind: str
     detail: str
     text: str
     span: Span
+    rank: int = 0
 
 
 def complete(snapshot: Snapshot, uri: str, offset: int) -> list[Completion]:
-    """Return the proposals at a cursor, keywords first, each group in alphabetical order."""
+    """Return the proposals at a cursor, keywords first, each group in alphabetical order.
+
+    Variables that cannot stand in a slot of a phrase come last; values that their variable cannot take, not at all.
+    """
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
@@ -90,14 +102,31 @@ def _keyword_runs(language: str) -> dict[str, tuple[str, ...]]:
 
 
 def _names(snapshot: Snapshot, uri: str, cursor: Cursor, rules: Iterable[str], bracket: str) -> Iterator[Completion]:
+    scope = snapshot.scope(uri)
+    wanted = values_wanted(snapshot, uri, cursor.before) if not _VALUE_RULES.isdisjoint(rules) else ANYTHING
     roles = sorted(rule.removesuffix("Path") for rule in rules if rule.endswith("Path"))
-    closing = _needs_closing(snapshot.scope(uri).files[0].document.text, cursor)
+    closing = _needs_closing(scope.files[0].document.text, cursor)
     for role in roles:
-        visible = snapshot.scope(uri).visible(ROLE_KINDS[role], cursor.scopes)
-        for name in sorted(visible):
-            declared = visible[name][1]
+        visible = scope.visible(ROLE_KINDS[role], cursor.scopes)
+        misfits = _misfits(cursor) if role == "Variable" else frozenset[str]()
+        for name in sorted(visible, key=lambda name: (name in misfits, name)):
+            file, declared = visible[name]
+            if wanted != ANYTHING and not fits(snapshot, scope.define(file, declared), wanted):
+                continue
             inserted = f"{bracket}{name}>" if closing and role != "Namespace" else f"{bracket}{name}"
-            yield Completion(name, str(declared.symbol.kind), str(declared.symbol.kind), inserted, cursor.span)
+            yield Completion(
+                name, str(declared.symbol.kind), str(declared.symbol.kind), inserted, cursor.span, int(name in misfits)
+            )
+
+
+def _misfits(cursor: Cursor) -> frozenset[str]:
+    """Return the variables of the declaration at the cursor that other phrases take for something else."""
+    wanted = slot_wanted(cursor.before)
+    if cursor.placed is None or wanted == ANYTHING:
+        return frozenset()
+    return frozenset(
+        name for name, kinds in kinds_in_text(cursor.placed.declaration.text).items() if not kinds & wanted
+    )
 
 
 def _needs_closing(text: str, cursor: Cursor) -> bool:

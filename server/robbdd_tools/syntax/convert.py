@@ -9,9 +9,9 @@ from typing import Any, cast
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.chunk import RawNode
 from robbdd_tools.syntax.phrases import word_of_rule
 from robbdd_tools.syntax.published import complete_template, complete_variant, unnamed_at
-from robbdd_tools.syntax.textx import RawNode
 
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
 _KINDS = {"obj": "object", "ws": "workspace", "agn": "agent"}

@@ -6,12 +6,12 @@ from dataclasses import replace
 from functools import lru_cache
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.syntax.chunk import Expectation, Parsed, Rejected, parse_chunk
 from robbdd_tools.syntax.convert import convert
 from robbdd_tools.syntax.declaration import Declaration, SyntaxFault, SyntaxFix
 from robbdd_tools.syntax.recover import HOLE, Fault, recover
 from robbdd_tools.syntax.salvage import salvage
 from robbdd_tools.syntax.symbols import references, symbols
-from robbdd_tools.syntax.textx import Expectation, Parsed, Rejected, parse_chunk
 
 CACHED_CHUNKS = 20_000
 LONGEST_WORD = 40

@@ -1,53 +1,23 @@
-"""The only door to textX: compiles a file kind's grammar and parses one chunk with it.
+"""The only door to textX: the reference for what the grammars mean.
 
 textX has no type information and builds its classes at run time, so its objects go by the name ``RawNode``. It is
-imported when the first chunk is parsed, for a server must answer before that.
+imported when it is needed, which is for grammars beyond what ``peg`` reads, and in tests.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from typing import Any
 
-from robbdd_tools.base.data import data_file
-from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.syntax.phrases import phrase_rules
-
-RawNode = Any
-"""An object that textX made: attributes as in the grammar, ``_tx_position`` and ``_tx_position_end``."""
+from robbdd_tools.syntax.chunk import Expectation, Parsed, Rejected, grammar_name, grammar_text
 
 
-@dataclass(frozen=True, slots=True)
-class Expectation:
-    """What the parser could have read at a position: keywords and signs as written, rules by name."""
-
-    literals: frozenset[str]
-    rules: frozenset[str]
-
-
-@dataclass(frozen=True, slots=True)
-class Rejected:
-    """The chunk does not follow the grammar: the furthest offset reached and what was expected there."""
-
-    offset: int
-    expected: Expectation
-
-
-@dataclass(frozen=True, slots=True)
-class Parsed:
-    """The textX object of a declaration, and the offset of text behind it that belongs to nothing."""
-
-    declaration: RawNode
-    trailing: int | None
-
-
-def parse_chunk(language: str, text: str) -> Parsed | Rejected:
-    """Parse one chunk of a file whose name ends in ``language``."""
+def parse_with_textx(language: str, text: str) -> Parsed | Rejected:
+    """Parse one chunk of a file whose name ends in ``language``, by textX itself."""
     textx: Any = import_module("textx")
     try:
-        chunk = _metamodel(language).model_from_str(text)
+        chunk = _metamodel(grammar_name(language)).model_from_str(text)
     except textx.TextXSyntaxError as error:
         offset = _offset(text, error.line, error.col)
         return Rejected(offset, _expectation(error.expected_rules))
@@ -75,28 +45,7 @@ def _expectation(rules: Any) -> Expectation:
     return Expectation(frozenset(literals), frozenset(names))
 
 
-_GRAMMARS = {"ktree": "scenex"}
-"""File kinds that share the grammar of another one."""
-
-
 @cache
-def grammar_text(language: str) -> str:
-    """Return the whole grammar of a file kind: its own rules, the shared ones, the phrases of the catalog."""
-    grammars = [data_file("grammar", f"{name}.tx").read_text(encoding="utf-8") for name in (_grammar(language), "base")]
-    if language == "bdd":
-        grammars.append(phrase_rules(load_catalog()))
-    return "\n".join(grammars)
-
-
-def _grammar(language: str) -> str:
-    return _GRAMMARS.get(language, language)
-
-
-def _metamodel(language: str) -> Any:
-    return _compiled(_grammar(language))
-
-
-@cache
-def _compiled(language: str) -> Any:
+def _metamodel(grammar: str) -> Any:
     textx: Any = import_module("textx")
-    return textx.metamodel_from_str(grammar_text(language), autokwd=True, memoization=True)
+    return textx.metamodel_from_str(grammar_text(grammar), autokwd=True, memoization=True)
