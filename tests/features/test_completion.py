@@ -92,8 +92,8 @@ def test_a_template_is_completed_inside_a_variant() -> None:
 
 
 def test_values_are_the_elements_of_imported_scenes() -> None:
-    found = labels(edited("{ <arms.panda> }", "{ <$0> }"))
-    assert "arms.ur10" in found
+    found = labels(edited("obj set <parts>", "{ <$0> }"))
+    assert "parts.bolt" in found
     assert "washers.washer2" in found
     assert "parts" not in found
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.definition import symbol_at
+from robbdd_tools.names.roles import ROLE_KINDS
+from robbdd_tools.names.types import variable_type
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk
 from robbdd_tools.syntax.tree import PhraseUse
@@ -29,12 +31,15 @@ def hover(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
     """Describe the name under a cursor, else the phrase of the catalog around it."""
     found = symbol_at(snapshot, uri, offset)
     if found is not None:
-        return Hover(_about(found[1]), found[0])
+        return Hover(_about(snapshot, found[1]), found[0])
     return _phrase(snapshot, uri, offset)
 
 
-def _about(definition: Definition) -> str:
+def _about(snapshot: Snapshot, definition: Definition) -> str:
     lines = [f"**{definition.kind}** `{definition.symbol.path}`"]
+    if definition.kind in ROLE_KINDS["Variable"]:
+        found = variable_type(snapshot, definition)
+        lines[0] += f": {found}" if found.is_known else ""
     if definition.iri is not None and definition.kind is not SymbolKind.NAMESPACE:
         lines.append(f"`<{definition.iri}>`")
     return "\n\n".join(lines)

@@ -91,6 +91,7 @@ class Converter:
             kind=_COMPLETION_KINDS.get(completion.kind, _KINDS.Value),
             detail=completion.detail or None,
             filter_text=completion.text,
+            sort_text=f"{completion.rank} {completion.label}",
             text_edit=edit,
         )
 

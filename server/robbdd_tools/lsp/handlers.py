@@ -15,6 +15,7 @@ from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.scenarios import RunnableScenario, runnable_scenarios
+from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
 from robbdd_tools.lsp.server import RobbddServer
@@ -121,6 +122,13 @@ def _register_reading(server: RobbddServer) -> None:
                 )
                 for hint in clause_hints(snapshot, document.uri, ls.judged)
                 if wanted.contains(hint.span.end)
+            ] + [
+                types.InlayHint(
+                    position=ls.convert.position(document, hint.span.end),
+                    label=hint.label,
+                    kind=types.InlayHintKind.Type,
+                )
+                for hint in type_hints(snapshot, document.uri, wanted)
             ]
 
         return await ls.analyse(find)

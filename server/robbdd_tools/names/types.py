@@ -109,8 +109,11 @@ def columns_of(variation: tree.Table | tree.Product) -> Iterator[tuple[tree.Ref,
         yield variable, tuple(row.cells[index] for row in variation.rows if index < len(row.cells))
 
 
-def variable_type(snapshot: Snapshot, definition: Definition) -> VariableType:
-    """Return what a variable stands for, told from its template and from the variants that are known of it."""
+def variable_type(snapshot: Snapshot, definition: Definition, *, from_values: bool = True) -> VariableType:
+    """Return what a variable stands for, told from its template and from the variants that are known of it.
+
+    Without ``from_values`` only what the template says counts, which no value in a variant may break.
+    """
     is_set = definition.kind is SymbolKind.SET_VARIABLE
     site = site_of(snapshot, definition)
     owner = None if site is None else _owner(site, definition)
@@ -120,7 +123,7 @@ def variable_type(snapshot: Snapshot, definition: Definition) -> VariableType:
     if bound is not None:
         return VariableType(bound, False)
     kinds = narrowed(uses_by_variable(site, owner).get(variable_key(definition), ()))
-    if len(kinds) > 1:
+    if from_values and len(kinds) > 1:
         kinds = _narrowed_by_variants(snapshot, definition, kinds)
     return VariableType(kinds, is_set)
 

@@ -1,0 +1,119 @@
+"""Which kinds of things fit at a cursor, told from half-typed text: a cell, a line of values, a slot of a phrase."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.names.elements import elements_of, site_of
+from robbdd_tools.names.roles import ROLE_KINDS
+from robbdd_tools.names.types import variable_type
+from robbdd_tools.names.uses import ANYTHING, Kinds, slot_kinds
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.project import Snapshot
+
+_REFERENCE = r"<\s*([\w\-.]+)\s*>"
+_LINE = re.compile(rf"\bvar\s*{_REFERENCE}\s*:[^:|]*\Z")
+_RULE = re.compile(r"\|(?:\s*-+\s*\|)+")
+_PIECE = re.compile(r"<(?P<slot>\w+)>|(?P<name>\$\w+)|(?P<sign>[^\s\w<$])|(?P<word>\w+)")
+_ELEMENT_KINDS: Mapping[SymbolKind, str] = {
+    SymbolKind.OBJECT: "object",
+    SymbolKind.OBJECT_SET: "object",
+    SymbolKind.WORKSPACE: "workspace",
+    SymbolKind.WORKSPACE_SET: "workspace",
+    SymbolKind.AGENT: "agent",
+    SymbolKind.AGENT_SET: "agent",
+}
+
+
+def values_wanted(snapshot: Snapshot, uri: str, before: str) -> Kinds:
+    """Return what the variable takes whose value is being written behind a text."""
+    path = _variable_of_line(before) or _variable_of_cell(before)
+    for file, declared in snapshot.scope(uri).find(path) if path else ():
+        if declared.symbol.kind in ROLE_KINDS["Variable"]:
+            definition = snapshot.scope(uri).define(file, declared)
+            return variable_type(snapshot, definition, from_values=False).kinds
+    return ANYTHING
+
+
+def fits(snapshot: Snapshot, definition: Definition, wanted: Kinds) -> bool:
+    """Tell whether a value or a set of values may be given where some kinds are wanted."""
+    if definition.kind is SymbolKind.CONSTANT_SET:
+        elements = elements_of(site_of(snapshot, definition))
+        return elements is None or any(element.kind in wanted for element in elements)
+    kind = _ELEMENT_KINDS.get(definition.kind)
+    return kind is None or kind in wanted
+
+
+def slot_wanted(before: str) -> Kinds:
+    """Return what the slot takes that a text ends in; anything where no phrase has begun."""
+    return next((kinds for pattern, kinds in _beginnings() if pattern.search(before)), ANYTHING)
+
+
+def kinds_in_text(text: str) -> dict[str, Kinds]:
+    """Return what the whole phrases in a text take its variables for; the text need not parse."""
+    found: dict[str, Kinds] = {}
+    for pattern, slots in _phrases():
+        for match in pattern.finditer(text):
+            for name, kinds in zip(match.groups(), slots, strict=True):
+                found[name] = found.get(name, ANYTHING) & kinds
+    return found
+
+
+def _variable_of_line(before: str) -> str | None:
+    match = _LINE.search(before)
+    return None if match is None else match[1]
+
+
+def _variable_of_cell(before: str) -> str | None:
+    """Return the variable of the column in which a table is being written."""
+    table = before[before.rfind("variation") :]
+    rule = _RULE.search(table)
+    if rule is None:
+        return None
+    header = re.findall(_REFERENCE, table[: rule.start()])
+    # A row of n cells has n + 1 bars, wherever its lines break.
+    column = table.count("|", rule.end()) % (len(header) + 1) - 1
+    return header[column] if column >= 0 else None
+
+
+@cache
+def _beginnings() -> tuple[tuple[re.Pattern[str], Kinds], ...]:
+    """The beginnings of all phrases up to a slot, the longest first, with what the slot takes."""
+    found: list[tuple[str, Kinds]] = []
+    for word, pieces in _words():
+        for index, (pattern, slot) in enumerate(pieces):
+            if slot and index:
+                begun = r"\s*".join(part for part, _ in pieces[:index])
+                found.append((rf"{begun}\s*{pattern[:1]}?\s*\Z", slot_kinds(word)[slot]))
+    return tuple((re.compile(pattern), kinds) for pattern, kinds in sorted(found, key=lambda entry: -len(entry[0])))
+
+
+@cache
+def _phrases() -> tuple[tuple[re.Pattern[str], tuple[Kinds, ...]], ...]:
+    found: list[tuple[re.Pattern[str], tuple[Kinds, ...]]] = []
+    for word, pieces in _words():
+        slots = tuple(slot_kinds(word)[slot] for _, slot in pieces if slot)
+        found.append((re.compile(r"\s*".join(pattern for pattern, _ in pieces)), slots))
+    return tuple(found)
+
+
+def _words() -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    """Yield each word of the catalog with the patterns of its pieces; a slot's name stands beside its pattern."""
+    catalog = load_catalog()
+    for word in (*catalog.predicates.values(), *catalog.behaviours.values()):
+        pieces: list[tuple[str, str]] = []
+        for match in _PIECE.finditer(word.phrase):
+            if match["slot"]:
+                pieces.append((_REFERENCE, match["slot"]))
+            elif match["name"]:
+                pieces.append((r"[\w\-]+", ""))
+            else:
+                pieces.append((re.escape(match[0]), ""))
+        yield word.name, pieces
