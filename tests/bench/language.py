@@ -12,7 +12,7 @@ from kit import FOLDER, SCENE
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names.project import Project
-from robbdd_tools.syntax.chunk import parse_chunk
+from robbdd_tools.syntax.textx import parse_with_textx
 from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.split import split
 
@@ -42,7 +42,7 @@ def rows() -> Iterator[tuple[str, str]]:
             project.open(uri, 1, text)
             assert fast_diagnostics(project.snapshot(), uri) == []
 
-        whole = milliseconds(lambda text=text: [parse_chunk("bdd", chunk.text) for chunk in split("bdd", text)])
+        whole = milliseconds(lambda text=text: [parse_with_textx("bdd", chunk.text) for chunk in split("bdd", text)])
         opened = milliseconds(cold)
         yield f"parse + link, {count} lines", f"{opened:.0f} ms, {1000 * opened / count:.0f} ms per 1000 lines"
         strokes = [_keystroke(project, uri, text, number) for number in range(KEYSTROKES)]

@@ -1,10 +1,10 @@
-"""textX objects to our frozen trees."""
+"""The parser's objects to our frozen trees."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any, cast
 
 from robbdd_tools.base.document import Span
@@ -12,13 +12,14 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.chunk import RawNode
 from robbdd_tools.syntax.phrases import word_of_rule
 from robbdd_tools.syntax.published import complete_template, complete_variant, unnamed_at
+from robbdd_tools.syntax.scene_tree import field_names
 
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
 _KINDS = {"obj": "object", "ws": "workspace", "agn": "agent"}
 
 
 def convert(raw: RawNode, text: str) -> Any:
-    """Return the tree node of a textX object parsed from ``text``."""
+    """Return the tree node of a parser's object made from ``text``."""
     rule = type(raw).__name__
     span = _span(raw)
     if rule.endswith("Ref"):
@@ -35,9 +36,7 @@ def convert(raw: RawNode, text: str) -> Any:
 
 def _by_fields(node: type[tree.Node], raw: RawNode, span: Span, text: str, **given: Any) -> Any:
     values = {
-        field.name: _value(getattr(raw, field.name), text)
-        for field in fields(node)
-        if field.name != "span" and field.name not in given
+        name: _value(getattr(raw, name), text) for name in field_names(node) if name != "span" and name not in given
     }
     return node(span=span, **values, **given)
 
@@ -96,19 +95,29 @@ def _bare_behaviour(raw: RawNode, span: Span, text: str) -> tree.BehaviourUse:
 
 
 def _listed_assignment(raw: RawNode, span: Span, text: str) -> tree.Assignment:
-    """``<v> can be:``; a variable without its template's name is one of the variant's template."""
-    variable: tree.Ref = convert(raw.variable, text)
-    template = _template_of(raw)
-    if template and "." not in variable.path:
-        variable = replace(variable, path=f"{template}.{variable.path}")
     values = _value(raw.values, text)
-    return tree.Assignment(span, variable, tree.ValueList(Span(values[0].span.start, span.end), values))
+    listed = tree.ValueList(Span(values[0].span.start, span.end), values)
+    return tree.Assignment(span, convert(raw.variable, text), listed)
 
 
-def _template_of(raw: RawNode) -> str:
-    while raw is not None and type(raw).__name__ != "Variant":
-        raw = getattr(raw, "parent", None)
-    return "" if raw is None else raw.template.path
+def _variant(raw: RawNode, span: Span, text: str) -> tree.Variant:
+    variant = complete_variant(_by_fields(tree.Variant, raw, span, text))
+    product = raw.variation if type(raw.variation).__name__ == "ListedProduct" else raw.variation.variation
+    if not isinstance(variant.variation, tree.Product):
+        return variant
+    assignments = tuple(
+        _qualified(assignment, variant.template.path) if type(written).__name__ == "ListedAssignment" else assignment
+        for written, assignment in zip(product.assignments, variant.variation.assignments, strict=True)
+    )
+    return replace(variant, variation=replace(variant.variation, assignments=assignments))
+
+
+def _qualified(assignment: tree.Assignment, template: str) -> tree.Assignment:
+    """A variable that can be this or that is one of the variant's template, if it is written without its name."""
+    variable = assignment.variable
+    if "." in variable.path:
+        return assignment
+    return replace(assignment, variable=replace(variable, path=f"{template}.{variable.path}"))
 
 
 _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
@@ -123,7 +132,7 @@ _SPECIAL: dict[str, Callable[[RawNode, Span, str], Any]] = {
     **dict.fromkeys(("Object", "Workspace", "Agent"), _given(tree.Member)),
     "ModuleName": _given(tree.Name),
     "Template": lambda raw, span, text: complete_template(_by_fields(tree.Template, raw, span, text)),
-    "Variant": lambda raw, span, text: complete_variant(_by_fields(tree.Variant, raw, span, text)),
+    "Variant": _variant,
     "Clauses": _clauses,
     **dict.fromkeys(
         ("UnnamedFluent", "BareFluent"),

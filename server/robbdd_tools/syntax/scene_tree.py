@@ -5,7 +5,8 @@ Spans count from the start of the chunk, so that a tree stays valid wherever its
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cache
 
 from robbdd_tools.base.document import Span
 
@@ -15,6 +16,12 @@ class Node:
     """Any piece of a tree; ``span`` covers its text without surrounding white space."""
 
     span: Span
+
+
+@cache
+def field_names(node: type[Node]) -> tuple[str, ...]:
+    """Return the fields of a kind of node, in the order of the grammar."""
+    return tuple(field.name for field in fields(node))
 
 
 @dataclass(frozen=True, slots=True)

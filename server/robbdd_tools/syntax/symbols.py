@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
 from typing import Any, cast
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE, Reference, Symbol, SymbolKind
+from robbdd_tools.syntax.scene_tree import field_names
 
 MOST_COPIES = 10_000
 """Members of a ``similar`` set that get a name; a larger count is a typing error."""
@@ -166,8 +166,8 @@ def _collect(node: tree.Node, scopes: tuple[str, ...], found: list[Reference]) -
 
 def children(node: tree.Node) -> Iterator[tree.Node]:
     """Yield the nodes directly below a node, in the order of the grammar."""
-    for field in fields(node):
-        yield from _nodes(getattr(node, field.name))
+    for name in field_names(type(node)):
+        yield from _nodes(getattr(node, name))
 
 
 def walk(node: tree.Node) -> Iterator[tree.Node]:
