@@ -1,4 +1,4 @@
-"""The command line: ``robbdd check | graph | gherkin | run | import | query``.
+"""The command line: ``robbdd check | graph | gherkin | steps | run | import | query``.
 
 Exit codes: 0 all well; 1 errors found (check) or a clause violated or unknown (run); 2 the command could not do its
 work; 130 interrupted.
@@ -13,6 +13,7 @@ from pathlib import Path
 
 from robbdd_tools import __version__
 from robbdd_tools.commands import FAILED, INTERRUPTED, OK
+from robbdd_tools.commands.arguments import allow_selection, wanted
 
 FORMATS = ("ttl", "json-ld", "nt", "xml")
 
@@ -56,10 +57,18 @@ def _parser() -> argparse.ArgumentParser:
     graph.add_argument("--format", choices=FORMATS, default="ttl")
     graph.set_defaults(command=_graph)
 
-    gherkin = commands.add_parser("gherkin", help="write one feature file per user story")
+    gherkin = commands.add_parser("gherkin", help="write a folder of features that behave runs")
     gherkin.add_argument("path", metavar="FILE", type=Path)
     gherkin.add_argument("-o", "--output", metavar="DIR", type=Path, required=True)
+    gherkin.add_argument("--template", metavar="NAME|FILE", default="default", help="default, compact, de or your own")
+    gherkin.add_argument("--seed", type=int, default=None, help="decides samples and runs (default: 1)")
+    allow_selection(gherkin)
     gherkin.set_defaults(command=_gherkin)
+
+    steps = commands.add_parser("steps", help="write a skeleton of step functions for another robot or simulator")
+    steps.add_argument("path", metavar="FILE", type=Path)
+    steps.add_argument("-o", "--output", metavar="STEPS.py", type=Path, help="add what is missing to this file")
+    steps.set_defaults(command=_steps)
 
     run = commands.add_parser("run", help="execute the scenarios of a model in simulation and judge every clause")
     run.add_argument("path", metavar="FILE", type=Path)
@@ -67,6 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--seed", type=int, default=None, help="decides everything random (default: 1)")
     run.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     run.add_argument("-o", "--output", metavar="DIR", type=Path, help="keep features, manifest and log here")
+    allow_selection(run)
     run.set_defaults(command=_run)
 
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
@@ -81,7 +91,14 @@ def _parser() -> argparse.ArgumentParser:
     imported.add_argument("-o", "--output", metavar="MODEL.bdd", type=Path, required=True)
     imported.add_argument("--force", action="store_true", help="replace files that are there already")
     imported.set_defaults(command=_import)
-    _allow_hosts(check, graph, gherkin, run, imported)
+    query = commands.add_parser("query", help="ask the knowledge graph of a model in SPARQL")
+    query.add_argument("path", metavar="FILE", type=Path)
+    query.add_argument("query", metavar="QUERY", nargs="?", help="SELECT, ASK, CONSTRUCT or DESCRIBE")
+    query.add_argument("-f", "--file", metavar="QUERY.rq", type=Path, help="read the query from this file")
+    query.add_argument("--name", metavar="NAME", help="a query that comes along; without any query they are listed")
+    query.add_argument("--format", choices=("table", "csv", "json"), default="table")
+    query.set_defaults(command=_query)
+    _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
 
 
@@ -122,15 +139,21 @@ def _graph(options: argparse.Namespace) -> int:
 
 
 def _gherkin(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.export import write_gherkin
+    from robbdd_tools.commands.gherkin import GherkinOptions, write_gherkin
 
-    return write_gherkin(options.path, options.output)
+    return write_gherkin(GherkinOptions(options.path, options.output, options.template, wanted(options)))
+
+
+def _steps(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.steps import write_steps
+
+    return write_steps(options.path, options.output)
 
 
 def _run(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.run import run
 
-    return run(options.path, options.seed, options.scenario, options.json, options.output)
+    return run(options.path, wanted(options), options.scenario, options.json, options.output)
 
 
 def _import(options: argparse.Namespace) -> int:
@@ -143,6 +166,12 @@ def _view(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.view import view
 
     return view(options.path, options.scenario, options.seed, options.output)
+
+
+def _query(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.query import query
+
+    return query(options.path, options.query, options.file, options.name, options.format)
 
 
 if __name__ == "__main__":

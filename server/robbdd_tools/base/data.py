@@ -18,3 +18,15 @@ def data_file(folder: str, name: str) -> Path:
         if candidate.is_file():
             return candidate
     raise FileNotFoundError(f"the installation of robbdd-tools lacks its file {folder}/{name}")
+
+
+def data_folder(folder: str, name: str) -> Path:
+    """Return the path of the folder ``name`` in the data folder ``grammar`` or ``metamodels``.
+
+    Raises ``FileNotFoundError`` when the installation lacks it.
+    """
+    for root in (PACKAGE / "data", PACKAGE.parent.parent):
+        candidate = root / folder / name
+        if candidate.is_dir():
+            return candidate
+    raise FileNotFoundError(f"the installation of robbdd-tools lacks its folder {folder}/{name}")

@@ -1,0 +1,110 @@
+"""``robbdd query``: ask the knowledge graph of a model in SPARQL."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.base.document import Document
+from robbdd_tools.base.files import Unreadable, path_to_uri, read_text
+from robbdd_tools.commands import FAILED, OK
+from robbdd_tools.commands.models import sound_model
+
+if TYPE_CHECKING:
+    from rdflib.term import Node
+
+    from robbdd_tools.graph.query import Rows
+
+
+def query(path: Path, text: str | None, file: Path | None, name: str | None, form: str) -> int:
+    """Print the answer to one query, given as text, in a file, or by the name of a ready one; returns the exit code."""
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.query import BadQuery, run_query
+
+    source = _source(text, file, name)
+    if source is None:
+        return FAILED
+    place, asked = source
+    snapshot = sound_model(path)
+    if snapshot is None:
+        return FAILED
+    try:
+        rows = run_query(build_graph(snapshot, path_to_uri(path)).graph, asked)
+    except BadQuery as error:
+        start = Document("", 0, asked).position(error.offset)
+        print(f"{place}:{start.line + 1}:{start.column + 1}: error: {error} [query]", file=sys.stderr)
+        return FAILED
+    {"table": _table, "csv": _csv, "json": _json}[form](rows)
+    return OK
+
+
+def _source(text: str | None, file: Path | None, name: str | None) -> tuple[str, str] | None:
+    """Return what to call the query and its text; says what is wrong when there is not exactly one."""
+    from robbdd_tools.graph.query import ready_queries, ready_query
+
+    if sum(given is not None for given in (text, file, name)) != 1:
+        print("robbdd: give one query: 'SELECT …', -f FILE, or --name with one of these", file=sys.stderr)
+        for ready, tells in ready_queries().items():
+            print(f"  {ready:22} {tells}", file=sys.stderr)
+        return None
+    if text is not None:
+        return "query", text
+    if file is not None:
+        content = read_text(file)
+        if isinstance(content, Unreadable):
+            print(f"robbdd: {content.reason}", file=sys.stderr)
+            return None
+        return str(file), content
+    found = ready_query(name or "")
+    if found is None:
+        print(f"robbdd: there is no query '{name}'; there are {', '.join(ready_queries())}", file=sys.stderr)
+        return None
+    return f"{name}.rq", found
+
+
+def _short(node: Node | None, prefixes: dict[str, str]) -> str:
+    if node is None:
+        return ""
+    text = str(node)
+    if type(node).__name__ == "Literal":
+        return text
+    fitting = [(ns, prefix) for prefix, ns in prefixes.items() if text.startswith(ns) and len(text) > len(ns)]
+    if not fitting:
+        return text
+    namespace, prefix = max(fitting, key=lambda pair: len(pair[0]))
+    return f"{prefix}:{text[len(namespace) :]}"
+
+
+def _table(rows: Rows) -> None:
+    lines = [list(rows.columns), *([_short(node, rows.prefixes) for node in row] for row in rows.rows)]
+    lines = [[" ".join(cell.split()) for cell in line] for line in lines]
+    widths = [max(len(line[column]) for line in lines) for column in range(len(rows.columns))]
+    lines.insert(1, ["-" * width for width in widths])
+    for line in lines:
+        print("  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip())
+
+
+def _csv(rows: Rows) -> None:
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    writer.writerow(rows.columns)
+    writer.writerows(["" if node is None else str(node) for node in row] for row in rows.rows)
+
+
+def _json(rows: Rows) -> None:
+    """Print the answer as SPARQL 1.1 Query Results JSON."""
+    bindings = [
+        {name: _binding(node) for name, node in zip(rows.columns, row, strict=True) if node is not None}
+        for row in rows.rows
+    ]
+    document = {"head": {"vars": list(rows.columns)}, "results": {"bindings": bindings}}
+    print(json.dumps(document, indent=1, ensure_ascii=False))
+
+
+def _binding(node: Node) -> dict[str, Any]:
+    kinds = {"Literal": "literal", "BNode": "bnode"}
+    binding = {"type": kinds.get(type(node).__name__, "uri"), "value": str(node)}
+    datatype, language = getattr(node, "datatype", None), getattr(node, "language", None)
+    return binding | ({"datatype": str(datatype)} if datatype else {}) | ({"xml:lang": language} if language else {})

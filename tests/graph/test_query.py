@@ -1,0 +1,116 @@
+"""SPARQL over a model's graph: prefixes, order, ready queries against facts told from the text, nothing fetched."""
+
+from __future__ import annotations
+
+import pytest
+from rdflib import Graph, Literal
+
+from graph.models import EVERYTHING
+from graph.statements import built
+from kit import MODEL
+from robbdd_tools.graph.query import BadQuery, Rows, ready_queries, ready_query, run_query
+
+
+def answer(query: str, text: str = MODEL) -> Rows:
+    return run_query(built(text).graph, query)
+
+
+def local(rows: Rows) -> list[tuple[str, ...]]:
+    return [tuple(str(cell).replace("#", "/").rpartition("/")[2] for cell in row) for row in rows.rows]
+
+
+def ready(name: str, text: str = MODEL) -> list[tuple[str, ...]]:
+    query = ready_query(name)
+    assert query is not None
+    return local(answer(query, text))
+
+
+def test_the_users_prefixes_and_the_vocabularys_are_declared() -> None:
+    assert local(answer("SELECT ?c { t:bench-to-tray bdd:of-template/bdd:has-clause/rdf:first ?c }")) == [("on-bench",)]
+
+
+def test_rows_are_sorted_unless_the_query_orders_them() -> None:
+    events = ["end", "pick-start", "place-end", "start"]
+    assert local(answer("SELECT ?e { ?e a time:Event }")) == [(event,) for event in events]
+    assert local(answer("SELECT ?e { ?e a time:Event } ORDER BY DESC(?e)")) == [(event,) for event in events[::-1]]
+
+
+def test_ask_and_construct_are_answered_as_rows() -> None:
+    assert answer("ASK { t:start a time:Event }").rows == ((Literal(True),),)
+    made = answer("CONSTRUCT { ?e a rbw:Thing } WHERE { ?e a time:Event }")
+    assert made.columns == ("subject", "predicate", "object")
+    assert len(made.rows) == 4
+
+
+@pytest.mark.parametrize(
+    ("query", "offset", "words"),
+    [
+        ("SELECT ?x WHERE { ?x a nope:Thing }", 23, "the prefix 'nope' is not declared; there are"),
+        ("SELEKT ?x", 0, "cannot be read from here on"),
+        ("SELECT ?x { SERVICE <https://example.org/> { ?x ?y ?z } }", 12, "SERVICE and FROM are not followed"),
+        ("SELECT ?x FROM <https://example.org/> { ?x ?y ?z }", 10, "SERVICE and FROM are not followed"),
+        ("INSERT DATA { t:a t:b t:c }", 0, "cannot be read from here on"),
+        ("", 0, "cannot be read from here on"),
+    ],
+)
+def test_a_bad_query_is_refused_at_its_place(query: str, offset: int, words: str) -> None:
+    with pytest.raises(BadQuery, match=words) as caught:
+        answer(query)
+    assert caught.value.offset == offset
+
+
+def test_every_ready_query_tells_what_it_is_for_and_can_be_asked_of_anything() -> None:
+    assert all(tells.endswith(".") for tells in ready_queries().values())
+    for name in ready_queries():
+        query = ready_query(name)
+        assert query is not None
+        assert len(run_query(Graph(), query).columns) > 0
+        run_query(built(EVERYTHING).graph, query)
+    assert ready_query("no-such") is None
+
+
+def test_which_clauses_speak_of_a_workspace() -> None:
+    assert ready("clauses-by-workspace") == [
+        (workspace, "bench-to-tray", clause, "var-goal")
+        for workspace in ("bench_ws", "tray_ws")
+        for clause in ("in-tray", "on-bench", "when-bhv-fetch.when")
+    ]
+
+
+def test_a_workspace_counts_only_for_the_variable_that_gets_it() -> None:
+    found = ready("clauses-by-workspace", EVERYTHING)
+    assert {row for row in found if row[1] == "table" and row[2] in ("at", "placed")} == {
+        ("bench_ws", "table", "at", "var-goal"),
+        ("tray_ws", "table", "at", "var-goal"),
+    }
+    assert ("tray_ws", "product", "sorted", "var-bins") in found
+    assert not [row for row in found if row[3] in ("var-parts", "var-robot")]
+
+
+def test_which_events_time_nothing() -> None:
+    assert ready("idle-events") == []
+    assert ready("idle-events", MODEL.replace("Event (ns=t) end\n", "Event (ns=t) end\nEvent (ns=t) idle\n")) == [
+        ("idle",)
+    ]
+
+
+def test_how_often_predicates_are_used() -> None:
+    assert ready("predicate-coverage") == [("LocatedAtPredicate", "2", "1")]
+    counts = {name: (clauses, variants) for name, clauses, variants in ready("predicate-coverage", EVERYTHING)}
+    assert counts["LocatedAtPredicate"] == ("2", "2")
+    assert counts["CanReach"] == ("3", "4")
+    assert counts["SortedIntoPredicate"] == ("1", "2")
+
+
+def test_when_clauses_have_to_hold() -> None:
+    assert ("in-tray", "place-end", "None", "0.5") in [
+        tuple(cell.replace("0.5^^", "0.5") for cell in row) for row in ready("clause-times")
+    ]
+
+
+def test_what_no_variation_uses() -> None:
+    assert ready("idle-elements") == [("ur10", "Agent"), ("bench", "Object"), ("tray", "Object")]
+
+
+def test_what_variants_there_are() -> None:
+    assert ready("variants") == [("fetching", "bench-to-tray", "fetch", "bench_scene")]
