@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import statistics
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 
@@ -12,11 +14,12 @@ from kit import FOLDER, SCENE
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names.project import Project
-from robbdd_tools.syntax.textx import parse_with_textx
 from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.split import split
+from robbdd_tools.syntax.textx import parse_with_textx
 
-KEYSTROKES = 40
+KEYSTROKES = 60
+FILES = 200
 
 
 def milliseconds(work: Callable[[], object]) -> float:
@@ -31,37 +34,93 @@ def rows() -> Iterator[tuple[str, str]]:
     parse_declaration("bdd", "Event (ns=t) warm-up")
     parse_declaration("scene", "scene (ns=t) warm-up { }")
     for lines in (100, 1000, 10_000):
-        text = model(lines)
-        count = text.count("\n")
-        uri = f"{FOLDER}bench{lines}.bdd"
-        project = Project()
-        project.open(f"{FOLDER}lab.scene", 1, SCENE)
-        parse_declaration.cache_clear()
+        yield from _one_file(lines)
+    yield from _many_files()
 
-        def cold(project: Project = project, uri: str = uri, text: str = text) -> None:
+
+def _one_file(lines: int) -> Iterator[tuple[str, str]]:
+    text = model(lines)
+    count = text.count("\n")
+    uri = f"{FOLDER}bench{lines}.bdd"
+    project = Project()
+    project.open(f"{FOLDER}lab.scene", 1, SCENE)
+    parse_declaration.cache_clear()
+    textx = milliseconds(lambda: [parse_with_textx("bdd", chunk.text) for chunk in split("bdd", text)])
+    opened = milliseconds(lambda: _typed(project, uri, 1, text))
+    yield f"cold open, {count} lines", f"{opened:.0f} ms, {1000 * opened / count:.0f} ms per 1000 lines"
+    yield (
+        f"rules beyond names, {count} lines",
+        f"{milliseconds(lambda: fast_diagnostics(project.snapshot(), uri)):.0f} ms",
+    )
+    strokes = [
+        milliseconds(lambda edited=edited, number=number: _typed(project, uri, number + 2, edited))
+        for number, edited in enumerate(_typing(text))
+    ]
+    yield f"keystroke to diagnostics, {count} lines", f"{_percentiles(strokes)}; {_times(textx, strokes)}"
+    offset = text.rindex("before <pick-start>") + len("before <")
+    project.open(uri, 1000, text)
+    asked = [milliseconds(lambda: complete(project.snapshot(), uri, offset)) for _ in range(KEYSTROKES)]
+    yield f"completion, {count} lines", _percentiles(asked)
+
+
+def _typed(project: Project, uri: str, version: int, text: str) -> None:
+    """What a keystroke costs until its syntax and name diagnostics are there."""
+    project.open(uri, version, text)
+    analysis = project.snapshot().file(uri)
+    assert analysis is not None
+    assert analysis.document.version == version
+
+
+def _typing(text: str) -> Iterator[str]:
+    """Texts as they follow from typing a clause in the middle of a model, letter by letter; most are broken."""
+    middle = text.index("Then:", len(text) // 2) + len("Then:")
+    clause = "\n ( more: holds(<part> is located at <goal>, before <pick-start>) and"
+    for length in range(1, KEYSTROKES + 1):
+        yield text[:middle] + clause[:length] + text[middle:]
+
+
+def _percentiles(figures: list[float]) -> str:
+    hundredths = statistics.quantiles(figures, n=100, method="inclusive")
+    return f"p50 {hundredths[49]:.1f}, p95 {hundredths[94]:.1f}, p99 {hundredths[98]:.1f} ms"
+
+
+def _times(whole: float, strokes: list[float]) -> str:
+    return f"textX on the whole text takes {whole / statistics.median(strokes):.0f} × as long"
+
+
+def _many_files() -> Iterator[tuple[str, str]]:
+    project = Project()
+    project.open(f"{FOLDER}lab.scene", 1, SCENE)
+    uris = [f"{FOLDER}file{number}.bdd" for number in range(FILES)]
+    texts = [f'import "file{number + 1}.bdd"\n' + model(60) for number in range(FILES - 1)] + [model(60)]
+
+    def load() -> None:
+        for uri, text in zip(uris, texts, strict=True):
             project.open(uri, 1, text)
-            assert fast_diagnostics(project.snapshot(), uri) == []
+        for uri in uris:
+            project.snapshot().file(uri)
 
-        whole = milliseconds(lambda text=text: [parse_with_textx("bdd", chunk.text) for chunk in split("bdd", text)])
-        opened = milliseconds(cold)
-        yield f"parse + link, {count} lines", f"{opened:.0f} ms, {1000 * opened / count:.0f} ms per 1000 lines"
-        strokes = [_keystroke(project, uri, text, number) for number in range(KEYSTROKES)]
-        typed = statistics.median(strokes)
-        worst = statistics.quantiles(strokes, n=20)[-1]
-        yield (
-            f"keystroke to diagnostics, {count} lines",
-            f"median {typed:.1f} ms, p95 {worst:.1f} ms; textX on the whole text takes {whole / typed:.0f} × as long",
-        )
-        offset = text.index("before <pick-start>") + len("before <")
-        asked = milliseconds(lambda project=project, uri=uri, offset=offset: complete(project.snapshot(), uri, offset))
-        yield f"completion, {count} lines", f"{asked:.1f} ms"
+    yield f"cold open, {FILES} files that import each other", f"{milliseconds(load):.0f} ms"
+    strokes = [
+        milliseconds(lambda edited=edited, number=number: _typed(project, uris[0], number + 2, edited))
+        for number, edited in enumerate(_typing(texts[0]))
+    ]
+    yield f"keystroke to diagnostics, {FILES} files", _percentiles(strokes)
+    yield "memory of a process with 10,000 lines open", f"{_memory():.0f} MB"
 
 
-def _keystroke(project: Project, uri: str, text: str, number: int) -> float:
-    edited = text.replace('"operator"', f'"operator {number}"', 1)
-
-    def work() -> None:
-        project.open(uri, number + 2, edited)
-        fast_diagnostics(project.snapshot(), uri)
-
-    return milliseconds(work)
+def _memory() -> float:
+    script = f"""
+import resource, sys
+sys.path[:0] = {sys.path!r}
+from kit import FOLDER, SCENE
+from robbdd_tools.names.project import Project
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from tests.bench.models import model
+project = Project()
+project.open(FOLDER + "lab.scene", 1, SCENE)
+project.open(FOLDER + "m.bdd", 1, model(10_000))
+fast_diagnostics(project.snapshot(), FOLDER + "m.bdd")
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+"""
+    return float(subprocess.run([sys.executable, "-c", script], capture_output=True, check=True, text=True).stdout)
