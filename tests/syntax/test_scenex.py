@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.parse import parse_declaration
+from robbdd_tools.syntax.salvage import salvage
 from robbdd_tools.syntax.split import split
 from robbdd_tools.syntax.symbols import walk
 
@@ -285,13 +286,14 @@ def test_a_fault_names_its_place_and_what_was_expected(text: str, place: str, wo
 
 
 @pytest.mark.parametrize("text", [TREE, INSTANCE])
-def test_a_declaration_cut_short_keeps_the_names_before_the_cut(text: str) -> None:
-    whole = names(text)
-    cut = text[: text.rindex("frame")]
-    kept = names(cut)
-    assert kept.items() <= whole.items()
-    last = max(whole, key=text.find if False else lambda path: text.find(path.rpartition(".")[2]))
-    assert last not in kept or len(kept) > 3
+def test_the_names_of_a_broken_declaration_are_those_of_a_whole_one(text: str) -> None:
+    assert {symbol.path: symbol.kind for symbol in salvage(text)} == names(text)
+
+
+def test_a_declaration_cut_short_keeps_the_names_before_the_cut() -> None:
+    kept = names(TREE[: TREE.index("actuation")])
+    assert kept.keys() >= {"arm", "arm.base.origin", "arm.base.mount", "arm.link.origin", "arm.bolted", "arm.turn"}
+    assert "arm.follow" not in kept
 
 
 @given(st.data())

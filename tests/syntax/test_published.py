@@ -1,0 +1,248 @@
+"""The published form is read into the same trees as the current one."""
+
+from dataclasses import fields, is_dataclass
+from typing import Any, cast
+
+import pytest
+
+from kit import EVENTS, MODEL, TEMPLATE, assert_diagnostics, fixture
+from robbdd_tools.graph.build import build_graph
+from robbdd_tools.graph.serialize import serialize
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.parse import parse_declaration
+from robbdd_tools.syntax.split import split
+
+CURRENT = """ns t = 'https://example.org/t/'
+Event (ns=t) pickup_start
+Event (ns=t) place_end
+Scenario Template (ns=t) fetch {
+    var part
+    var robot
+    var start
+    var goal
+    Given: (
+        fetch-given-1: holds(<part> is located at <start>, before <pickup_start>)
+        and fetch-given-2: holds(<robot> can reach <part>, before <pickup_start>)
+    )
+    When:
+        Behaviour (ns=t) fetch-pick-place {
+            duration: from <pickup_start> until <place_end>
+            <robot> picks <part> and places at <goal>
+        }
+    Then: (
+        fetch-then-1: holds(<part> is located at <goal>, 0.5 seconds after <place_end>)
+        and fetch-then-2: holds(<robot> does not collide <goal>, from <pickup_start> until <place_end>)
+    )
+}
+User Story (ns=t) fetching {
+    As A "operator" I Want "parts fetched" So That "work goes on"
+    Scenarios:
+        Scenario bench-to-tray {
+            template: <fetch>
+            scene: <bench_scene>
+            Then: bench-to-tray-then-1: holds(<fetch.part> is held by <fetch.robot>, after <place_end>)
+            variation:
+                var <fetch.part>: { <parts.bolt>, <parts.nut> }
+                var <fetch.robot>: { <arms.panda> }
+                var <fetch.start>: { <places.bench_ws> }
+                var <fetch.goal>: { <places.tray_ws>, 3 }
+        }
+}
+"""
+PUBLISHED = """ns t = 'https://example.org/t/'
+Event pickup_start
+Event place_end
+Scenario Template fetch {
+    var part
+    var robot
+    var start
+    var goal
+    Given:
+        <part> is located at <start> before <pickup_start>
+        holds(<robot> can reach <part>, before <pickup_start>)
+    When: <robot> picks <part> and places it at <goal>
+    Then:
+        <part> is located at <goal> 0.5 seconds after <place_end>
+        <robot> does not collide <goal> from <pickup_start> until <place_end>
+}
+User Story fetching {
+    As A "operator" I Want "parts fetched" So That "work goes on"
+    Scenario Variant bench-to-tray {
+        template: <fetch>
+        scene: <bench_scene>
+        Then: <fetch.part> is held by <fetch.robot> after <place_end>
+        <part> can be:
+            - obj <parts.bolt>
+            - obj <parts.nut>
+        var <fetch.robot> can be:
+            - agn <arms.panda>
+        <start> can be: - ws <places.bench_ws>
+        <goal> can be: - ws <places.tray_ws> - 3
+    }
+}
+"""
+SCENE_IMPORT = 'import "lab.scene"\n'
+
+
+def shape(node: Any) -> Any:
+    """A tree without its spans; what the form itself says differently is made equal.
+
+    The published form leaves out a namespace that can be no other one, and says with each listed value what it is.
+    """
+    if isinstance(node, tuple):
+        return tuple(shape(entry) for entry in cast(tuple[Any, ...], node))
+    if isinstance(node, tree.Ref):
+        return ("Element" if node.role in ("Object", "Workspace", "Agent") else node.role, node.path)
+    if not is_dataclass(node) or isinstance(node, type):
+        return node
+    parts = (field.name for field in fields(node) if field.name not in ("span", "namespace"))
+    return (type(node).__name__, *((name, shape(getattr(node, name))) for name in parts))
+
+
+def trees(text: str) -> list[Any]:
+    declarations = [parse_declaration("bdd", chunk.text) for chunk in split("bdd", text)]
+    assert [fault for declaration in declarations for fault in declaration.faults] == []
+    return [declaration.tree for declaration in declarations]
+
+
+def graph(text: str) -> str:
+    case = fixture(SCENE_IMPORT + text)
+    return serialize(build_graph(case.snapshot, case.uri).graph, "ttl")
+
+
+def test_both_forms_have_equal_trees() -> None:
+    for current, published in zip(trees(CURRENT), trees(PUBLISHED), strict=True):
+        assert shape(current) == shape(published)
+
+
+def test_both_forms_have_equal_graphs() -> None:
+    assert graph(PUBLISHED) == graph(CURRENT)
+    assert "fetch-given-2" in graph(CURRENT)
+
+
+def test_the_published_form_has_no_finding() -> None:
+    case = fixture(SCENE_IMPORT + PUBLISHED)
+    analysis = case.snapshot.file(case.uri)
+    assert analysis is not None
+    assert analysis.diagnostics == ()
+
+
+def test_both_forms_may_stand_in_one_file() -> None:
+    declarations = split("bdd", PUBLISHED)
+    mixed = "".join(
+        (current if index % 2 else published).text
+        for index, (current, published) in enumerate(zip(split("bdd", CURRENT), declarations, strict=True))
+    )
+    assert graph(mixed) == graph(CURRENT)
+
+
+def test_clauses_without_names_are_numbered_past_the_names_that_are_given() -> None:
+    clauses = "fetch-given-1: holds(<part> is located at <goal>, before <start>) <robot> can reach <part> before <end>"
+    case = fixture(MODEL.replace("on-bench: holds(<part> is located at <goal>, before <pick-start>)", clauses))
+    analysis = case.snapshot.file(case.uri)
+    assert analysis is not None
+    assert {"fetch.fetch-given-1", "fetch.fetch-given-2"} <= set(analysis.definitions)
+    assert analysis.diagnostics == ()
+
+
+def test_clauses_inside_expressions_are_named_too() -> None:
+    text = """Scenario Template x {
+        Given: ( not <a> can reach <b> before <e> )
+        for all ( var y in <ys> ) {
+            Given: ( <a> can reach <y> before <e> or <a> can reach <b> before <e> )
+            When: <a> picks <y>
+        }
+        Then: ( var z exists in <ys> ) such that { <a> can reach <z> after <e> }
+    }"""
+    names = [symbol.path for symbol in parse_declaration("bdd", text).symbols if symbol.kind == "fluent"]
+    assert names == ["x.x-given-1", "x.x-each-given-1", "x.x-each-given-2", "x.x-then-1"]
+
+
+@pytest.mark.parametrize(
+    ("clauses", "duration"),
+    [
+        ("Given: <a> can reach <b> before <s> When: <a> picks <b> Then: <a> can reach <b> after <t>", ("s", "t")),
+        ("When: <a> picks <b> Then: <a> can reach <b> from <s> until <t>", ("s", "t")),
+        ("When: <a> picks <b> from <s> until <t> Then: <a> can reach <b> after <u>", ("s", "t")),
+        ("When: <a> picks <b> Then: <a> can reach <b> after <t>", None),
+    ],
+)
+def test_a_behaviour_lasts_as_its_clauses_tell(clauses: str, duration: tuple[str, str] | None) -> None:
+    root = parse_declaration("bdd", f"Scenario Template x {{ {clauses} }}").tree
+    assert isinstance(root, tree.Template)
+    assert root.body.when is not None
+    found = root.body.when.behaviour.duration
+    assert (found and (found.start.path, found.end.path)) == duration
+
+
+def test_an_event_that_tells_a_duration_is_one_reference() -> None:
+    references = parse_declaration("bdd", split("bdd", PUBLISHED)[3].text).references
+    assert len({reference.ref.span for reference in references}) == len(references)
+
+
+def test_a_scenario_may_be_called_variant() -> None:
+    story = MODEL[MODEL.index("User Story") :].replace("Scenario bench-to-tray", "Scenario Variant")
+    root = parse_declaration("bdd", story).tree
+    assert isinstance(root, tree.Story)
+    assert root.variants[0].name.text == "Variant"
+
+
+def check(text: str) -> None:
+    case = fixture(text)
+    analysis = case.snapshot.file(case.uri)
+    assert analysis is not None
+    assert_diagnostics(list(analysis.diagnostics), case)
+
+
+def test_without_any_namespace_a_declaration_needs_one() -> None:
+    check("Event start\n//    ^^^^^ namespace-missing declare one, such as ns t =\n")
+
+
+def test_with_several_namespaces_a_declaration_must_say_which() -> None:
+    text = "ns t = 'https://example.org/t/'\nns u = 'https://example.org/u/'\nEvent start\n"
+    check(text + "//    ^^^^^ namespace-missing write '(ns=t)'\n")
+    case = fixture(text)
+    analysis = case.snapshot.file(case.uri)
+    assert analysis is not None
+    (found,) = analysis.diagnostics
+    (edit,) = found.fixes[1].edits
+    fixed = text[: edit.span.start] + edit.text + text[edit.span.end :]
+    assert "Event (ns=u) start" in fixed
+    check(fixed)
+
+
+def test_a_namespace_of_an_imported_file_is_not_the_files_own() -> None:
+    check(SCENE_IMPORT + "Event start\n//    ^^^^^ namespace-missing\n")
+
+
+def test_an_unknown_listed_value_is_reported_in_its_place() -> None:
+    check(
+        SCENE_IMPORT
+        + PUBLISHED.replace(
+            "- obj <parts.nut>\n",
+            "- obj <places.tray_ws>\n//                 ^^^^^^^^^^^^^^ wrong-kind an object belongs here\n",
+        )
+    )
+
+
+def test_an_unknown_variable_of_a_list_is_looked_for_in_the_template() -> None:
+    check(
+        SCENE_IMPORT
+        + PUBLISHED.replace(
+            "        <goal> can be:", "        <gaol> can be:\n//       ^^^^ unknown-name did you mean 'fetch.goal'\n"
+        )
+    )
+
+
+def test_the_node_of_a_behaviour_tree_is_linked() -> None:
+    linked = TEMPLATE.replace(
+        "places at <goal>\n        }", "places at <goal>\n            node: <handling.pick>\n        }"
+    )
+    assert linked != TEMPLATE
+    declared = "Behaviour Tree (ns=t) handling { py { module: my_pkg.trees, attr: create } node pick node place }\n"
+    check(EVENTS + declared + linked)
+    check(
+        EVENTS
+        + declared
+        + linked.replace("handling.pick>\n", "handling.pack>\n//                 ^^^^^^^^^^^^^ unknown-name\n")
+    )
