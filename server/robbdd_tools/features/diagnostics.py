@@ -8,6 +8,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks import run_checks
 from robbdd_tools.checks.superseded import without_superseded
+from robbdd_tools.features.fixes import with_fixes
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
@@ -21,7 +22,7 @@ def fast_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
-    return sorted([*analysis.diagnostics, *run_checks(snapshot, uri)], key=sort_key)
+    return sorted([*with_fixes(snapshot, analysis, analysis.diagnostics), *run_checks(snapshot, uri)], key=sort_key)
 
 
 def shape_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:

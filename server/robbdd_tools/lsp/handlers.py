@@ -12,6 +12,7 @@ from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.definition import definition
 from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.fixes import imports_from_disk
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.scenarios import RunnableScenario, runnable_scenarios
@@ -202,7 +203,8 @@ def _quick_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionP
     for diagnostic in fast_diagnostics(snapshot, uri):
         if diagnostic.span.start > span.end or diagnostic.span.end < span.start:
             continue
-        for position, fix in enumerate(diagnostic.fixes):
+        fixes = (*diagnostic.fixes, *imports_from_disk(snapshot, uri, diagnostic))
+        for position, fix in enumerate(fixes):
             changes: dict[str, list[types.TextEdit]] = {}
             for edit in fix.edits:
                 range = ls.convert.range(document_of(snapshot, edit.uri), edit.span)

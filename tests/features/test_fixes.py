@@ -1,0 +1,97 @@
+"""Fixes of unknown and misused names: applying one removes the finding and adds no error."""
+
+from pathlib import Path
+
+import pytest
+
+from checks.models import fixed, found
+from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.fixes import imports_from_disk
+from robbdd_tools.names.project import Project
+
+
+def titles(text: str) -> list[str]:
+    return [fix.title for entry in found(text) for fix in entry.fixes]
+
+
+def test_a_name_of_a_file_beside_is_imported() -> None:
+    text = "//- main.bdd\n" + MODEL.replace('import "lab.scene"\n', "")
+    assert fixed(text, "unknown-name", "Import 'lab.scene'") == MODEL.replace('import "lab.scene"\n', "").replace(
+        "ns t", 'import "lab.scene"\nns t', 1
+    )
+
+
+def test_an_import_comes_below_the_others() -> None:
+    other = "//- more.scene\nns x = 'https://example.org/x/'\nagn set (ns=x) robots { agent r2 }\n"
+    text = "//- main.bdd\n" + MODEL.replace("<arms.panda>", "<robots.r2>")
+    assert fixed(text + other, "unknown-name", "Import").startswith('import "lab.scene"\nimport "more.scene"\n')
+
+
+def test_an_import_is_offered_for_the_right_kind_only() -> None:
+    other = "//- more.scene\nns x = 'https://example.org/x/'\nobj set (ns=x) robots { object r2 }\n"
+    text = "//- main.bdd\n" + MODEL.replace("<arms.panda>", "<robots.r2>").replace("robot> picks", "robot> picks")
+    assert "Import 'more.scene'" in titles(text + other)
+    assert titles("//- main.bdd\n" + MODEL.replace("before <pick-start>", "before <robots>") + other) == [
+        "Declare the event 'robots'"
+    ]
+
+
+def test_a_file_that_nobody_opened_is_found_on_disk(tmp_path: Path) -> None:
+    (tmp_path / "lab.scene").write_text(SCENE, encoding="utf-8")
+    (tmp_path / "broken.scene").write_bytes(b"\xff\xfe")
+    uri = path_to_uri(tmp_path / "main.bdd")
+    project = Project()
+    project.open(uri, 1, MODEL.replace('import "lab.scene"\n', ""))
+    snapshot = project.snapshot()
+    unknown = next(entry for entry in fast_diagnostics(snapshot, uri) if entry.code == "unknown-name")
+    assert [fix.title for fix in imports_from_disk(snapshot, uri, unknown)] == ["Import 'lab.scene'"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "title", "declared"),
+    [
+        ("before <pick-start>", "before <lift>", "Declare the event 'lift'", "Event (ns=t) end\nEvent (ns=t) lift\n"),
+        ("task: <task>", "task: <other>", "Declare the task 'other'", "Event (ns=t) end\nTask (ns=t) other\n"),
+        ("<robot> picks", "<crane> picks", "Declare 'var crane'", "    var goal\n    var crane\n"),
+        ("var <fetch.robot>:", "var <fetch.arm>:", "Declare 'var arm' in 'fetch'", "    var goal\n    var arm\n"),
+    ],
+)
+def test_a_missing_declaration_is_written(old: str, new: str, title: str, declared: str) -> None:
+    assert MODEL.count(old) == 1
+    text = MODEL.replace(old, new)
+    case = [fix for entry in found(text, "unknown-name") for fix in entry.fixes if fix.title.startswith(title)]
+    assert len(case) == 1
+    (edit,) = case[0].edits
+    assert declared in text[: edit.span.start] + edit.text + text[edit.span.end :]
+
+
+def test_a_declared_event_stands_behind_a_comment() -> None:
+    text = MODEL.replace("Event (ns=t) end\n", "Event (ns=t) end // the last\n").replace(
+        "before <pick-start>", "before <lift>"
+    )
+    assert "// the last\nEvent (ns=t) lift\n" in fixed(text, "unknown-name", "Declare the event")
+
+
+def test_a_set_variable_is_declared_for_a_quantifier() -> None:
+    template = TEMPLATE.replace(
+        "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)",
+        "( var y exists in <goals> ) such that { in-tray: holds(<part> is located at <y>, after <end>) }",
+    )
+    text = EVENTS + template
+    assert "    var goal\n    set var goals\n" in fixed(text, "unknown-name", "Declare 'set var goals'")
+    assert STORY
+
+
+def test_a_link_gets_the_keyword_of_what_it_names() -> None:
+    text = MODEL.replace("obj set <parts>", "ws set <parts>")
+    assert fixed(text, "wrong-kind") == MODEL
+    scene = "//- lab.scene\n" + SCENE.replace("agn set <arms> }", "obj set <arms> }")
+    assert fixed(scene, "wrong-kind") == SCENE
+    comp = "//- lab.scene\n" + SCENE.replace("ws comp <tray_comp> }\nscene", "ws <tray_comp> }\nscene")
+    assert fixed(comp, "wrong-kind") == SCENE
+
+
+def test_a_wrong_kind_elsewhere_has_no_certain_fix() -> None:
+    assert titles(MODEL.replace("before <pick-start>", "before <task>")) == []
