@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
 from importlib.machinery import PathFinder
 from pathlib import Path
 from urllib.parse import quote, urljoin
@@ -33,7 +32,7 @@ def import_uri(importer: str, path: str) -> str:
     folder = _package_folder(package)
     if folder is None:
         return f"{_PACKAGE}{quote(package)}/{quote(inside)}"
-    return path_to_uri(folder / inside)
+    return path_to_uri(folder / inside.lstrip("/"))
 
 
 def missing_package(uri: str) -> str | None:
@@ -57,7 +56,6 @@ def not_importable(importer: str, imported: str) -> str | None:
     return f"only {listed} files can be imported here"
 
 
-@cache
 def _package_folder(package: str) -> Path | None:
     found = PathFinder.find_spec(package)
     places = None if found is None else found.submodule_search_locations
