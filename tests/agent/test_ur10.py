@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 ARM = arm_of(UR10)
 AGENT = "env:ur10"
 BENCH = replace(SCENE, agents=(AGENT,))
-LOW = replace(BENCH, config=tuple(ConfigSpec(name, "height_scale", "0.8") for name in (BIN, OTHER_BIN)))
+LOW, TALL = (
+    replace(BENCH, config=tuple(ConfigSpec(name, "height_scale", scale) for name in (BIN, OTHER_BIN)))
+    for scale in ("0.8", "1.1")
+)
 DH = (
     (0.0, 0.1273, pi / 2),
     (-0.612, 0.0, 0.0),
@@ -132,10 +135,10 @@ def test_velocity_and_torque_stay_within_the_published_limits() -> None:
 
 @pytest.mark.physics
 def test_what_hangs_under_the_cup_hits_a_bin_that_is_too_tall() -> None:
-    """The ball's lowest point travels at 0.24 m; the rims are at 0.22 m and 0.25 m."""
+    """The ball's lowest point travels at 0.24 m; the rims are at 0.22 m and 0.265 m."""
     clause = f'"{AGENT}" does not collide "{BIN_WS}" from "t:pick-start" until "t:end"'
     margins: list[float] = []
-    for scene in (LOW, BENCH):
+    for scene in (LOW, TALL):
         run = execution([pick_place(BALL, BIN_WS, AGENT)], scene, seed=2)
         to_the_end(run)
         margins.append(judged(run, clause).robustness or 0.0)
@@ -144,16 +147,20 @@ def test_what_hangs_under_the_cup_hits_a_bin_that_is_too_tall() -> None:
 
 @pytest.mark.physics
 def test_a_cup_whose_lip_is_bent_off_lets_go() -> None:
+    """The lip can take 42 N times 12 mm, which is 0.5 N m."""
     run = execution([Call("pick", {"agent": AGENT, "object": CUBE})], BENCH)
     run.run_behaviour(0)
     simulation = run.simulation
     body = simulation.model.body(CUBE)
-    simulation.data.xfrc_applied[body.id, 3] = 2.0
-    for _ in range(30):
-        simulation.tick()
-    assert not simulation.holds(AGENT, CUBE)
+    for torque, lost in ((0.2, False), (1.0, True)):
+        ticks = 0
+        while simulation.holds(AGENT, CUBE) and ticks < 30:
+            simulation.data.xfrc_applied[body.id, 3] = torque
+            simulation.tick()
+            ticks += 1
+        assert (ticks < 30) is lost
     simulation.data.xfrc_applied[body.id] = 0.0
-    for _ in range(30):
+    for _ in range(60):
         simulation.tick()
     assert simulation.data.body(CUBE).xpos[2] < 0.2
 

@@ -54,7 +54,8 @@ def cast_scene(scene: SceneSpec) -> Cast:
     """
     catalog = load_catalog()
     objects: dict[str, ObjectModel] = {}
-    for name in scene.objects:
+    # Sorted: what happens must not depend on the order in which a model declares its objects.
+    for name in sorted(scene.objects):
         model = catalog.object_for(local_name(name))
         if model is None:
             raise SceneError(_no_model("object", name, (m.prefixes for m in catalog.objects.values())))

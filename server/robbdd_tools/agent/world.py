@@ -88,7 +88,10 @@ def _compile(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -
     for index, (name, robot) in enumerate(cast.agents.items()):
         _add_robot(spec, name, robot, bases[name], index, len(bases))
     try:
-        return spec.compile()
+        with warnings.catch_warnings():
+            # The options of the world are kept, whatever a robot's file says of its own.
+            warnings.simplefilter("ignore")
+            return spec.compile()
     except ValueError as error:
         raise SceneError(f"the scene does not compile: {error}") from error
 
@@ -140,10 +143,7 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
             geom.conaffinity = THINGS | sum(2 << other for other in range(count) if other != index)
     turn = [cos(base.yaw / 2), 0.0, 0.0, sin(base.yaw / 2)]
     frame = spec.worldbody.add_frame(pos=list(base.position), quat=turn)
-    with warnings.catch_warnings():
-        # The options of the world are kept, whatever a robot's file says of its own.
-        warnings.simplefilter("ignore")
-        spec.attach(child, prefix=f"{name}/", frame=frame)
+    spec.attach(child, prefix=f"{name}/", frame=frame)
     half = (base.position[2] - FLOOR) / 2
     x, y, z = base.position
     column = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[0.1, half, 0.0], pos=[x, y, z - half])
