@@ -46,3 +46,11 @@ def test_members_of_similar_sets_do_not_clash_with_each_other() -> None:
 def test_a_variable_is_shared_by_name() -> None:
     other = TEMPLATE.replace("fetch", "bring").replace("on-bench", "at-b").replace("in-tray", "at-t")
     check(EVENTS + TEMPLATE + other + STORY)
+
+
+def test_a_declaration_without_a_namespace_has_that_of_its_file() -> None:
+    text = MODEL + "const set end { 1 }\n"
+    assert [entry.code for entry in found(text, "duplicate-iri")] == []
+    clash = text.replace("const set end", "const set on-bench")
+    (finding,) = found(clash, "duplicate-iri")
+    assert clash[finding.span.start : finding.span.end] == "on-bench"

@@ -40,6 +40,9 @@ EDITS: list[tuple[str, Callable[[str], str]]] = [
     ("the template after the story", lambda text: text.replace(TEMPLATE, "") + TEMPLATE),
     ("a broken template", lambda text: text.replace("task: <task>", "task <task>")),
     ("no import", lambda text: text.replace('import "lab.scene"', "")),
+    ("no namespace named", lambda text: text.replace("(ns=t) ", "")),
+    ("two namespaces for those who name none", lambda text: "ns o = 'https://o/'\n" + text.replace("(ns=t) ", "")),
+    ("another namespace", lambda text: text.replace("https://example.org/t/", "https://example.org/env/")),
     ("a namespace of another name", lambda text: text.replace("ns t =", "ns u =")),
 ]
 

@@ -7,8 +7,10 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
-from robbdd_tools.checks.facts import SHARED_KINDS, facts_of
+from robbdd_tools.checks.facts import UNIQUE_KINDS, facts_of
+from robbdd_tools.names.namespaces import only_namespace
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import FILE_NAMESPACE
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import Definition, FileAnalysis
@@ -55,7 +57,7 @@ def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
     for path in file.definitions:
         if path.rpartition(".")[2] in names:
             definition = file.definitions[path]
-            if definition.iri is not None and definition.kind not in SHARED_KINDS:
+            if definition.iri is not None and definition.kind in UNIQUE_KINDS:
                 yield definition
 
 
@@ -70,6 +72,7 @@ def _taken_by(files: Iterable[FileIndex], scope: tuple[FileIndex, ...]) -> Taken
     found: dict[str, dict[str, int]] = {}
     for file in files:
         namespaces = {**outer, **_namespaces((file,))}
+        namespaces[FILE_NAMESPACE] = namespaces.get(only_namespace(file.names) or FILE_NAMESPACE, "")
         for placed in file.declarations:
             for namespace, names in facts_of(placed.declaration).own_names.items():
                 counted = found.setdefault(namespaces.get(namespace, ""), {})

@@ -15,8 +15,26 @@ from robbdd_tools.syntax.declaration import SymbolKind
 if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
-SHARED_KINDS = (SymbolKind.NAMESPACE, SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE, SymbolKind.BEHAVIOUR)
-"""Kinds that may share an IRI: related scenarios speak of the same variables and behaviours by their names."""
+UNIQUE_KINDS = frozenset(
+    {
+        SymbolKind.EVENT,
+        SymbolKind.TASK,
+        SymbolKind.OBJECT,
+        SymbolKind.WORKSPACE,
+        SymbolKind.AGENT,
+        SymbolKind.OBJECT_SET,
+        SymbolKind.WORKSPACE_SET,
+        SymbolKind.AGENT_SET,
+        SymbolKind.CONSTANT_SET,
+        SymbolKind.COMPOSITION,
+        SymbolKind.SCENE,
+        SymbolKind.TEMPLATE,
+        SymbolKind.FLUENT,
+        SymbolKind.STORY,
+        SymbolKind.VARIANT,
+    }
+)
+"""Kinds that need an IRI each; related scenarios speak of the same variables and behaviours by their names."""
 _REFERRED = re.compile(r"(?:<\s*|\bns\s*=\s*)([^\W\d][\w\-]*)")
 
 
@@ -24,7 +42,7 @@ _REFERRED = re.compile(r"(?:<\s*|\bns\s*=\s*)([^\W\d][\w\-]*)")
 class Facts:
     """Names in a declaration: no target is looked up, so that they hold wherever it stands.
 
-    ``own_names`` are the names it declares by the namespace that makes IRIs of them, but for those that may share one.
+    ``own_names`` are the names it declares that need an IRI each, by the namespace that it is made with.
 
     ``heads`` are the first parts of all names it refers to, ``clause_paths`` the names of variables in its clauses
     as written, ``unused`` the variables that neither a clause nor a quantifier of their own template uses, and
@@ -56,7 +74,7 @@ def facts_of(declaration: Declaration) -> Facts:
 def _own_names(declaration: Declaration) -> dict[str, tuple[str, ...]]:
     found: dict[str, list[str]] = {}
     for symbol in declaration.symbols:
-        if symbol.namespace is not None and symbol.kind not in SHARED_KINDS:
+        if symbol.namespace is not None and symbol.kind in UNIQUE_KINDS:
             found.setdefault(symbol.namespace, []).append(symbol.name)
     return {namespace: tuple(names) for namespace, names in found.items()}
 

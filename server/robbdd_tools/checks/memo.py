@@ -13,6 +13,7 @@ from robbdd_tools.checks.facts import facts_of
 from robbdd_tools.names.elements import Site
 from robbdd_tools.names.table import changed_paths
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
@@ -95,14 +96,22 @@ def _still_valid(run: _Run | None, scope: Scope) -> Mapping[Declaration, _Entry]
     before, after = run.scope.files[0], scope.files[0]
     if before is after:
         return run.entries
-    gone = {placed.declaration for placed in before.declarations}
-    gone.difference_update(placed.declaration for placed in after.declarations)
+    old = {placed.declaration for placed in before.declarations}
+    new = {placed.declaration for placed in after.declarations}
+    gone = old - new
+    if any(map(_is_namespace, old ^ new)):
+        # What leaves its namespace to the file does not name it.
+        return {}
     renamed = _renamed(before.names, after.names)
     return {
         declaration: entry
         for declaration, entry in run.entries.items()
         if gone.isdisjoint(entry.around) and renamed.isdisjoint(entry.names)
     }
+
+
+def _is_namespace(declaration: Declaration) -> bool:
+    return any(symbol.kind is SymbolKind.NAMESPACE for symbol in declaration.symbols[:1])
 
 
 def _renamed(before: NameTable, after: NameTable) -> set[str]:

@@ -12,11 +12,12 @@ from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.files import path_to_uri, read_text, uri_to_path
 from robbdd_tools.names.elements import Site
+from robbdd_tools.names.imports import IMPORTABLE
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 from robbdd_tools.names.resolve import candidates
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.declaration import FILE_NAMESPACE, SymbolKind
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 MOST_NEIGHBOURS = 200
 """Model files beside one another that are searched for a name."""
-_IMPORTABLE = {"scene": ("scene",), "bdd": ("scene", "bdd")}
+
 _KEYWORDS: Mapping[SymbolKind, str] = {
     SymbolKind.OBJECT_SET: "obj set",
     SymbolKind.WORKSPACE_SET: "ws set",
@@ -93,7 +94,7 @@ def _imports(file: FileAnalysis, reference: Reference, indices: Iterable[FileInd
     folder = uri.rpartition("/")[0]
     for index in indices:
         other = index.document.uri
-        if other.rpartition("/")[0] != folder or language_of(other) not in _IMPORTABLE.get(language_of(uri), ()):
+        if other.rpartition("/")[0] != folder or language_of(other) not in IMPORTABLE.get(language_of(uri), ()):
             continue
         if any(kind in kinds for kind in index.names.kinds.get(reference.ref.path, ())):
             name = unquote(PurePosixPath(other).name)
@@ -107,8 +108,9 @@ def _declarations(
     """Yield the declaration of an event, task or variable that is missing."""
     role, path = reference.ref.role, reference.ref.path
     namespace = placed.declaration.symbols[0].namespace if placed.declaration.symbols else None
+    argument = "" if namespace == FILE_NAMESPACE else f"(ns={namespace}) "
     if role in ("Event", "Task") and "." not in path and namespace is not None:
-        edit = _below(file, (tree.Event, tree.Task, tree.Namespace, tree.Import), f"{role} (ns={namespace}) {path}")
+        edit = _below(file, (tree.Event, tree.Task, tree.Namespace, tree.Import), f"{role} {argument}{path}")
         yield Fix(f"Declare the {role.lower()} '{path}'", (edit,))
     if role in ("Variable", "AnySet"):
         owner, _, name = path.rpartition(".")
