@@ -107,8 +107,13 @@ def diagnostic_json(snapshot: Snapshot, diagnostic: Diagnostic) -> str:
 
 
 def _document(snapshot: Snapshot, uri: str) -> Document:
+    """Return a file of a snapshot, or one on disk that is no model: shapes, a configuration."""
     source = snapshot.sources.get(uri)
-    return source.document if isinstance(source, FileIndex) else Document(uri, 0, "")
+    if isinstance(source, FileIndex):
+        return source.document
+    path = uri_to_path(uri)
+    text = read_text(path) if path is not None and source is None else ""
+    return Document(uri, 0, text if isinstance(text, str) else "")
 
 
 def _range(snapshot: Snapshot, uri: str, span: Span) -> dict[str, Any]:

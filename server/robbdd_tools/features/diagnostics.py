@@ -31,11 +31,12 @@ def shape_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     What the fast rules report at the same place is left out.
     """
     from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.user_shapes import project_shapes
     from robbdd_tools.graph.validate import validate
 
     if snapshot.file(uri) is None:
         return []
-    found = validate(build_graph(snapshot, uri))
+    found = validate(build_graph(snapshot, uri), project=project_shapes(uri))
     files = dict.fromkeys(diagnostic.uri for diagnostic in found)
     told = [diagnostic for name in files for diagnostic in fast_diagnostics(snapshot, name)]
     return without_superseded(found, told)

@@ -40,7 +40,7 @@ def read_graph_file(document: Document) -> BuiltGraph:
     except UnreadableGraph as error:
         fault = Diagnostic(uri, Span(error.offset, error.offset), Severity.ERROR, "graph-syntax", str(error))
         return BuiltGraph(uri, Graph(), SourceMap({}), {}, (), (), frozenset(), (fault,), True)
-    places = _places(document, graph)
+    places = graph_places(document, graph)
     names = node_names(graph)
     faults = (*_strangers(uri, graph), *_left_out(uri, graph, places, names))
     return BuiltGraph(uri, graph, places, names, (), (), frozenset(), faults, True)
@@ -85,9 +85,10 @@ def _blank_owners(graph: Graph) -> list[tuple[Node, Node]]:
     return found
 
 
-def _places(document: Document, graph: Graph) -> SourceMap:
+def graph_places(document: Document, graph: Graph) -> SourceMap:
+    """Return where the nodes of a graph stand in its text; a blank one where the node stands that it belongs to."""
     namespaces = {prefix: str(namespace) for prefix, namespace in graph.namespaces()}
-    find = turtle_occurrences if graph_format(document.uri) == "ttl" else json_occurrences
+    find = json_occurrences if graph_format(document.uri) == "json-ld" else turtle_occurrences
     spans = find(document.text, namespaces, document.uri)
     builder = SourceMapBuilder()
     for node, span in spans.items():

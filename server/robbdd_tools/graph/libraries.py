@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, cast
 
@@ -36,11 +37,25 @@ def triples(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[J
         yield from ((triple["subject"], triple["predicate"], triple["object"]) for triple in graph)
 
 
+class UnusableShapes(Exception):
+    """pyshacl cannot make sense of some shapes; ``message`` is the reason that it gives."""
+
+
 def shacl_report(graph: Graph, shapes: Graph) -> Graph:
-    """Return the SHACL validation report of a graph, without inference; the graph is left as it is."""
+    """Return the SHACL validation report of a graph, without inference; the graph is left as it is.
+
+    Raises ``UnusableShapes``.
+    """
     import pyshacl
 
-    outcome = cast(Any, pyshacl).validate(graph, shacl_graph=shapes, inference="none", inplace=True)
+    # It prints what it raises as well.
+    logging.getLogger("pyshacl-validate").disabled = True
+    try:
+        outcome = cast(Any, pyshacl).validate(graph, shacl_graph=shapes, inference="none", inplace=True)
+    except Exception as error:  # shapes may hold anything, and pyshacl raises whatever it runs into
+        raise UnusableShapes(str(getattr(error, "message", "") or error)) from error
+    if not hasattr(outcome[1], "triples"):
+        raise UnusableShapes(str(outcome[2]).strip() or repr(outcome[1]))
     return cast("Graph", outcome[1])
 
 

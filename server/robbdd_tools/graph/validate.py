@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,15 +12,17 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.graph.built import BuiltGraph, Clash
 from robbdd_tools.graph.derive import derive
 from robbdd_tools.graph.derived import Derived
-from robbdd_tools.graph.libraries import shacl_report
+from robbdd_tools.graph.libraries import UnusableShapes, shacl_report
 from robbdd_tools.graph.shapes import load_shapes
 from robbdd_tools.graph.source_map import Location
+from robbdd_tools.graph.user_shapes import ProjectShapes, ShapeFile, broken, unchecked
 from robbdd_tools.graph.vocabulary import SHAPES, expand
 
 if TYPE_CHECKING:
     from rdflib import Graph
     from rdflib.term import Node
 
+NO_SHAPES = ProjectShapes()
 _SH = "http://www.w3.org/ns/shacl#"
 _SEVERITIES = {
     f"{_SH}Violation": Severity.ERROR,
@@ -30,22 +32,60 @@ _SEVERITIES = {
 _PLACEHOLDER = re.compile(r"\{([\w-]+)\}")
 
 
-def validate(built: BuiltGraph, shapes: Graph | None = None) -> list[Diagnostic]:
+def validate(built: BuiltGraph, shapes: Graph | None = None, project: ProjectShapes = NO_SHAPES) -> list[Diagnostic]:
     """Return what SHACL finds in a graph, at the tokens that cause it, in the order of the text.
 
     Declarations in doubt (see ``BuiltGraph``) are passed over: their error is known already. ``shapes`` replaces
-    the bundled ones.
+    the bundled ones; those of a ``project`` come on top.
     """
     derived = derive(built.graph)
     report = shacl_report(derived.graph, load_shapes() if shapes is None else shapes)
     writer = _Writer(built, derived)
     found = [diagnostic for result in _results(report) for diagnostic in writer.diagnostics(result)]
+    found += _project_findings(writer, project)
     found += [_clash(built, clash) for clash in built.clashes]
     found += _faults(built, found)
     merged: dict[tuple[str, Span, str], Diagnostic] = {}
     for diagnostic in sorted(found, key=sort_key):
         merged.setdefault((diagnostic.uri, diagnostic.span, diagnostic.message), diagnostic)
     return list(merged.values())
+
+
+def _project_findings(writer: _Writer, project: ProjectShapes) -> Iterator[Diagnostic]:
+    """Yield what the shapes of a project find, all usable files together, and what is wrong with the others."""
+    faults = [*project.faults, *(fault for file in project.files for fault in file.faults)]
+    usable = [file for file in project.files if not file.faults]
+    while usable:
+        try:
+            for result in _results(shacl_report(writer.derived.graph, _together(usable))):
+                yield from writer.diagnostics(result, usable)
+            break
+        except UnusableShapes as error:
+            culprits = _culprits(writer, usable) or [broken(usable[0], error)]
+            faults += culprits
+            usable = [file for file in usable if file.uri not in {fault.uri for fault in culprits}]
+    yield from unchecked(writer.built.uri, tuple(faults))
+
+
+def _together(files: Iterable[ShapeFile]) -> Graph:
+    from rdflib import Graph
+
+    shapes = Graph(bind_namespaces="none")
+    for file in files:
+        for triple in file.graph:
+            shapes.add(triple)
+    return shapes
+
+
+def _culprits(writer: _Writer, files: list[ShapeFile]) -> list[Diagnostic]:
+    """Return the files that cannot even be used alone."""
+    found: list[Diagnostic] = []
+    for file in files:
+        try:
+            shacl_report(writer.derived.graph, file.graph)
+        except UnusableShapes as error:
+            found.append(broken(file, error))
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,16 +119,25 @@ class _Writer:
     built: BuiltGraph
     derived: Derived
 
-    def diagnostics(self, result: _Result) -> Iterator[Diagnostic]:
-        """Yield one diagnostic for each place where the cause of a result is written."""
+    def diagnostics(self, result: _Result, files: Iterable[ShapeFile] = ()) -> Iterator[Diagnostic]:
+        """Yield one diagnostic for each place where the cause of a result is written.
+
+        ``files`` are those that the shape may stand in when it is none of ours.
+        """
         if str(result.focus) in self.built.doubtful_nodes or str(result.value) in self.built.doubtful_nodes:
             return
         message = self._message(result)
-        code = f"shacl-{result.shape.removeprefix(SHAPES)}"
+        source = next(((file, place) for file in files if (place := file.place(result.shape))), None)
+        if source is None:
+            code = f"shacl-{result.shape.removeprefix(SHAPES)}"
+            shape = ()
+        else:
+            code = f"shape-{source[0].name.removesuffix('.ttl')}"
+            shape = (Related(source[1].uri, source[1].span, "the shape that asks for this"),)
         for location in self._locations(result):
             if not self._is_doubtful(location):
-                related = tuple(self._related(result, location))
-                severity = _SEVERITIES[result.severity]
+                related = (*self._related(result, location), *shape)
+                severity = _SEVERITIES.get(result.severity, Severity.ERROR)
                 yield Diagnostic(location.uri, location.span, severity, code, message, related)
 
     def _locations(self, result: _Result) -> tuple[Location, ...]:

@@ -1,0 +1,180 @@
+"""A project's own SHACL shapes: named in its configuration, read once per change, reported like ours."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.base.files import Unreadable, path_to_uri, read_text, uri_to_path
+from robbdd_tools.graph.foreign import graph_places
+from robbdd_tools.graph.libraries import json_object
+from robbdd_tools.graph.serialize import UnreadableGraph, parse
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+    from robbdd_tools.graph.source_map import Location, SourceMap
+
+_SERVICE = re.compile(r"\bSERVICE\b", re.IGNORECASE)
+_LINE_COLUMN = re.compile(r"\(at line (\d+), column (\d+)\)")
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeFile:
+    """A file of shapes with the places of its nodes; ``faults`` are what keeps it from being used."""
+
+    uri: str
+    name: str
+    graph: Graph
+    places: SourceMap
+    faults: tuple[Diagnostic, ...] = ()
+
+    def place(self, shape: str) -> Location | None:
+        """Return where a shape is written in this file."""
+        return self.places.node(shape)
+
+
+@dataclass(frozen=True, slots=True)
+class ProjectShapes:
+    """The shapes of the project that a model belongs to, and what is wrong with its configuration."""
+
+    files: tuple[ShapeFile, ...] = ()
+    faults: tuple[Diagnostic, ...] = ()
+
+
+def project_shapes(uri: str) -> ProjectShapes:
+    """Return the shapes that the nearest configuration above a model names.
+
+    It is ``shapes = ["shapes/*.ttl"]`` in ``robbdd.toml``, or under ``[tool.robbdd]`` in ``pyproject.toml``; patterns
+    count from its folder.
+    """
+    path = uri_to_path(uri)
+    for folder in path.parents if path is not None else ():
+        for name in ("robbdd.toml", "pyproject.toml"):
+            file = folder / name
+            if file.is_file():
+                found = _configured(file)
+                if found is not None:
+                    return found
+    return ProjectShapes()
+
+
+def _configured(file: Path) -> ProjectShapes | None:
+    """Return what one configuration says; ``None`` when it says nothing of shapes."""
+    text = read_text(file)
+    if isinstance(text, Unreadable):
+        return ProjectShapes((), (_fault(file, 0, "config", text.reason),))
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        if file.name == "pyproject.toml" and "tool.robbdd" not in text:
+            return None
+        return ProjectShapes((), (_fault(file, _toml_offset(text, str(error)), "config", f"no TOML: {error}"),))
+    if file.name == "pyproject.toml":
+        table = json_object(json_object(table.get("tool")).get("robbdd"))
+    if "shapes" not in table:
+        return None
+    patterns: Any = table["shapes"]
+    if not isinstance(patterns, list) or not all(isinstance(one, str) for one in cast("list[Any]", patterns)):
+        message = "'shapes' is a list of file patterns, such as [\"shapes/*.ttl\"]"
+        return ProjectShapes((), (_fault(file, _key_offset(text), "config", message),))
+    return _matched(file, text, cast("list[str]", patterns))
+
+
+def _matched(config: Path, text: str, patterns: list[str]) -> ProjectShapes:
+    paths: dict[Path, None] = {}
+    faults: list[Diagnostic] = []
+    for pattern in patterns:
+        try:
+            matched = sorted(path for path in config.parent.glob(pattern) if path.is_file())
+        except (ValueError, NotImplementedError, OSError) as error:
+            faults.append(_fault(config, _key_offset(text), "config", f"'{pattern}' is no file pattern: {error}"))
+            continue
+        if not matched:
+            faults.append(_fault(config, _key_offset(text), "config", f"no file matches the shapes '{pattern}'"))
+        paths |= dict.fromkeys(matched)
+    return ProjectShapes(tuple(shape_file(path) for path in paths), tuple(faults))
+
+
+def shape_file(path: Path) -> ShapeFile:
+    """Return a file of shapes, read anew only when it has changed."""
+    try:
+        state = path.stat()
+        return _read(path, state.st_mtime_ns, state.st_size)
+    except OSError:
+        return _read(path, 0, 0)
+
+
+@lru_cache(maxsize=64)
+def _read(path: Path, _time: int, _size: int) -> ShapeFile:
+    from rdflib import Graph
+
+    uri = path_to_uri(path)
+    text = read_text(path)
+    graph = Graph(bind_namespaces="none")
+    faults: list[Diagnostic] = []
+    if isinstance(text, Unreadable):
+        faults.append(_fault(path, 0, "shapes-syntax", text.reason))
+        text = ""
+    try:
+        graph = parse(text, "ttl", uri)
+    except UnreadableGraph as error:
+        faults.append(_fault(path, error.offset, "shapes-syntax", str(error)))
+    document = Document(uri, 0, text)
+    faults += _followed_services(path, document, graph)
+    return ShapeFile(uri, path.name, graph, graph_places(document, graph), tuple(faults))
+
+
+def _followed_services(path: Path, document: Document, graph: Graph) -> Iterator[Diagnostic]:
+    """Yield the SPARQL constraints that would ask a server: opening a project must not reach the network."""
+    from rdflib.namespace import SH
+
+    for term in (SH.select, SH.ask):
+        if any(_SERVICE.search(str(text)) for text in graph.objects(None, term)):
+            found = _SERVICE.search(document.text)
+            message = "the SPARQL of a shape asks this model only: SERVICE is not followed"
+            yield _fault(path, found.start() if found else 0, "shapes-syntax", message)
+
+
+def unchecked(uri: str, faults: tuple[Diagnostic, ...]) -> Iterator[Diagnostic]:
+    """Yield faults of shapes at their place, and for the model which of them was therefore not checked."""
+    yield from faults
+    for fault in faults:
+        name = fault.uri.rpartition("/")[2]
+        related = (Related(fault.uri, fault.span, fault.message),)
+        message = f"the project's own shapes are not all checked: '{name}' cannot be used"
+        yield Diagnostic(uri, Span(0, 0), Severity.WARNING, "shapes-unchecked", message, related)
+
+
+def broken(file: ShapeFile, error: Exception) -> Diagnostic:
+    """Return what pyshacl finds wrong with a file of shapes, at the shape that it names if it names one."""
+    message = str(getattr(error, "message", "") or error).partition("\n")[0]
+    names = sorted((key[0] for key in file.places.places if len(key) == 1 and key[0] in message), key=len)
+    place = file.place(names[-1]) if names else None
+    span = Span(0, 0) if place is None else place.span
+    return Diagnostic(file.uri, span, Severity.ERROR, "shapes-syntax", f"these shapes cannot be used: {message}")
+
+
+def _fault(path: Path, offset: int, code: str, message: str) -> Diagnostic:
+    return Diagnostic(path_to_uri(path), Span(offset, offset), Severity.ERROR, code, message)
+
+
+def _key_offset(text: str) -> int:
+    found = re.search(r"^\s*(shapes)\s*=", text, re.MULTILINE)
+    return found.start(1) if found else 0
+
+
+def _toml_offset(text: str, message: str) -> int:
+    found = _LINE_COLUMN.search(message)
+    if found is None:
+        return len(text)
+    document = Document("", 0, text)
+    line = min(int(found[1]), len(document.line_starts)) - 1
+    return document.line_starts[line] + int(found[2]) - 1
