@@ -115,12 +115,6 @@ def test_format_rewrites_what_is_not_in_canonical_layout(folder: Path) -> None:
     assert (done.returncode, done.stdout) == (0, "0 of 1 files would change\n")
 
 
-def test_gherkin_is_one_feature_per_story(folder: Path) -> None:
-    done = robbdd("gherkin", "main.bdd", "-o", "out", folder=folder)
-    assert (done.returncode, done.stdout) == (0, f"{Path('out', 'fetching.feature')}\n")
-    assert (folder / "out" / "fetching.feature").read_text(encoding="utf-8").count("Scenario:") == 4
-
-
 def test_an_unknown_scenario_is_answered_with_the_known_ones(folder: Path) -> None:
     done = robbdd("run", "main.bdd", "--scenario", "nope", folder=folder)
     assert (done.returncode, done.stderr) == (2, "robbdd: there is no scenario 'nope'; the model has bench-to-tray\n")

@@ -28,6 +28,7 @@ def test_the_folder_holds_features_hooks_steps_and_manifest(tmp_path: Path) -> N
     assert names == [
         "features/environment.py",
         "features/fetching.feature",
+        "features/fetching.feature.map.json",
         "features/steps/catalog_steps.py",
         "manifest.json",
     ]

@@ -1,4 +1,4 @@
-"""``robbdd graph`` and ``robbdd gherkin``: a model in another form."""
+"""``robbdd graph``: a model as its knowledge graph."""
 
 from __future__ import annotations
 
@@ -19,26 +19,4 @@ def print_graph(path: Path, form: str) -> int:
     if snapshot is None:
         return FAILED
     sys.stdout.write(serialize(build_graph(snapshot, path_to_uri(path)).graph, form))
-    return OK
-
-
-def write_gherkin(path: Path, folder: Path) -> int:
-    """Write the features of a model and print their paths; returns the exit code."""
-    from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.read import read_model
-    from robbdd_tools.run.prepare import write_features
-
-    snapshot = sound_model(path)
-    if snapshot is None:
-        return FAILED
-    model = read_model(build_graph(snapshot, path_to_uri(path)).graph)
-    if not model.stories:
-        print(f"robbdd: {path} has no user story with a scenario, so there is no feature to write", file=sys.stderr)
-        return FAILED
-    try:
-        for written in write_features(model, folder):
-            print(written)
-    except OSError as error:
-        print(f"robbdd: cannot write to {folder}: {error.strerror or error}", file=sys.stderr)
-        return FAILED
     return OK

@@ -14,17 +14,19 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.models import sound_model
 from robbdd_tools.commands.progress import Display
+from robbdd_tools.commands.selection import selection
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.launch import Agent
-from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare
+from robbdd_tools.run.prepare import RunRequest, prepare
 from robbdd_tools.run.results import RunResults
 
 if TYPE_CHECKING:
+    from robbdd_tools.gherkin.select import Selected, Wanted
     from robbdd_tools.graph.model import AcceptanceModel, Iri
 
 
-def run(path: Path, seed: int | None, names: Sequence[str] | None, report: Path | None, output: Path | None) -> int:
-    """Run a model; returns the exit code. ``names`` selects scenario variants by name."""
+def run(path: Path, wanted: Wanted, names: Sequence[str] | None, report: Path | None, output: Path | None) -> int:
+    """Run a model; returns the exit code. ``names`` selects scenario variants by name, ``wanted`` their scenarios."""
     if report is not None and not report.absolute().parent.is_dir():
         print(f"robbdd: cannot write {report}: there is no folder {report.parent}", file=sys.stderr)
         return FAILED
@@ -35,7 +37,10 @@ def run(path: Path, seed: int | None, names: Sequence[str] | None, report: Path 
     if isinstance(variants, str):
         print(f"robbdd: {variants}", file=sys.stderr)
         return FAILED
-    request = RunRequest(model, str(path), DEFAULT_SEED if seed is None else seed, variants)
+    selected = _selected(model, variants, wanted)
+    if selected is None:
+        return FAILED
+    request = RunRequest(model, str(path), wanted.seed, variants, selected.scenarios)
     try:
         with _folder(output) as folder:
             results, interrupted = _execute(request, Path(folder))
@@ -73,6 +78,11 @@ def _variants(model: AcceptanceModel, names: Sequence[str] | None) -> frozenset[
     if missing:
         return f"there is no scenario '{missing[0]}'; the model has {', '.join(known)}"
     return frozenset(known[name] for name in names)
+
+
+def _selected(model: AcceptanceModel, variants: frozenset[Iri] | None, wanted: Wanted) -> Selected | None:
+    every = (variant for story in model.stories for variant in story.variants)
+    return selection(model, [one for one in every if variants is None or one.iri in variants], wanted)
 
 
 def _folder(output: Path | None) -> AbstractContextManager[str | Path]:

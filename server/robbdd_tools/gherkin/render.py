@@ -123,8 +123,12 @@ def _sheet(file: str, source: str) -> Sheet:
 
 def _problem(sheet: Sheet, error: Exception) -> TemplateProblem:
     """Blame the innermost line of a template on the way to an error."""
-    names = {template.filename or sheet.file for template in sheet.chain}
-    places = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in names]
-    file, line = (places[-1].filename, places[-1].lineno or 0) if places else (sheet.file, 0)
+    templates = {template.filename: template for template in sheet.chain}
+    places = [entry for entry in traceback.extract_tb(error.__traceback__) if entry.filename in templates]
+    file, line = sheet.file, 0
+    if places:
+        # The frames are those of the Python code that a template is compiled to.
+        file = places[-1].filename
+        line = templates[file].get_corresponding_lineno(places[-1].lineno or 0)
     kind = "" if type(error).__module__.startswith("jinja2") else f"{type(error).__name__}: "
     return TemplateProblem(file, line, kind + re.sub(r"\s+", " ", str(error)))

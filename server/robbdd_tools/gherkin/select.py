@@ -42,6 +42,7 @@ class Selected:
 
     def __init__(self, model: AcceptanceModel, variants: Sequence[Variant], wanted: Wanted) -> None:
         """Raises ``SelectionError``."""
+        self._variants = tuple(variants)
         self._conditions = _conditions(model, variants, wanted.where)
         self._indices: dict[Iri, Sequence[int]] = {}
         self._limits: dict[Iri, int] = {}
@@ -52,7 +53,7 @@ class Selected:
             self._sample(variants, wanted.sample, random.Random(wanted.seed))
         elif wanted.first is not None:
             self._first(variants, wanted.first)
-        self.total = self._total(variants)
+        self.total = self._total()
 
     def scenarios(self, variant: Variant) -> Iterator[Numbered]:
         """Yield the selected scenarios of a variant in written order, with their numbers among all of them."""
@@ -61,14 +62,20 @@ class Selected:
             return ((index + 1, at(variant.variation, index)) for index in indices)
         return islice(self._fitting(variant), self._limits.get(variant.iri))
 
+    def is_empty(self) -> bool:
+        """Tell whether nothing is selected; goes through the scenarios up to the first that is."""
+        if self.total is not None:
+            return self.total == 0
+        return all(next(self.scenarios(variant), None) is None for variant in self._variants)
+
     def _fitting(self, variant: Variant) -> Iterator[Numbered]:
         fits = self._conditions.get(variant.iri)
         every = enumerate(bindings(variant.variation), start=1)
         return every if fits is None else (entry for entry in every if fits(tuple(entry[1].values())))
 
-    def _total(self, variants: Sequence[Variant]) -> int | None:
+    def _total(self) -> int | None:
         total = 0
-        for variant in variants:
+        for variant in self._variants:
             if variant.iri in self._indices:
                 total += len(self._indices[variant.iri])
             elif variant.iri in self._limits:

@@ -16,11 +16,12 @@ from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.clause_results import ClauseResult, JudgedClause, clause_text
 from robbdd_tools.features.diagnostics import all_diagnostics
+from robbdd_tools.gherkin.files import FeaturePlan, write_features
 from robbdd_tools.graph.model import AcceptanceModel, Iri
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.names.project import Snapshot
 from robbdd_tools.run.launch import Agent
-from robbdd_tools.run.prepare import RunRequest, prepare, write_features
+from robbdd_tools.run.prepare import RunRequest, prepare
 from robbdd_tools.run.protocol import (
     ClauseJudged,
     ClauseSpec,
@@ -63,14 +64,14 @@ class ModelError(Exception):
 
 
 async def generate_gherkin(ls: RobbddServer, uri: str) -> list[str]:
-    """Write the features of a model beside it, in ``features/``, and return their URIs."""
+    """Write the features of a model, with their line maps, beside it in ``features/``, and return their URIs."""
     path = uri_to_path(uri)
     if path is None:
         _tell(ls, "save the model first: its features are written beside it")
         return []
     try:
-        model = await ls.analyse(lambda snapshot: _sound_model(snapshot, uri))
-        written = await asyncio.to_thread(write_features, model, path.parent / "features")
+        plan = await ls.analyse(lambda snapshot: _plan(snapshot, uri))
+        written = await asyncio.to_thread(write_features, plan, path.parent / "features")
     except (ModelError, OSError) as error:
         _tell(ls, str(error))
         return []
@@ -183,16 +184,23 @@ async def _begin_progress(ls: RobbddServer, run: ActiveRun) -> None:
 
 def _sound_model(snapshot: Snapshot, uri: str) -> AcceptanceModel:
     """Return the acceptance model of a file without errors; raises ``ModelError``."""
+    return _plan(snapshot, uri).model
+
+
+def _plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
+    """Return what to write of a file without errors; raises ``ModelError``."""
+    from robbdd_tools.gherkin.files import clause_origins, whole_plan
     from robbdd_tools.graph.build import build_graph
     from robbdd_tools.graph.read import read_model
 
     errors = [found for found in all_diagnostics(snapshot, uri) if found.severity is Severity.ERROR]
     if errors:
         raise ModelError(f"the model has errors, the first: {errors[0].message}")
-    model = read_model(build_graph(snapshot, uri).graph)
+    built = build_graph(snapshot, uri)
+    model = read_model(built.graph)
     if not any(story.variants for story in model.stories):
         raise ModelError("the model has no scenario to run")
-    return model
+    return whole_plan(model, clause_origins(built, snapshot, model))
 
 
 def _tell(ls: RobbddServer, message: str) -> None:

@@ -1,0 +1,37 @@
+"""Arguments that several commands share. Loads nothing until they are used."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robbdd_tools.gherkin.select import Wanted
+
+
+def allow_selection(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that select scenarios; the parser has ``--seed``."""
+    selection = parser.add_argument_group("selection of scenarios")
+    text = "only scenarios with such values: 'robot=panda and target=~cube.*'"
+    selection.add_argument("--where", metavar="EXPRESSION", help=text)
+    amount = selection.add_mutually_exclusive_group()
+    amount.add_argument("--first", metavar="N", type=_positive, help="only the first N")
+    amount.add_argument("--sample", metavar="N", type=_positive, help="N drawn at random by the seed")
+    text = "few that cover all combinations of 2 (default) or 3 variables"
+    amount.add_argument("--pairwise", metavar="2|3", type=int, nargs="?", const=2, choices=(2, 3), help=text)
+
+
+def wanted(options: argparse.Namespace) -> Wanted:
+    """Return the selection that the parsed arguments describe."""
+    from robbdd_tools.gherkin.select import Wanted
+
+    found = Wanted(options.where, options.first, options.sample, options.pairwise)
+    return found if options.seed is None else replace(found, seed=options.seed)
+
+
+def _positive(text: str) -> int:
+    number = int(text) if text.isdecimal() else 0
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number above 0")
+    return number

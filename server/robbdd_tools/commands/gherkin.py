@@ -1,0 +1,88 @@
+"""``robbdd gherkin``: a folder of features that plain behave runs."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.commands import FAILED, OK
+from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.selection import selection
+
+if TYPE_CHECKING:
+    from robbdd_tools.gherkin.files import FeaturePlan
+    from robbdd_tools.gherkin.select import Wanted
+
+EVERY = 200
+"""Scenarios between two looks at the progress bar."""
+
+
+@dataclass(frozen=True, slots=True)
+class GherkinOptions:
+    """Where to write what: ``template`` is the name of one of ours or a path; ``wanted.seed`` is also that of runs."""
+
+    path: Path
+    folder: Path
+    template: str
+    wanted: Wanted
+
+
+def write_gherkin(options: GherkinOptions) -> int:
+    """Write the features of a model with all that behave needs and print their paths; returns the exit code."""
+    from robbdd_tools.gherkin.files import clause_origins, whole_plan
+    from robbdd_tools.gherkin.render import TemplateProblem, sheet
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.read import read_model
+    from robbdd_tools.graph.serialize import serialize
+
+    snapshot = sound_model(options.path)
+    if snapshot is None:
+        return FAILED
+    built = build_graph(snapshot, path_to_uri(options.path))
+    model = read_model(built.graph)
+    if not model.stories:
+        return _failed(f"{options.path} has no user story with a scenario, so there is no feature to write")
+    try:
+        template = sheet(options.template)
+    except TemplateProblem as error:
+        return _failed(str(error))
+    selected = selection(model, [variant for story in model.stories for variant in story.variants], options.wanted)
+    if selected is None:
+        return FAILED
+    plan = whole_plan(model, clause_origins(built, snapshot, model))
+    plan = replace(plan, scenarios=selected.scenarios, sheet=template)
+    try:
+        _write(plan, selected.total, options, serialize(built.graph, "json-ld"))
+    except TemplateProblem as error:
+        return _failed(str(error))
+    except OSError as error:
+        return _failed(f"cannot write to {options.folder}: {error.strerror or error}")
+    return OK
+
+
+def _write(plan: FeaturePlan, total: int | None, options: GherkinOptions, json_ld: str) -> None:
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from robbdd_tools.gherkin.feature import feature_file_name
+    from robbdd_tools.run.prepare import FEATURES, lay_out, write_surroundings
+
+    write_surroundings(options.folder, options.path.stem, json_ld)
+    console = Console(stderr=True)
+    columns = (TextColumn("writing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("writing", total=total)
+        specs = lay_out(plan, options.path.name, options.wanted.seed, options.folder)
+        for written, _ in enumerate(specs, start=1):
+            if written % EVERY == 0:
+                progress.update(task, completed=written)
+    for story in plan.stories:
+        print(options.folder / FEATURES / feature_file_name(plan.model, story))
+
+
+def _failed(message: str) -> int:
+    print(f"robbdd: {message}", file=sys.stderr)
+    return FAILED

@@ -1,0 +1,42 @@
+"""``robbdd steps``: a skeleton of step functions for another robot or simulator."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.commands import FAILED, OK
+from robbdd_tools.commands.models import sound_model
+
+
+def write_steps(path: Path, target: Path | None) -> int:
+    """Print the skeleton, or add to ``target`` what it lacks; returns the exit code."""
+    from robbdd_tools.gherkin.skeleton import patterns, skeleton
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.read import read_model
+
+    snapshot = sound_model(path)
+    if snapshot is None:
+        return FAILED
+    wanted = patterns(read_model(build_graph(snapshot, path_to_uri(path)).graph))
+    try:
+        existing = target.read_text(encoding="utf-8") if target is not None and target.exists() else None
+        text, new = skeleton(wanted, existing, path.name)
+        if target is None:
+            sys.stdout.write(text)
+            return OK
+        if new:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, encoding="utf-8", newline="\n")
+    except SyntaxError as error:
+        print(f"robbdd: {target}:{error.lineno or 1}: {error.msg}: mend the file first", file=sys.stderr)
+        return FAILED
+    except UnicodeDecodeError:
+        print(f"robbdd: {target} is not UTF-8 text", file=sys.stderr)
+        return FAILED
+    except OSError as error:
+        print(f"robbdd: {target}: {error.strerror or error}", file=sys.stderr)
+        return FAILED
+    print(f"{target}: {new} new step{'' if new == 1 else 's'}, {len(wanted) - new} there already")
+    return OK

@@ -1,0 +1,182 @@
+"""Feature files, each with a map from its lines to clauses, written as they are made."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.gherkin.feature import Numbered, ScenarioText, every_scenario, feature_file_name, feature_pieces
+from robbdd_tools.gherkin.outline import variable_name
+from robbdd_tools.gherkin.render import Sheet, our_sheet
+from robbdd_tools.graph.model import AcceptanceModel, Cell, Clause, Iri, Story, Variant
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Document
+    from robbdd_tools.graph.build import BuiltGraph
+    from robbdd_tools.names.project import Snapshot
+
+MAP_ENDING = ".map.json"
+"""What follows the name of a feature in the name of its line map."""
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a clause is written: a file's name and (line, column) of start and end, counted from 1."""
+
+    file: str
+    start: tuple[int, int]
+    end: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class FeaturePlan:
+    """What to write: a model's stories, the scenarios of each variant, the template; ``origins`` as far as known."""
+
+    model: AcceptanceModel
+    stories: tuple[Story, ...]
+    scenarios: Callable[[Variant], Iterable[Numbered]]
+    sheet: Sheet
+    origins: Mapping[str, Origin]
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenScenario:
+    """A scenario that stands in a feature file now."""
+
+    file: Path
+    story: Story
+    scenario: ScenarioText
+
+
+def whole_plan(model: AcceptanceModel, origins: Mapping[str, Origin] | None = None) -> FeaturePlan:
+    """Return the plan to write everything by our default template."""
+    return FeaturePlan(model, model.stories, every_scenario, our_sheet(), origins or {})
+
+
+def clause_origins(built: BuiltGraph, snapshot: Snapshot, model: AcceptanceModel) -> dict[str, Origin]:
+    """Return where the clauses of a model are written; those of a model without source text are left out."""
+    found: dict[str, Origin] = {}
+    documents: dict[str, Document | None] = {}
+    for story in model.stories:
+        for iri in _clause_iris(story):
+            location = built.sources.node(iri)
+            if location is None:
+                continue
+            if location.uri not in documents:
+                analysis = snapshot.file(location.uri)
+                documents[location.uri] = analysis.document if analysis is not None else None
+            document = documents[location.uri]
+            if document is not None:
+                start, end = document.position(location.span.start), document.position(location.span.end)
+                path = uri_to_path(location.uri)
+                name = path.name if path is not None else location.uri.rsplit("/", 1)[-1]
+                found[iri] = Origin(name, (start.line + 1, start.column + 1), (end.line + 1, end.column + 1))
+    return found
+
+
+def write_features(plan: FeaturePlan, folder: Path) -> list[Path]:
+    """Write a feature and its line map per story; returns the features' paths. Raises as ``written_scenarios``."""
+    for _ in written_scenarios(plan, folder):
+        pass
+    return [folder / feature_file_name(plan.model, story) for story in plan.stories]
+
+
+def written_scenarios(plan: FeaturePlan, folder: Path) -> Iterator[WrittenScenario]:
+    """Write a feature and its line map per story into ``folder`` (made if missing), one scenario per step.
+
+    Raises ``OSError``, and ``TemplateProblem`` when the template fails.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for story in plan.stories:
+        path = folder / feature_file_name(plan.model, story)
+        with _created(path) as feature, _created(path.with_name(path.name + MAP_ENDING)) as lines:
+            line_map = _LineMap(plan, story, path.name, lines)
+            for piece in feature_pieces(plan.model, story, plan.scenarios, plan.sheet):
+                feature.write(piece.text)
+                if piece.scenario is not None:
+                    line_map.add(piece.scenario)
+                    yield WrittenScenario(path, story, piece.scenario)
+            line_map.close()
+
+
+def only(story: Story, wanted: Callable[[Iri], bool]) -> Story:
+    """Return a story with some of its variants."""
+    return replace(story, variants=tuple(variant for variant in story.variants if wanted(variant.iri)))
+
+
+class _LineMap:
+    """Writes a line map as JSON while its feature is written; see docs/gherkin.md."""
+
+    def __init__(self, plan: FeaturePlan, story: Story, feature: str, file: TextIO) -> None:
+        self._model = plan.model
+        self._file = file
+        self._numbers: dict[str, int] = {iri: number for number, iri in enumerate(_clause_iris(story))}
+        self._separator = "\n"
+        head = {"version": 1, "feature": feature, "story": story.iri}
+        clauses = [self._clause(iri, plan.origins.get(iri)) for iri in self._numbers]
+        inner = _json(head)[1:-1]
+        file.write(f'{{{inner}, "clauses": [\n' + ",\n".join(map(_json, clauses)) + '\n], "scenarios": [')
+
+    def add(self, scenario: ScenarioText) -> None:
+        """Add a scenario of which the place is known."""
+        entry = {
+            "line": scenario.line,
+            "name": scenario.name,
+            "variant": scenario.variant.iri,
+            "template": scenario.variant.template.iri,
+            "variation": scenario.number,
+            "values": {variable_name(variable): self._plain(cell) for variable, cell in scenario.values.items()},
+            "steps": {
+                str(line): self._numbers[step.clause]
+                for line, step in zip(scenario.lines, scenario.steps, strict=True)
+                if line
+            },
+        }
+        self._file.write(self._separator + _json(entry))
+        self._separator = ",\n"
+
+    def close(self) -> None:
+        """Complete the document."""
+        self._file.write("\n]}\n")
+
+    def _clause(self, iri: str, origin: Origin | None) -> dict[str, object]:
+        entry: dict[str, object] = {"iri": iri, "name": self._model.curie(iri).rsplit(":", 1)[-1]}
+        if origin is not None:
+            places = {side: dict(zip(("line", "column"), place, strict=True)) for side, place in _sides(origin)}
+            entry |= {"file": origin.file, "range": places}
+        return entry
+
+    def _plain(self, cell: Cell) -> object:
+        if isinstance(cell, tuple):
+            return [self._plain(value) for value in cell]
+        return self._model.curie(cell) if isinstance(cell, Iri) else cell
+
+
+def _sides(origin: Origin) -> tuple[tuple[str, tuple[int, int]], ...]:
+    return ("start", origin.start), ("end", origin.end)
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _created(path: Path) -> TextIO:
+    return path.open("w", encoding="utf-8", newline="\n")
+
+
+def _clause_iris(story: Story) -> dict[Iri, None]:
+    """Return every clause of a story's variants once, in order."""
+    found: dict[Iri, None] = {}
+    for variant in story.variants:
+        _collect((*variant.template.clauses, *variant.clauses), found)
+    return found
+
+
+def _collect(clauses: Iterable[Clause], found: dict[Iri, None]) -> None:
+    for clause in clauses:
+        found[clause.iri] = None
+        _collect(getattr(clause, "clauses", getattr(clause, "operands", ())), found)

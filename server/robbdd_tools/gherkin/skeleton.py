@@ -1,0 +1,190 @@
+"""Step functions to be filled in for another robot or simulator: one per distinct sentence of a model."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+from keyword import iskeyword
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.gherkin import text
+from robbdd_tools.gherkin.steps import StepWriter
+from robbdd_tools.gherkin.tables import scene_tables
+from robbdd_tools.graph.model import (
+    AcceptanceModel,
+    BehaviourClause,
+    Clause,
+    EventClause,
+    Exists,
+    Fluent,
+    ForAll,
+    Junction,
+    TextClause,
+    TextFluent,
+)
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+
+HEAD = '''"""Steps of {name} for a robot or simulator of your own."""
+
+from behave import given, register_type, then, when
+from behave.runner import Context
+from parse import with_pattern
+
+
+@with_pattern(r'(?:[^"\\\\]|\\\\.)*')
+def _quoted(text: str) -> str:
+    """What stands between double quotes, backslashes included."""
+    return text
+
+
+register_type(Quoted=_quoted)
+'''
+_ROLES = ("given", "when", "then")
+_QUOTED_SLOT = re.compile(r'(?<=")\{(\w[\w-]*)\}(?=")|\{(\w[\w-]*)\}')
+
+
+@dataclass(frozen=True, slots=True)
+class Pattern:
+    """A sentence as behave's ``parse`` matcher reads it; ``parameters`` are names with their Python types."""
+
+    role: str
+    text: str
+    parameters: tuple[tuple[str, str], ...]
+
+
+def patterns(model: AcceptanceModel) -> list[Pattern]:
+    """Return the distinct sentences of a model: those of the scene first, then in the order of the clauses."""
+    found: dict[Pattern, None] = {}
+    writer = StepWriter(model, load_catalog())
+    for story in model.stories:
+        for variant in story.variants:
+            tables = (table.title for table in scene_tables(writer, variant.scene))
+            for title in (*tables, "variable scene elements", "the scene is set up"):
+                found[Pattern("given", title, ())] = None
+    for story in model.stories:
+        for variant in story.variants:
+            found.update(dict.fromkeys(_all((*variant.template.clauses, *variant.clauses))))
+    return list(found)
+
+
+def skeleton(wanted: Iterable[Pattern], existing: str | None, name: str) -> tuple[str, int]:
+    """Return the text of a file of steps and how many functions are new in it.
+
+    ``existing`` is the text that the file has, ``None`` without one; what it defines is left as it is. Raises
+    ``SyntaxError`` when it is not Python.
+    """
+    defined, names = _definitions(existing or "")
+    grouped: dict[tuple[str, tuple[tuple[str, str], ...]], list[str]] = {}
+    for pattern in wanted:
+        if not defined & {(pattern.role, pattern.text), ("step", pattern.text)}:
+            grouped.setdefault((pattern.text, pattern.parameters), []).append(pattern.role)
+    functions = [_function(sentence, parameters, roles, names) for (sentence, parameters), roles in grouped.items()]
+    head = HEAD.format(name=text.line(name)) if existing is None else existing.rstrip("\n") + "\n"
+    return "\n\n".join((head, *functions)), len(functions)
+
+
+def _all(clauses: Iterable[Clause]) -> Iterator[Pattern]:
+    for clause in clauses:
+        match clause:
+            case ForAll():
+                yield from _all(clause.clauses)
+            case Exists():
+                yield from _all(clause.clauses)
+            case Junction(operator="and"):
+                yield from _all(clause.operands)
+            case Junction(operator="not"):
+                yield Pattern(clause.role, "not ( {clause} )", (("clause", "str"),))
+            case Junction():
+                yield Pattern(clause.role, "( {alternatives} )", (("alternatives", "str"),))
+            case EventClause():
+                yield _pattern("when", 'event "{event}" occurs')
+            case BehaviourClause():
+                yield _pattern("when", load_catalog().behaviours[clause.behaviour].sentence)
+            case Fluent():
+                sentence = load_catalog().predicates[clause.predicate].sentence
+                yield _pattern(clause.role, f"{sentence} {_time(clause.time)}")
+            case TextFluent():
+                yield _pattern(clause.role, f"{text.free(clause.template)} {_time(clause.time)}")
+            case TextClause():
+                literal = text.free(clause.text).replace("{", "{{").replace("}", "}}")
+                yield _pattern(clause.role, f"{literal} {_time(clause.time)}")
+
+
+def _time(constraint: TimeConstraint) -> str:
+    match constraint:
+        case During():
+            return 'from "{start}" until "{end}"'
+        case Before(_, horizon):
+            return f'{_within(horizon)}before event "{{event}}"'
+        case After(_, horizon):
+            return f'{_within(horizon)}after event "{{event}}"'
+
+
+def _within(horizon: float | None) -> str:
+    return "" if horizon is None else "within {seconds:g} seconds "
+
+
+def _pattern(role: str, sentence: str) -> Pattern:
+    parameters: list[tuple[str, str]] = []
+
+    def slot(match: re.Match[str]) -> str:
+        name = _parameter(match[1] or match[2], [taken for taken, _ in parameters])
+        parameters.append((name, "str"))
+        return f"{{{name}:Quoted}}" if match[1] else f"{{{name}}}"
+
+    told = _QUOTED_SLOT.sub(slot, sentence)
+    if "{seconds:g}" in told:
+        parameters.append(("seconds", "float"))
+    return Pattern(role, told, tuple(parameters))
+
+
+def _parameter(slot: str, taken: Collection[str]) -> str:
+    """Return a name for a slot that Python takes and no other slot of the sentence has."""
+    base = re.sub(r"\W|^(?=\d)", "_", slot)
+    base = f"{base}_" if iskeyword(base) or base == "context" else base
+    name, number = base, 2
+    while name in taken:
+        name, number = f"{base}{number}", number + 1
+    return name
+
+
+def _definitions(source: str) -> tuple[set[tuple[str, str]], set[str]]:
+    """Return the (keyword, sentence) of the steps that a file defines, and the names of its functions."""
+    steps: set[tuple[str, str]] = set()
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            names.add(node.name)
+            for decorator in node.decorator_list:
+                match decorator:
+                    case ast.Call(
+                        func=ast.Name(id=keyword) | ast.Attribute(attr=keyword),
+                        args=[ast.Constant(value=str() as told), *_],
+                    ):
+                        steps.add((keyword, told))
+                    case _:
+                        pass
+    return steps, names
+
+
+def _function(sentence: str, parameters: tuple[tuple[str, str], ...], roles: list[str], names: set[str]) -> str:
+    decorators = "".join(f"@{role}({sentence!r})\n" for role in _ROLES if role in roles)
+    arguments = "".join(f", {name}: {kind}" for name, kind in parameters)
+    return (
+        f"{decorators}def {_name(sentence, names)}(context: Context{arguments}) -> None:\n"
+        "    raise NotImplementedError\n"
+    )
+
+
+def _name(sentence: str, taken: set[str]) -> str:
+    """Return a free function name made of the words of a sentence."""
+    words = re.findall(r"[a-z0-9]+", re.sub(r"\{(\w+)[^}]*\}", r" \1 ", sentence).lower())
+    base = "_".join(words)[:60].strip("_") or "step"
+    base = base if not base[0].isdigit() else f"step_{base}"
+    name, number = base, 2
+    while name in taken:
+        name, number = f"{base}_{number}", number + 1
+    taken.add(name)
+    return name

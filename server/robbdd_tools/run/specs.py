@@ -1,0 +1,204 @@
+"""What the agent has to know of each scenario: its scene, its events, its seed, the lines of its clauses."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.gherkin.feature import ScenarioText
+from robbdd_tools.gherkin.tables import elements_of
+from robbdd_tools.graph.model import (
+    AcceptanceModel,
+    BehaviourClause,
+    Cell,
+    Clause,
+    EventClause,
+    Fluent,
+    ForAll,
+    Iri,
+    Junction,
+    SceneModel,
+    Variant,
+)
+from robbdd_tools.run.protocol import ClauseSpec, ConfigSpec, ScenarioSpec, SceneSpec
+
+Values = Mapping[Iri, Cell]
+
+
+@dataclass(frozen=True, slots=True)
+class _Shared:
+    """What all scenarios of a variant have in common."""
+
+    clauses: tuple[Clause, ...]
+    objects: tuple[Iri, ...]
+    workspaces: Mapping[str, tuple[str, ...]]
+    contains: Mapping[str, tuple[str, ...]]
+    events: Mapping[str, str]
+
+
+class SpecWriter:
+    """Makes the specifications of the scenarios of one model."""
+
+    def __init__(self, model: AcceptanceModel, seed: int) -> None:
+        self._model = model
+        self._seed = seed
+        self._curies: dict[str, str] = {}
+        self._variants: dict[Iri, _Shared] = {}
+
+    def spec(self, feature: str, story: Iri, scenario: ScenarioText) -> ScenarioSpec:
+        """Return the specification of a scenario of a feature (a path relative to the run's folder)."""
+        variant = scenario.variant
+        shared = self._variants.get(variant.iri)
+        if shared is None:
+            shared = self._variants[variant.iri] = self._shared(variant)
+        curie = self._curie
+        return ScenarioSpec(
+            feature=feature,
+            line=scenario.line,
+            name=scenario.name,
+            story=story,
+            variant=variant.iri,
+            variation=scenario.number,
+            values={curie(variable): self._plain(cell) for variable, cell in scenario.values.items()},
+            seed=_seed(self._seed, variant.iri, scenario.number),
+            scene=self._scene(shared, variant.scene, scenario.values),
+            events=shared.events,
+            clauses=tuple(
+                ClauseSpec(line, step.clause, curie(step.clause).rsplit(":", 1)[-1], step.role, step.text)
+                for line, step in zip(scenario.lines, scenario.steps, strict=True)
+                # A template may leave a step out; there is nothing to judge then.
+                if line
+            ),
+        )
+
+    def _curie(self, iri: str) -> str:
+        found = self._curies.get(iri)
+        if found is None:
+            found = self._curies[iri] = self._model.curie(iri)
+        return found
+
+    def _plain(self, cell: Cell) -> object:
+        if isinstance(cell, tuple):
+            return [self._plain(value) for value in cell]
+        return self._curie(cell) if isinstance(cell, Iri) else cell
+
+    def _shared(self, variant: Variant) -> _Shared:
+        scene = variant.scene
+        return _Shared(
+            (*variant.template.clauses, *variant.clauses),
+            (*scene.objects, *(thing for carriers in scene.carriers.values() for thing in carriers)),
+            self._named(scene.carriers),
+            self._named(scene.contains),
+            {self._curie(event): emitter for event, emitter in _events(variant).items()},
+        )
+
+    def _named(self, mapping: Mapping[Iri, tuple[Iri, ...]]) -> dict[str, tuple[str, ...]]:
+        return {self._curie(key): tuple(map(self._curie, entries)) for key, entries in mapping.items()}
+
+    def _scene(self, shared: _Shared, scene: SceneModel, values: Values) -> SceneSpec:
+        extra = elements_of(values.values())
+        places: dict[str, str] = {}
+        config: list[ConfigSpec] = []
+        for fluent, inner in _givens(self._model, shared.clauses, values):
+            if fluent.predicate == "located-at":
+                thing, place = (_value(fluent.arguments[slot], inner) for slot in ("object", "workspace"))
+                if isinstance(thing, Iri) and isinstance(place, Iri):
+                    places[self._curie(thing)] = self._curie(place)
+            elif fluent.predicate == "has-config":
+                config += self._config(fluent, inner)
+        return SceneSpec(
+            self._members(shared.objects, extra, "object"),
+            self._members(scene.agents, extra, "agent"),
+            shared.workspaces,
+            shared.contains,
+            places,
+            tuple(config),
+        )
+
+    def _members(self, own: tuple[Iri, ...], extra: tuple[Iri, ...], kind: str) -> tuple[str, ...]:
+        added = (element for element in extra if self._model.kinds.get(element) == kind)
+        return tuple(self._curie(element) for element in dict.fromkeys((*own, *added)))
+
+    def _config(self, fluent: Fluent, values: Values) -> Iterator[ConfigSpec]:
+        """How a clause wants elements set up, the value as the feature text has it."""
+        target, value = (_value(fluent.arguments[slot], values) for slot in ("target", "value"))
+        for element in target if isinstance(target, tuple) else (target,):
+            yield ConfigSpec(self._word(element), fluent.arguments["name"], self._word(value))
+
+    def _word(self, cell: Cell) -> str:
+        if isinstance(cell, tuple):
+            return " ".join(self._word(value) for value in cell)
+        return self._curie(cell) if isinstance(cell, Iri) else " ".join(str(cell).split())
+
+
+def _givens(model: AcceptanceModel, clauses: tuple[Clause, ...], values: Values) -> Iterator[tuple[Fluent, Values]]:
+    """Yield what is certainly given: a world that contradicts it from the start would test nothing."""
+    for clause in clauses:
+        match clause:
+            case Fluent(role="given"):
+                yield clause, values
+            case Junction(operator="and"):
+                yield from _givens(model, clause.operands, values)
+            case ForAll():
+                elements = values.get(clause.in_set, model.sets.get(clause.in_set, ()))
+                for element in elements if isinstance(elements, tuple) else (elements,):
+                    yield from _givens(model, clause.clauses, {**values, clause.variable: element})
+            case _:
+                pass
+
+
+def _value(term: Iri | str, values: Values) -> Cell:
+    return values.get(term, term) if isinstance(term, Iri) else term
+
+
+def _seed(seed: int, variant: str, number: int) -> int:
+    """Each scenario has its own stream of random numbers, whatever else is run."""
+    digest = hashlib.sha256(f"{seed} {variant} {number}".encode()).digest()
+    return int.from_bytes(digest[:4], "big")
+
+
+def _events(variant: Variant) -> dict[Iri, str]:
+    """Which emitter stamps which event of the model.
+
+    The template's duration is the execution's, a behaviour's duration is that of its first and last emitted event;
+    any other event is the behaviour's inner event of the same name (``evt-pick-end`` is ``pick-end``).
+    """
+    template = variant.template
+    bound = {template.start: "scenario-start", template.end: "scenario-end"}
+    behaviours = load_catalog().behaviours
+    emitted: set[str] = set()
+    clauses = tuple(_every((*template.clauses, *variant.clauses)))
+    for clause in clauses:
+        if isinstance(clause, BehaviourClause):
+            events = behaviours[clause.behaviour].events
+            emitted.update(events)
+            bound |= {clause.start: events[0], clause.end: events[-1]}
+    for clause in clauses:
+        for event in _named_events(clause):
+            name = _event_name(event)
+            if name in emitted:
+                bound.setdefault(event, name)
+    return bound
+
+
+def _every(clauses: tuple[Clause, ...]) -> Iterator[Clause]:
+    for clause in clauses:
+        yield clause
+        yield from _every(getattr(clause, "clauses", getattr(clause, "operands", ())))
+
+
+def _named_events(clause: Clause) -> Iterator[Iri]:
+    if isinstance(clause, EventClause):
+        yield clause.event
+    time = getattr(clause, "time", None)
+    for name in ("event", "start", "end"):
+        event = getattr(time, name, None)
+        if event is not None:
+            yield Iri(event)
+
+
+def _event_name(event: str) -> str:
+    local = event.replace("#", "/").rsplit("/", 1)[-1].lower().replace("_", "-")
+    return local.removeprefix("evt-").removeprefix("event-")

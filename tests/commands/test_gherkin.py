@@ -1,0 +1,163 @@
+"""``robbdd gherkin`` and ``robbdd steps`` as scripts use them."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from kit import EXAMPLES, MODEL, SCENE
+from robbdd_tools.run.protocol import read_manifest
+
+PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
+
+
+def robbdd(*arguments: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "robbdd_tools.cli", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=folder)
+    assert "Traceback" not in done.stderr
+    return done
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "main.bdd").write_text(MODEL, encoding="utf-8")
+    (tmp_path / "lab.scene").write_text(SCENE, encoding="utf-8")
+    return tmp_path
+
+
+def test_a_folder_has_all_that_behave_needs_and_points_nowhere_else(folder: Path) -> None:
+    done = robbdd("gherkin", folder / "main.bdd", "-o", "out", folder=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == f"{Path('out', 'features', 'fetching.feature')}\n"
+    files = sorted(path for path in (folder / "out").rglob("*") if path.is_file())
+    assert [str(path.relative_to(folder / "out").as_posix()) for path in files] == [
+        "behave.ini",
+        "features/environment.py",
+        "features/fetching.feature",
+        "features/fetching.feature.map.json",
+        "features/steps/catalog_steps.py",
+        "main.jsonld",
+        "manifest.json",
+    ]
+    for path in files:
+        text = path.read_text(encoding="utf-8")
+        assert str(folder) not in text
+        assert "file:" not in text
+        assert "../" not in text
+    assert len(read_manifest(folder / "out").scenarios) == 4
+
+
+@pytest.mark.parametrize(
+    ("arguments", "numbers", "said"),
+    [
+        (["--where", "part=nut and goal=~tray.*"], [4], ""),
+        (["--first", "3"], [1, 2, 3], ""),
+        (["--sample", "4"], [1, 2, 3, 4], ""),
+        (["--pairwise"], [1, 2, 3, 4], "t:bench-to-tray: 4 scenarios with 8 of 8 combinations\n"),
+        (
+            ["--pairwise", "3", "--where", "part=bolt"],
+            [1, 2],
+            "t:bench-to-tray: 2 scenarios with 2 of 2 combinations\n",
+        ),
+    ],
+)
+def test_scenarios_are_selected(folder: Path, arguments: list[str], numbers: list[int], said: str) -> None:
+    done = robbdd("gherkin", "main.bdd", "-o", "out", *arguments, folder=folder)
+    assert (done.returncode, done.stderr) == (0, said)
+    assert [scenario.variation for scenario in read_manifest(folder / "out").scenarios] == numbers
+
+
+@pytest.mark.parametrize("command", ["gherkin", "run"])
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--where", "part=nut or"], "--where, column 12: expected a variable instead of the end"),
+        (["--where", "art=nut"], "--where, column 1: there is no variable 'art'; there are part, robot, goal"),
+        (["--where", "part=none"], "robbdd: no scenario fits the selection"),
+        (["--first", "0"], "'0' is not a number above 0"),
+        (["--sample", "many"], "'many' is not a number above 0"),
+        (["--pairwise", "4"], "invalid choice: 4"),
+        (["--first", "1", "--sample", "1"], "not allowed with argument"),
+    ],
+)
+def test_a_selection_that_cannot_be_made_ends_with_2(
+    folder: Path, command: str, arguments: list[str], words: str
+) -> None:
+    done = robbdd(command, "main.bdd", "-o", "out", *arguments, folder=folder)
+    assert done.returncode == 2
+    assert words in done.stderr
+
+
+def test_an_own_template_is_used_and_its_error_shown_at_its_line(folder: Path) -> None:
+    own = folder / "own.feature.jinja"
+    own.write_text("{% extends 'default.feature.jinja' %}{% block feature %}# own\n{{ super() }}{% endblock %}")
+    assert robbdd("gherkin", "main.bdd", "-o", "out", "--template", own.name, folder=folder).returncode == 0
+    assert (folder / "out" / "features" / "fetching.feature").read_text(encoding="utf-8").startswith("# own\n@story=")
+    own.write_text("{% block scenario %}\n\n{{ scenario.colour }}{% endblock %}")
+    done = robbdd("gherkin", "main.bdd", "-o", "out", "--template", own.name, folder=folder)
+    assert done.returncode == 2
+    assert done.stderr.startswith("robbdd: own.feature.jinja:3: ")
+    assert "has no attribute 'colour'" in done.stderr
+
+
+def test_steps_are_printed_or_added_to_a_file(folder: Path) -> None:
+    printed = robbdd("steps", "main.bdd", folder=folder)
+    first = robbdd("steps", "main.bdd", "-o", "steps/own.py", folder=folder)
+    assert (printed.returncode, first.returncode) == (0, 0)
+    assert printed.stdout == (folder / "steps" / "own.py").read_text(encoding="utf-8")
+    again = robbdd("steps", "main.bdd", "-o", "steps/own.py", folder=folder)
+    assert again.stdout == f"{Path('steps', 'own.py')}: 0 new steps, 8 there already\n"
+    (folder / "steps" / "own.py").write_text("\ndef (:\n", encoding="utf-8")
+    broken = robbdd("steps", "main.bdd", "-o", "steps/own.py", folder=folder)
+    assert broken.returncode == 2
+    assert broken.stderr.startswith(f"robbdd: {Path('steps', 'own.py')}:2: ")
+
+
+@pytest.mark.physics
+def test_plain_behave_gives_the_verdicts_of_a_run(tmp_path: Path) -> None:
+    shutil.copy(PICKPLACE.with_name("bench.scene"), tmp_path)
+    text = PICKPLACE.read_text(encoding="utf-8").replace("<cubes.cube0>, <balls.ball0>", "<cubes.cube0>")
+    # One clause that holds, one that is violated, groups, and a text that nobody can judge.
+    text = text.replace(
+        "        (\n            in-hand:",
+        """        (
+            (wrong: holds(<thing> is located at <goal>, before <evt-pick-start>)
+                or (not right: holds(<thing> is located at <source>, before <evt-pick-start>)))
+            and
+            (not false: holds(<thing> is located at <goal>, before <evt-pick-start>))
+            and
+            'the lamp is green' after <evt-end>
+            and
+            in-hand:""",
+    )
+    (tmp_path / "m.bdd").write_text(text, encoding="utf-8")
+    done = robbdd("run", "m.bdd", "--json", "out.json", folder=tmp_path)
+    report: Any = json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))
+    verdicts = [[clause["verdict"] for clause in scenario["clauses"]] for scenario in report["scenarios"]]
+    assert verdicts == [["holds", "holds", "violated", "holds", "unknown", "holds", "holds", "holds"]] * 2, done.stdout
+    for template in ("default", "compact", "de"):
+        out = tmp_path / template
+        assert robbdd("gherkin", "m.bdd", "-o", out, "--template", template, folder=tmp_path).returncode == 0
+        assert behave_statuses(out, tmp_path) == verdicts
+
+
+def behave_statuses(out: Path, elsewhere: Path) -> list[list[str]]:
+    """The verdict of each clause as plain behave tells it, run from another folder."""
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("BEHAVE")}
+    command = [sys.executable, "-m", "behave", "--format", "json", "--outfile", str(out / "report.json")]
+    subprocess.run([*command, str(out / "features")], capture_output=True, cwd=elsewhere, env=environment)
+    features: Any = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    words = {"passed": "holds", "failed": "violated", "undefined": "unknown"}
+    found: list[list[str]] = []
+    for element in features[0]["elements"]:
+        if element["type"] == "scenario":
+            steps = [step for step in element["steps"] if step["name"].count('"') > 1 or "lamp" in step["name"]]
+            found.append([words[step.get("result", {"status": "undefined"})["status"]] for step in steps])
+    return found
