@@ -21,6 +21,7 @@ from robbdd_tools.checks.model_file import model_file
 from robbdd_tools.checks.namespace_iri import namespace_iri
 from robbdd_tools.checks.no_scenario import no_scenario
 from robbdd_tools.checks.not_in_scene import not_in_scene
+from robbdd_tools.checks.published_form import published_form
 from robbdd_tools.checks.repeated_value import repeated_value
 from robbdd_tools.checks.row_width import row_width
 from robbdd_tools.checks.selection_size import selection_size
@@ -54,6 +55,7 @@ FILE_RULES = (
     model_file,
     namespace_iri,
     no_scenario,
+    published_form,
     unused_event,
     unused_import,
     unused_set,
