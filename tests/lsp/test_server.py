@@ -153,6 +153,32 @@ async def test_completion_and_definition_across_files(editor: Editor) -> None:
     assert found.uri.endswith("bench.scene")
 
 
+async def test_a_rename_reaches_the_imported_scene(editor: Editor) -> None:
+    editor.open()
+    where = editor.at("<places.left_ws>", after=True)
+    where["position"].character -= 2
+    prepared = await editor.client.text_document_prepare_rename_async(types.PrepareRenameParams(**where))
+    assert prepared is not None
+    params = types.RenameParams(**where, new_name="near_ws")
+    answer = await editor.client.text_document_rename_async(params)
+    assert answer is not None
+    assert answer.changes is not None
+    edited = {uri.rsplit("/", 1)[-1]: len(edits) for uri, edits in answer.changes.items()}
+    assert edited == {"pickplace.bdd": 1, "bench.scene": 2}
+
+
+async def test_the_outline_and_folds_of_a_document(editor: Editor) -> None:
+    editor.open()
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    symbols = await editor.client.text_document_document_symbol_async(
+        types.DocumentSymbolParams(text_document=document)
+    )
+    assert symbols is not None
+    assert [symbol.name for symbol in symbols][-2:] == ["pick-place", "tidy-bench"]
+    found = await editor.client.text_document_folding_range_async(types.FoldingRangeParams(text_document=document))
+    assert found
+
+
 async def test_a_document_is_laid_out(editor: Editor) -> None:
     tidy = editor.text
     editor.open(tidy.replace("    var thing", "  var   thing"))

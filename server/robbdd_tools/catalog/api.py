@@ -109,8 +109,9 @@ class Predicate:
 
     ``phrase`` is the surface form, slots in ``<…>`` (a reference), ``$…`` (a bare name) or as words; ``aliases``
     are other surface forms that are read as the same, with the same slots; ``sentence`` the Gherkin form with
-    ``{slot}`` placeholders. ``unit`` is the SI unit of the margin (``""`` when the margin is ±1). ``evaluate`` is ``None`` for what this installation can state but not judge yet: such a
-    clause is *unknown*, never a pass. ``quantities`` are those that the evaluator needs beside poses and grips
+    ``{slot}`` placeholders. ``unit`` is the SI unit of the margin (``""`` when the margin is ±1). ``evaluate`` is
+    ``None`` for what this installation can state but not judge yet: such a clause is *unknown*, never a pass.
+    ``quantities`` are those that the evaluator needs beside poses and grips
     (``reach``): they cost time and are sampled only in the windows of clauses that ask.
     """
 

@@ -17,14 +17,16 @@ def symbol_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definiti
     analysis = snapshot.file(uri)
     if analysis is None:
         return None
-    for placed in analysis.declarations:
-        for ref, definition in placed.targets.items():
+    placed = next((entry for entry in reversed(analysis.declarations) if entry.offset <= offset), None)
+    if placed is not None:
+        for ref in placed.targets:
             span = ref.span.shifted(placed.offset)
             if span.contains(offset):
-                return span, definition
-    for definition in analysis.definitions.values():
-        if definition.span.contains(offset):
-            return definition.span, definition
+                return span, placed.targets[ref]
+        for symbol in placed.declaration.symbols:
+            span = symbol.span.shifted(placed.offset)
+            if span.contains(offset) and symbol.path in analysis.definitions:
+                return span, analysis.definitions[symbol.path]
     return _in_broken_text(snapshot, analysis, offset)
 
 

@@ -18,6 +18,7 @@ from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.scenarios import RunnableScenario, runnable_scenarios
 from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
@@ -32,6 +33,7 @@ def create_server() -> RobbddServer:
     _register_reading(server)
     _register_actions(server)
     _register_commands(server)
+    register_navigation(server)
     return server
 
 

@@ -1,0 +1,128 @@
+"""The protocol's methods for finding one's way: references, rename, outline, folding."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcInvalidParams
+
+from robbdd_tools.features.folding import folds
+from robbdd_tools.features.outline import Item, outline, project_names
+from robbdd_tools.features.references import highlights, references
+from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
+from robbdd_tools.lsp.convert import document_of
+from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.names.project import Snapshot
+from robbdd_tools.syntax.declaration import SymbolKind
+
+_KINDS: Mapping[str, types.SymbolKind] = {
+    SymbolKind.NAMESPACE: types.SymbolKind.Namespace,
+    SymbolKind.EVENT: types.SymbolKind.Event,
+    SymbolKind.TASK: types.SymbolKind.Constant,
+    SymbolKind.TEMPLATE: types.SymbolKind.Class,
+    SymbolKind.VARIABLE: types.SymbolKind.Variable,
+    SymbolKind.SET_VARIABLE: types.SymbolKind.Variable,
+    SymbolKind.FLUENT: types.SymbolKind.Boolean,
+    SymbolKind.BEHAVIOUR: types.SymbolKind.Method,
+    SymbolKind.STORY: types.SymbolKind.Package,
+    SymbolKind.VARIANT: types.SymbolKind.Function,
+    SymbolKind.SCENE: types.SymbolKind.Module,
+}
+
+
+def register_navigation(server: RobbddServer) -> None:
+    """Add the methods to a server."""
+    _register_uses(server)
+    _register_structure(server)
+
+
+def _register_uses(server: RobbddServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_REFERENCES)
+    async def find_references(ls: RobbddServer, params: types.ReferenceParams) -> list[types.Location]:
+        def find(snapshot: Snapshot) -> list[types.Location]:
+            document = document_of(snapshot, params.text_document.uri)
+            offset = ls.convert.offset(document, params.position)
+            found = references(snapshot, document.uri, offset, params.context.include_declaration)
+            return [ls.convert.location(snapshot, uri, span) for uri, span in found]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
+    async def highlight(ls: RobbddServer, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
+        def find(snapshot: Snapshot) -> list[types.DocumentHighlight]:
+            document = document_of(snapshot, params.text_document.uri)
+            spans = highlights(snapshot, document.uri, ls.convert.offset(document, params.position))
+            return [types.DocumentHighlight(range=ls.convert.range(document, span)) for span in spans]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
+    async def prepare(ls: RobbddServer, params: types.PrepareRenameParams) -> types.Range | None:
+        def find(snapshot: Snapshot) -> types.Range | None:
+            document = document_of(snapshot, params.text_document.uri)
+            span = prepare_rename(snapshot, document.uri, ls.convert.offset(document, params.position))
+            return None if span is None else ls.convert.range(document, span)
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
+    async def give_name(ls: RobbddServer, params: types.RenameParams) -> types.WorkspaceEdit:
+        def find(snapshot: Snapshot) -> types.WorkspaceEdit:
+            document = document_of(snapshot, params.text_document.uri)
+            offset = ls.convert.offset(document, params.position)
+            changes: dict[str, list[types.TextEdit]] = {}
+            for edit in rename(snapshot, document.uri, offset, params.new_name):
+                place = ls.convert.location(snapshot, edit.uri, edit.span)
+                changes.setdefault(edit.uri, []).append(types.TextEdit(range=place.range, new_text=edit.text))
+            return types.WorkspaceEdit(changes=changes)
+
+        try:
+            return await ls.analyse(find)
+        except RenameRefused as refused:
+            raise JsonRpcInvalidParams(str(refused)) from refused
+
+
+def _register_structure(server: RobbddServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
+    async def symbols(ls: RobbddServer, params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
+        def find(snapshot: Snapshot) -> list[types.DocumentSymbol]:
+            uri = params.text_document.uri
+            return [_symbol(ls, snapshot, uri, item) for item in outline(snapshot, uri)]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.WORKSPACE_SYMBOL)
+    async def names(ls: RobbddServer, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+        def find(snapshot: Snapshot) -> list[types.WorkspaceSymbol]:
+            return [
+                types.WorkspaceSymbol(
+                    name=found.symbol.path,
+                    kind=_kind(found.kind),
+                    location=ls.convert.location(snapshot, found.uri, found.span),
+                )
+                for found in project_names(snapshot, params.query)
+            ]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
+    async def folding(ls: RobbddServer, params: types.FoldingRangeParams) -> list[types.FoldingRange]:
+        found = await ls.analyse(lambda snapshot: folds(snapshot, params.text_document.uri))
+        return [types.FoldingRange(start_line=fold.first, end_line=fold.last, kind=fold.kind) for fold in found]
+
+
+def _symbol(ls: RobbddServer, snapshot: Snapshot, uri: str, item: Item) -> types.DocumentSymbol:
+    document = document_of(snapshot, uri)
+    return types.DocumentSymbol(
+        name=item.name,
+        detail=item.kind,
+        kind=_kind(item.kind),
+        range=ls.convert.range(document, item.extent),
+        selection_range=ls.convert.range(document, item.span),
+        children=[_symbol(ls, snapshot, uri, part) for part in item.children],
+    )
+
+
+def _kind(kind: str) -> types.SymbolKind:
+    return _KINDS.get(kind, types.SymbolKind.Object)

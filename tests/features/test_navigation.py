@@ -1,0 +1,152 @@
+"""References, rename, outline and folding over several files."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit import MODEL, SCENE, Fixture, fixture
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.folding import folds
+from robbdd_tools.features.outline import Item, outline, project_names
+from robbdd_tools.features.references import highlights, references
+from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
+
+LAB = "file:///fixture/lab.scene"
+
+
+def marked(old: str, new: str, scene: bool = False) -> tuple[Fixture, str]:
+    """The model (or its scene) with a cursor put into some text."""
+    text = SCENE if scene else MODEL
+    assert old in text
+    files = {"main.bdd": MODEL, "lab.scene": SCENE} | {"lab.scene" if scene else "main.bdd": text.replace(old, new, 1)}
+    case = fixture("".join(f"//- {name}\n{content}" for name, content in files.items()))
+    return case, LAB if scene else case.uri
+
+
+def lines(case: Fixture, places: list[tuple[str, object]]) -> list[str]:
+    texts = case.project.texts()
+    found: list[str] = []
+    for uri, span in places:
+        start = getattr(span, "start", 0)
+        found.append(f"{uri.rsplit('/', 1)[-1]}:{texts[uri][1].count(chr(10), 0, start) + 1}")
+    return found
+
+
+def test_an_element_is_found_in_every_file_that_uses_it() -> None:
+    case, uri = marked("workspace bench_ws", "workspace bench$0_ws", scene=True)
+    found = references(case.snapshot, uri, case.cursor, with_declaration=True)
+    assert lines(case, list(found)) == ["lab.scene:5", "lab.scene:8", "main.bdd:33"]
+
+
+def test_a_variable_is_found_by_its_short_and_its_qualified_name() -> None:
+    case, uri = marked("var goal", "var go$0al")
+    assert len(references(case.snapshot, uri, case.cursor, with_declaration=False)) == 4
+    assert len(highlights(case.snapshot, uri, case.cursor)) == 5
+
+
+def renamed(old: str, new: str, name: str, scene: bool = False) -> tuple[str, str]:
+    case, uri = marked(old, new, scene)
+    texts = {file: text for file, (_, text) in case.project.texts().items()}
+    for edit in reversed(rename(case.snapshot, uri, case.cursor, name)):
+        text = texts[edit.uri]
+        texts[edit.uri] = text[: edit.span.start] + edit.text + text[edit.span.end :]
+    for file, text in texts.items():
+        case.project.open(file, 2, text)
+    for file in texts:
+        errors = [found for found in fast_diagnostics(case.snapshot, file) if found.severity is Severity.ERROR]
+        assert errors == []
+    return texts[case.uri], texts[LAB]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "scene"),
+    [("<places.tray_ws>", "<places.tray$0_ws>", False), ("workspace tray_ws", "workspace tray$0_ws", True)],
+)
+def test_an_element_is_renamed_in_all_files_from_either_end(old: str, new: str, scene: bool) -> None:
+    main, lab = renamed(old, new, "crate_ws", scene)
+    assert main == MODEL.replace("tray_ws", "crate_ws")
+    assert lab == SCENE.replace("tray_ws", "crate_ws")
+
+
+def test_a_set_is_renamed_inside_qualified_names() -> None:
+    main, lab = renamed("ws set (ns=env) places", "ws set (ns=env) pla$0ces", "spots", scene=True)
+    assert main == MODEL.replace("places.", "spots.")
+    assert lab == SCENE.replace("places", "spots")
+
+
+def test_a_template_and_its_variable_are_renamed_apart() -> None:
+    main, _ = renamed("Template (ns=t) fetch", "Template (ns=t) fe$0tch", "carry-off")
+    assert main == MODEL.replace(") fetch {", ") carry-off {").replace("<fetch", "<carry-off")
+    main, _ = renamed("var part", "var pa$0rt", "piece")
+    assert main == MODEL.replace("var part\n", "var piece\n").replace("<part>", "<piece>").replace(".part>", ".piece>")
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("1st", "is no name"), ("a b", "is no name"), ("robot", "is already declared"), ("", "is no name")],
+)
+def test_a_rename_that_would_break_the_model_is_refused(name: str, words: str) -> None:
+    case, uri = marked("var part", "var pa$0rt")
+    with pytest.raises(RenameRefused, match=words):
+        rename(case.snapshot, uri, case.cursor, name)
+
+
+def test_members_of_similar_sets_have_no_name_of_their_own() -> None:
+    case = fixture(MODEL.replace("obj set <parts>", "{ <washers.was$0her1> }"))
+    assert prepare_rename(case.snapshot, case.uri, case.cursor) is None
+    with pytest.raises(RenameRefused, match="numbered by its set"):
+        rename(case.snapshot, case.uri, case.cursor, "ring")
+
+
+def test_the_part_of_a_qualified_name_under_the_cursor_is_offered_for_renaming() -> None:
+    case, uri = marked("<places.tray_ws>", "<places.tray$0_ws>")
+    span = prepare_rename(case.snapshot, uri, case.cursor)
+    assert span is not None
+    assert case.project.texts()[uri][1][span.start : span.end] == "tray_ws"
+
+
+def shown(items: list[Item], depth: int = 0) -> list[str]:
+    return [
+        line
+        for item in items
+        for line in (f"{'  ' * depth}{item.name}: {item.kind}", *shown(list(item.children), depth + 1))
+    ]
+
+
+def test_the_outline_nests_names_as_they_are_declared() -> None:
+    case = fixture(MODEL)
+    assert shown(outline(case.snapshot, case.uri))[6:] == [
+        "fetch: scenario template",
+        "  part: variable",
+        "  robot: variable",
+        "  goal: variable",
+        "  on-bench: fluent",
+        "  carry: behaviour",
+        "  in-tray: fluent",
+        "fetching: user story",
+        "  bench-to-tray: scenario variant",
+    ]
+
+
+def test_the_outline_survives_broken_text() -> None:
+    case = fixture(MODEL.replace("var robot", "var robot !!").replace("template: <fetch>", "template <fetch>"))
+    assert "  robot: variable" in shown(outline(case.snapshot, case.uri))
+
+
+def test_project_names_are_found_by_some_of_their_letters() -> None:
+    case = fixture(MODEL)
+    assert [found.symbol.path for found in project_names(case.snapshot, "trws")] == ["places.tray_ws"]
+    assert project_names(case.snapshot, "zzz") == []
+    assert len(project_names(case.snapshot, "", most=3)) == 3
+
+
+def test_blocks_comments_and_imports_fold() -> None:
+    imports = "import 'a.scene'\nimport 'b.scene'\n"
+    text = imports + "// one\n// two\nScenario Template (ns=t) x {\n  var a\n  // lone\n  var b\n}\n"
+    case = fixture(text)
+    assert [(fold.first, fold.last, fold.kind) for fold in folds(case.snapshot, case.uri)] == [
+        (0, 1, "imports"),
+        (2, 3, "comment"),
+        (4, 7, "region"),
+    ]
