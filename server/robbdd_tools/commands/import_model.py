@@ -12,8 +12,7 @@ from robbdd_tools.commands.models import sound_model
 from robbdd_tools.names.project import Project
 
 if TYPE_CHECKING:
-    from rdflib import Graph
-
+    from robbdd_tools.graph.built import BuiltGraph
     from robbdd_tools.graph.losses import Losses
     from robbdd_tools.graph.text import ModelText
 
@@ -38,7 +37,7 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     graph = build_graph(snapshot, path_to_uri(path)).graph
     text = write_model(graph, scene.name)
     again = graph_of(text, scene.name)
-    _report(path, text, compare(graph, again, text.renamed))
+    _report(path, text, compare(graph, again.graph, text.renamed))
     try:
         for file, content in ((output, text.criteria), (scene, text.scene)):
             if content:
@@ -50,7 +49,7 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     return OK
 
 
-def graph_of(text: ModelText, scene_name: str) -> Graph:
+def graph_of(text: ModelText, scene_name: str) -> BuiltGraph:
     """Return the graph that a text gives, without writing it anywhere."""
     from robbdd_tools.graph.build import build_graph
 
@@ -58,7 +57,7 @@ def graph_of(text: ModelText, scene_name: str) -> Graph:
     folder = "file:///imported/"
     project.open(f"{folder}model.bdd", 1, text.criteria)
     project.open(folder + scene_name, 1, text.scene)
-    return build_graph(project.snapshot(), f"{folder}model.bdd").graph
+    return build_graph(project.snapshot(), f"{folder}model.bdd")
 
 
 def _report(path: Path, text: ModelText, losses: Losses) -> None:

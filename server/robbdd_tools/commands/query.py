@@ -6,7 +6,7 @@ import csv
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, path_to_uri, read_text
@@ -14,9 +14,7 @@ from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
 
 if TYPE_CHECKING:
-    from rdflib.term import Node
-
-    from robbdd_tools.graph.query import Rows
+    from robbdd_tools.graph.query import Rows, Term
 
 
 def query(path: Path, text: str | None, file: Path | None, name: str | None, form: str) -> int:
@@ -65,12 +63,10 @@ def _source(text: str | None, file: Path | None, name: str | None) -> tuple[str,
     return f"{name}.rq", found
 
 
-def _short(node: Node | None, prefixes: dict[str, str]) -> str:
-    if node is None:
-        return ""
-    text = str(node)
-    if type(node).__name__ == "Literal":
-        return text
+def _short(term: Term | None, prefixes: dict[str, str]) -> str:
+    if term is None or term.kind != "uri":
+        return "" if term is None else term.value
+    text = term.value
     fitting = [(ns, prefix) for prefix, ns in prefixes.items() if text.startswith(ns) and len(text) > len(ns)]
     if not fitting:
         return text
@@ -79,7 +75,7 @@ def _short(node: Node | None, prefixes: dict[str, str]) -> str:
 
 
 def _table(rows: Rows) -> None:
-    lines = [list(rows.columns), *([_short(node, rows.prefixes) for node in row] for row in rows.rows)]
+    lines = [list(rows.columns), *([_short(term, rows.prefixes) for term in row] for row in rows.rows)]
     lines = [[" ".join(cell.split()) for cell in line] for line in lines]
     widths = [max(len(line[column]) for line in lines) for column in range(len(rows.columns))]
     lines.insert(1, ["-" * width for width in widths])
@@ -90,21 +86,19 @@ def _table(rows: Rows) -> None:
 def _csv(rows: Rows) -> None:
     writer = csv.writer(sys.stdout, lineterminator="\n")
     writer.writerow(rows.columns)
-    writer.writerows(["" if node is None else str(node) for node in row] for row in rows.rows)
+    writer.writerows(["" if term is None else term.value for term in row] for row in rows.rows)
 
 
 def _json(rows: Rows) -> None:
     """Print the answer as SPARQL 1.1 Query Results JSON."""
     bindings = [
-        {name: _binding(node) for name, node in zip(rows.columns, row, strict=True) if node is not None}
+        {name: _binding(term) for name, term in zip(rows.columns, row, strict=True) if term is not None}
         for row in rows.rows
     ]
     document = {"head": {"vars": list(rows.columns)}, "results": {"bindings": bindings}}
     print(json.dumps(document, indent=1, ensure_ascii=False))
 
 
-def _binding(node: Node) -> dict[str, Any]:
-    kinds = {"Literal": "literal", "BNode": "bnode"}
-    binding = {"type": kinds.get(type(node).__name__, "uri"), "value": str(node)}
-    datatype, language = getattr(node, "datatype", None), getattr(node, "language", None)
-    return binding | ({"datatype": str(datatype)} if datatype else {}) | ({"xml:lang": language} if language else {})
+def _binding(term: Term) -> dict[str, str]:
+    more = {"datatype": term.datatype, "xml:lang": term.language}
+    return {"type": term.kind, "value": term.value} | {key: value for key, value in more.items() if value}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 from robbdd_tools.base.data import data_file, data_folder
 from robbdd_tools.graph.canonical import sort_text
 from robbdd_tools.graph.prefixes import bind_prefixes, user_prefixes
+from robbdd_tools.graph.vocabulary import expand
 
 if TYPE_CHECKING:
     from rdflib import Graph
@@ -32,21 +33,31 @@ class BadQuery(Exception):
 
 
 @dataclass(frozen=True, slots=True)
+class Term:
+    """A node of a graph as plain data: ``kind`` is ``uri``, ``bnode`` or ``literal``."""
+
+    kind: str
+    value: str
+    datatype: str = ""
+    language: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Rows:
-    """The answer to SELECT: one value or ``None`` per column; to ASK: one cell of the column ``answer``.
+    """The answer to SELECT: one term or ``None`` per column; to ASK: one cell of the column ``answer``.
 
     CONSTRUCT and DESCRIBE answer with the triples of a graph: subject, predicate, object. ``prefixes`` maps prefixes
     to namespaces, for whoever shows names.
     """
 
     columns: tuple[str, ...]
-    rows: tuple[tuple[Node | None, ...], ...]
+    rows: tuple[tuple[Term | None, ...], ...]
     prefixes: dict[str, str]
 
 
 def run_query(graph: Graph, text: str) -> Rows:
     """Answer a query; raises ``BadQuery``. Rows are sorted unless the query orders them itself."""
-    from rdflib import Graph, Literal
+    from rdflib import Graph
 
     prefixes = bind_prefixes(Graph(bind_namespaces="none"), user_prefixes(graph))
     known = {**_MORE_PREFIXES, **prefixes}
@@ -55,16 +66,16 @@ def run_query(graph: Graph, text: str) -> Rows:
         # rdflib's results are only loosely typed.
         result = cast(Any, graph.query(query))
         if result.type == "ASK":
-            return Rows(("answer",), ((Literal(bool(result.askAnswer)),),), known)
-        if result.type != "SELECT":
-            triples = cast("list[tuple[Node, ...]]", list(result.graph))
-            return Rows(("subject", "predicate", "object"), tuple(sorted(triples, key=_row_order)), known)
-        rows = [tuple(row) for row in cast("list[tuple[Node | None, ...]]", list(result))]
+            truth = Term("literal", str(bool(result.askAnswer)).lower(), expand("xsd:boolean"))
+            return Rows(("answer",), ((truth,),), known)
+        is_select = result.type == "SELECT"
+        rows = cast("list[tuple[Node | None, ...]]", list(result if is_select else result.graph))
     except Exception as error:  # evaluation raises whatever a function of the query runs into
         raise BadQuery(f"the query cannot be answered: {error}") from error
     if not any(part.name == "OrderBy" for part in _parts(query.algebra)):
-        rows.sort(key=_row_order)
-    return Rows(tuple(str(name) for name in result.vars), tuple(rows), known)
+        rows = sorted(rows, key=_row_order)
+    columns = tuple(str(name) for name in result.vars) if is_select else ("subject", "predicate", "object")
+    return Rows(columns, tuple(tuple(map(_term, row)) for row in rows), known)
 
 
 def ready_queries() -> dict[str, str]:
@@ -113,6 +124,14 @@ def _parts(algebra: Any) -> Iterator[Any]:
             waiting += fields.values()
         elif isinstance(part, list | tuple):
             waiting += cast("list[Any]", part)
+
+
+def _term(node: Node | None) -> Term | None:
+    from rdflib import BNode, Literal
+
+    if node is None or not isinstance(node, Literal):
+        return None if node is None else Term("bnode" if isinstance(node, BNode) else "uri", str(node))
+    return Term("literal", str(node), str(node.datatype or ""), node.language or "")
 
 
 def _row_order(row: tuple[Node | None, ...]) -> tuple[tuple[str, str, str], ...]:
