@@ -152,6 +152,11 @@ def test_an_instance_of_another_template_has_other_parts() -> None:
     assert findings(case) == []
 
 
+def test_a_broken_instance_keeps_its_parts() -> None:
+    case = project(cell_scenex=CELL.replace("ktree inst (ns=x) left of <arm_tree>", "ktree inst left of <arm_tree>"))
+    assert [entry.code for entry in findings(case)] == ["syntax"]
+
+
 def test_completion_offers_the_parts_of_instances() -> None:
     case = project(cell_scenex=CELL.replace("root: <left.base.origin>", "root: <$0>"))
     labels = [entry.label for entry in complete(case.snapshot, case.uri, case.cursor)]

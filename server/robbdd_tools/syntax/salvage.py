@@ -10,6 +10,7 @@ from robbdd_tools.syntax.declaration import FILE_NAMESPACE, Symbol, SymbolKind
 
 _NAME = r"(?P<name>[^\W\d][\w\-]*)"
 _ARGUMENT = r"\(\s*ns\s*=\s*(?P<ns>[^\W\d][\w\-]*)\s*\)\s*"
+_TARGET = r"(?P<target>[^\W\d][\w\-]*(?:\.[^\W\d][\w\-]*)*)"
 _NAMED = rf"\s*(?:{_ARGUMENT})?{_NAME}"
 _HEADERS = (
     (re.compile(r"(?:similar\s+)?obj\s+set" + _NAMED), SymbolKind.OBJECT_SET),
@@ -25,7 +26,7 @@ _HEADERS = (
     (re.compile(r"Scenario\s+Template" + _NAMED), SymbolKind.TEMPLATE),
     (re.compile(r"User\s+Story" + _NAMED), SymbolKind.STORY),
     (re.compile(r"distrib\b" + _NAMED), SymbolKind.DISTRIBUTION),
-    (re.compile(rf"ktree\s+inst\s*{_ARGUMENT}{_NAME}"), SymbolKind.TREE_INSTANCE),
+    (re.compile(rf"ktree\s+inst\b(?:\s*{_ARGUMENT}|\s+){_NAME}\s+of\b(?:\s*<\s*{_TARGET})?"), SymbolKind.TREE_INSTANCE),
     (re.compile(rf"ktree\s*{_ARGUMENT}{_NAME}"), SymbolKind.TREE),
     (re.compile(rf"ktree\s+{_NAME}(?P<ns>)"), SymbolKind.TREE_TEMPLATE),
     (re.compile(r"bhv\s+impl\b" + _NAMED), SymbolKind.IMPLEMENTATION),
@@ -75,7 +76,8 @@ def salvage(text: str) -> tuple[Symbol, ...]:
         if match:
             whole = Span(0, len(text.rstrip()))
             namespace = None if kind in _WITHOUT_IRI else match["ns"] or FILE_NAMESPACE
-            own = Symbol(match["name"], match["name"], kind, Span(*match.span("name")), whole, namespace)
+            name, target = match["name"], match.groupdict().get("target")
+            own = Symbol(name, name, kind, Span(*match.span("name")), whole, namespace, target)
             parts = _kinematic_parts if kind in _KINEMATIC else _parts
             return (own, *parts(text, match.end(), own))
     return ()
