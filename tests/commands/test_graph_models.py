@@ -37,7 +37,7 @@ def test_graphs_are_checked_like_models(folder: Path) -> None:
 def test_a_graph_gives_the_features_and_the_graph_of_its_model(folder: Path, tmp_path: Path, name: str) -> None:
     for path, place in ((PICKPLACE, "text"), (folder / name, "graph")):
         assert robbdd("gherkin", path, "-o", tmp_path / place).returncode == 0
-    feature = "tidy-bench.feature"
+    feature = Path("features", "tidy-bench.feature")
     assert (tmp_path / "graph" / feature).read_bytes() == (tmp_path / "text" / feature).read_bytes()
     assert robbdd("graph", folder / name).stdout == robbdd("graph", PICKPLACE).stdout
 

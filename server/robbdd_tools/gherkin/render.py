@@ -64,7 +64,7 @@ def sheet(name: str) -> Sheet:
 @cache
 def our_sheet(name: str = OURS[0]) -> Sheet:
     """Return one of our templates."""
-    return _sheet(f"{name}{ENDING}", _our_source(f"{name}{ENDING}") or "")
+    return _sheet(f"{name}{ENDING}", _our_source(f"{name}{ENDING}") or "", user=False)
 
 
 def _user_sheet(file: str) -> Sheet:
@@ -75,7 +75,7 @@ def _user_sheet(file: str) -> Sheet:
         raise TemplateProblem(file, 0, f"{error.strerror or error} (templates that come along: {known})") from None
     except UnicodeDecodeError:
         raise TemplateProblem(file, 0, "the template is not UTF-8 text") from None
-    return _sheet(file, source)
+    return _sheet(file, source, user=True)
 
 
 def _our_source(name: str) -> str | None:
@@ -83,8 +83,15 @@ def _our_source(name: str) -> str | None:
     return (files("robbdd_tools.gherkin") / "templates" / name).read_text(encoding="utf-8") if name in known else None
 
 
-def _sheet(file: str, source: str) -> Sheet:
-    from jinja2 import FunctionLoader, StrictUndefined, TemplateError, TemplateNotFound, TemplateSyntaxError
+def _sheet(file: str, source: str, *, user: bool) -> Sheet:
+    from jinja2 import (
+        Environment,
+        FunctionLoader,
+        StrictUndefined,
+        TemplateError,
+        TemplateNotFound,
+        TemplateSyntaxError,
+    )
     from jinja2.nodes import Const, Extends
     from jinja2.sandbox import SandboxedEnvironment
 
@@ -92,8 +99,8 @@ def _sheet(file: str, source: str) -> Sheet:
         text = source if name == file else _our_source(name)
         return None if text is None else (text, name, None)
 
-    # Feature files are plain text: HTML escaping would corrupt the names.
-    environment = SandboxedEnvironment(
+    # Feature files are plain text: HTML escaping would corrupt the names. Ours need no sandbox, which costs time.
+    environment = (SandboxedEnvironment if user else Environment)(
         loader=FunctionLoader(load), undefined=StrictUndefined, autoescape=False, keep_trailing_newline=True
     )
     chain: list[Template] = []

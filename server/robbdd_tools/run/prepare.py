@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -93,4 +94,9 @@ def write_surroundings(folder: Path, model_name: str, json_ld: str) -> None:
 
 def _fields(value: Any) -> dict[str, object]:
     """Return the fields of a dataclass, for JSON; unlike ``asdict`` it copies nothing."""
-    return {entry.name: getattr(value, entry.name) for entry in fields(value)}
+    return {name: getattr(value, name) for name in _names(type(value))}
+
+
+@cache
+def _names(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(entry.name for entry in fields(kind))
