@@ -15,7 +15,7 @@ from robbdd_tools import __version__
 from robbdd_tools.commands import FAILED, INTERRUPTED, OK
 from robbdd_tools.commands.arguments import allow_selection, wanted
 
-FORMATS = ("ttl", "json-ld", "nt", "xml")
+FORMATS = ("ttl", "json-ld", "json-ld-expanded", "nt", "xml")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -76,6 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--seed", type=int, default=None, help="decides everything random (default: 1)")
     run.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     run.add_argument("-o", "--output", metavar="DIR", type=Path, help="keep features, manifest and log here")
+    run.add_argument("--record", metavar="DIR", type=Path, help="write a picture of each violated clause's moment here")
     allow_selection(run)
     run.set_defaults(command=_run)
 
@@ -151,9 +152,10 @@ def _steps(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.run import run
+    from robbdd_tools.commands.run import Outputs, run
 
-    return run(options.path, wanted(options), options.scenario, options.json, options.output)
+    outputs = Outputs(options.json, options.output, options.record)
+    return run(options.path, wanted(options), options.scenario, outputs)
 
 
 def _import(options: argparse.Namespace) -> int:

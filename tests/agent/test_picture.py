@@ -14,8 +14,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agent.worlds import SCENE, Steps, write_run
+from agent.worlds import BIN, BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, Steps, write_run
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.png import SIGNATURE, write_png
+from robbdd_tools.agent.session import calls_of
 
 
 def read_png(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
@@ -82,3 +85,35 @@ def test_a_scene_that_cannot_be_set_up_is_explained(tmp_path: Path) -> None:
     assert "Traceback" not in done.stderr
     assert done.returncode == 3 or "there is no model for object 'env:gizmo'" in done.stderr
     assert render(tmp_path / "run", tmp_path / "a.png", "first").stderr.startswith("usage: ")
+
+
+@pytest.mark.physics
+def test_the_moment_of_every_violated_clause_is_kept_with_the_run(tmp_path: Path) -> None:
+    """What is placed in one bin is violated to be in the other, from the moment on at which it is judged."""
+    right, wrong = (f'"{CUBE}" is located at "{ws}" after event "t:place-end"' for ws in (BIN_WS, OTHER_WS))
+    doing = f'"{PANDA}" picks "{CUBE}" and places it at "{BIN_WS}"'
+    (spec,) = write_run(tmp_path / "run", [Steps((("when", doing), ("then", right), ("then", wrong)))])
+    (tmp_path / "run" / "moments.jsonl").write_text("left by an earlier run\n")
+    command = [sys.executable, "-m", "robbdd_tools.agent", str(tmp_path / "run")]
+    environment = {**os.environ, "MUJOCO_GL": "nonsense"}
+    subprocess.run(command, check=True, capture_output=True, env=environment)
+    (moment,) = Moments(tmp_path / "run")
+    assert (moment.index, moment.line) == (0, spec.clauses[2].line)
+    simulation = Execution(spec, calls_of(spec)).simulation
+    address = int(simulation.model.jnt_qposadr[simulation.model.body(CUBE).jntadr[0]])
+    placed, goal = np.array(moment.state[address : address + 2]), simulation.data.body(BIN).xpos[:2]
+    assert np.abs(placed - goal).max() < 0.1
+    done = render(tmp_path / "run", tmp_path / "pictures", "moments", MUJOCO_GL="egl")
+    assert done.returncode in (0, 3), done.stderr
+    assert "Traceback" not in done.stderr
+    written = [path.name for path in (tmp_path / "pictures").glob("*")]
+    assert done.returncode == 3 or written == [f"fetch-1-{spec.clauses[2].name}.png"]
+
+
+def test_moments_that_are_none_are_explained(tmp_path: Path) -> None:
+    write_run(tmp_path / "run", [Steps(())])
+    (tmp_path / "run" / "moments.jsonl").write_text("[1]\n")
+    done = render(tmp_path / "run", tmp_path / "pictures", "moments", MUJOCO_GL="egl")
+    assert done.returncode in (2, 3)
+    assert "Traceback" not in done.stderr
+    assert done.returncode == 3 or "holds something else than moments" in done.stderr

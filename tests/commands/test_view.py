@@ -1,4 +1,4 @@
-"""``robbdd view``: a picture, or exit code 2 and a sentence."""
+"""``robbdd view`` and ``robbdd run --record``: pictures, or a sentence that says what to install."""
 
 from __future__ import annotations
 
@@ -39,3 +39,14 @@ def test_without_graphics_it_tells_what_to_install(
 def test_a_scenario_that_is_not_there_is_told_the_known_ones(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["view", MODEL, "--scenario", "nothing"]) == 2
     assert capsys.readouterr().err == "robbdd: there is no scenario 'nothing'; the model has part-to-bin\n"
+
+
+@pytest.mark.physics
+def test_verdicts_stand_without_pictures(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MUJOCO_GL", "nonsense")
+    assert main(["run", MODEL, "--record", str(tmp_path / "pictures")]) == 0
+    said = capsys.readouterr()
+    assert "4 hold" in said.out
+    assert said.err.startswith("robbdd: no pictures: nothing here can render without a display")

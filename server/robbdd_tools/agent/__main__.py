@@ -22,6 +22,8 @@ def _main() -> int:
     # Whatever else prints, behave and the engine included, must not end up among the messages.
     messages = os.dup(1)
     os.dup2(2, 1)
+    # Executing needs no graphics: a back end that does not work here must not keep the engine from loading.
+    os.environ["MUJOCO_GL"] = "disable"
     # The handlers are in place before the slow imports.
     from robbdd_tools.agent.runner import run_folder
 

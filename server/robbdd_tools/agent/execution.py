@@ -21,6 +21,7 @@ from robbdd_tools.monitor.trace import EventStamp, Trace
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.sentences import Clause
+    from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.run.protocol import ScenarioSpec
 
@@ -91,6 +92,10 @@ class Execution:
     def trace(self) -> Trace:
         """What happened so far."""
         return self.simulation.trace(tuple(self._events), self._finished, self._remark)
+
+    def state_at(self, time: float) -> FloatArray:
+        """Return the engine's joint positions at the last sample at or before a time (s)."""
+        return self.simulation.recorder.states[self.trace.last_at_or_before(time + TICK / 2)]
 
     def advance_until(self, satisfied: Callable[[Trace], bool]) -> Trace:
         """Run on until a trace satisfies a condition or the execution is finished; returns the trace."""

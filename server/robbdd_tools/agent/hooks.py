@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from robbdd_tools.agent.channel import current_channel
+from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.session import Session
 from robbdd_tools.run.protocol import MANIFEST, read_manifest
 
@@ -18,6 +19,7 @@ def before_all(context: Any) -> None:
     folder = Path(context.config.base_dir).resolve().parent
     if not (folder / MANIFEST).is_file():
         raise OSError(f"there is no {MANIFEST} in {folder}: run a folder that 'robbdd run' has written")
+    Moments(folder).clear()
     context.session = Session(folder, read_manifest(folder), current_channel())
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +25,12 @@ AIM = (-0.05, 0.0, 0.12)
 """What the camera looks at, m from the middle of the tables' tops."""
 LABEL = 0.012
 """Radius (m) of the dot that a label is put beside."""
+OVERVIEW = (2.15, 128.0, -36.0)
+"""Distance (m), azimuth and elevation (degrees) from which a whole scene is seen."""
+CLOSE, DOWN = 1.1, -30.0
+"""Distance (m) and elevation (degrees) from which one object is seen."""
+AZIMUTHS = (128.0, 160.0, 96.0, -160.0, 64.0, -128.0, 32.0, -96.0, 0.0, -64.0, -32.0)
+"""Directions (degrees) from which one object may be seen, best first."""
 LONGEST = 90
 """Bytes of a label that the engine can hold."""
 
@@ -34,7 +40,10 @@ class NoPicture(Exception):
 
 
 class Camera:
-    """Renders a simulation from a place beside the table. Raises ``NoPicture`` where nothing can render."""
+    """Renders a simulation: the whole scene from beside the table, or one object from near by.
+
+    Raises ``NoPicture`` where nothing can render.
+    """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -46,12 +55,13 @@ class Camera:
         except Exception as error:  # the back ends fail in ways of their own, import errors included
             raise NoPicture(f"{type(error).__name__}: {error}") from error
         self._view: Any = mujoco.MjvCamera()
-        tables = [simulation.data.body(name).xpos for name in simulation.world.cast.tables]
-        self._view.lookat[:] = np.mean(tables, axis=0) + np.array(AIM)
-        self._view.distance, self._view.azimuth, self._view.elevation = 2.15, 128.0, -36.0
 
-    def take(self, data: Any) -> NDArray[np.uint8]:
-        """Return the picture of a state as pixels (height, width, 3)."""
+    def take(self, data: Any, focus: str | None = None) -> NDArray[np.uint8]:
+        """Return the picture of a state as pixels (height, width, 3), of the whole scene or close to one object."""
+        if focus is not None and focus in self._simulation.world.cast.objects:
+            self._look_at(data, focus)
+        else:
+            self._look_around(data)
         self._renderer.update_scene(data, self._view)
         scene = self._renderer.scene
         for index, (name, carrier, region) in enumerate(self._regions()):
@@ -59,9 +69,37 @@ class Camera:
         pixels: NDArray[np.uint8] = self._renderer.render()
         return pixels
 
+    def take_state(self, state: Sequence[float], focus: str | None) -> NDArray[np.uint8]:
+        """Return the picture of joint positions that the engine once had, close to an object."""
+        data: Any = mujoco.MjData(self._simulation.model)
+        data.qpos[:] = state
+        mujoco.mj_forward(self._simulation.model, data)
+        return self.take(data, focus)
+
     def close(self) -> None:
         """Give the graphics context back."""
         self._renderer.close()
+
+    def _look_around(self, data: Any) -> None:
+        tables = [data.body(name).xpos for name in self._simulation.world.cast.tables]
+        self._view.lookat[:] = np.mean(tables, axis=0) + np.array(AIM)
+        self._view.distance, self._view.azimuth, self._view.elevation = OVERVIEW
+
+    def _look_at(self, data: Any, name: str) -> None:
+        """Choose the first direction in which nothing stands before the object."""
+        target = data.body(name).xpos.copy()
+        self._view.lookat[:] = target
+        self._view.distance, self._view.elevation = CLOSE, DOWN
+        clear = (azimuth for azimuth in AZIMUTHS if self._sees(data, name, target, azimuth))
+        self._view.azimuth = next(clear, AZIMUTHS[0])
+
+    def _sees(self, data: Any, name: str, target: FloatArray, azimuth: float) -> bool:
+        model = self._simulation.model
+        turn, tilt = np.radians(azimuth), np.radians(DOWN)
+        ahead = np.array([np.cos(tilt) * np.cos(turn), np.cos(tilt) * np.sin(turn), np.sin(tilt)])
+        hit = np.full(1, -1, dtype=np.int32)
+        mujoco.mj_ray(model, data, target - CLOSE * ahead, ahead, None, 1, -1, hit)
+        return hit[0] >= 0 and int(model.geom_bodyid[hit[0]]) == int(model.body(name).id)
 
     def _regions(self) -> Iterator[tuple[str, str, Region]]:
         for name, boxes in self._simulation.world.cast.regions.items():

@@ -1,35 +1,45 @@
-"""``python -m robbdd_tools.agent.render RUN_FOLDER INDEX FILE.png``: a picture of a scenario's initial scene.
+"""Pictures of a run folder, without a display.
 
-Exit codes: 0 done; 2 the scene cannot be set up or the file not be written; 3 nothing here can render (the
-environment variable ``MUJOCO_GL`` chooses among ``egl``, ``osmesa`` and ``glfw``). Messages are on standard error.
+``python -m robbdd_tools.agent.render RUN_FOLDER INDEX FILE.png`` renders the initial scene of scenario number INDEX
+(from 0); ``… RUN_FOLDER moments FOLDER`` the moment of every clause that was violated.
+
+Exit codes: 0 done; 2 the scene cannot be set up or a file not be read or written; 3 nothing here can render (the
+environment variable ``MUJOCO_GL`` chooses among ``egl``, ``osmesa`` and ``glfw``). Messages are on standard error,
+the names of the pictures on standard output.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable, Iterator
+from itertools import groupby
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.run.protocol import read_manifest
 
+if TYPE_CHECKING:
+    from robbdd_tools.agent.moments import Moment
+    from robbdd_tools.run.protocol import Manifest, ScenarioSpec
+
 FAILED, NO_GRAPHICS = 2, 3
+MOMENTS = "moments"
+USAGE = "usage: python -m robbdd_tools.agent.render RUN_FOLDER (INDEX FILE.png | moments FOLDER)"
 
 
-def render(folder: Path, index: int, output: Path) -> int:
-    """Write the picture of scenario number ``index`` of a run folder; returns the exit code."""
+def render(folder: Path, what: str, output: Path) -> int:
+    """Write the pictures that are asked for; returns the exit code."""
     try:
-        from robbdd_tools.agent.picture import Camera, NoPicture
+        from robbdd_tools.agent.picture import NoPicture
     except Exception as error:  # the engine chooses its back end when it is imported; each fails in its own way
         print(f"{type(error).__name__}: {error}", file=sys.stderr)
         return NO_GRAPHICS
-    from robbdd_tools.agent.execution import Execution
-    from robbdd_tools.agent.png import write_png
-
     try:
-        simulation = Execution(read_manifest(folder).scenarios[index], ()).simulation
-        camera = Camera(simulation)
-        write_png(output, camera.take(simulation.data))
-        camera.close()
+        manifest = read_manifest(folder)
+        pictures = _moments(folder, manifest, output) if what == MOMENTS else _scene(manifest, int(what), output)
+        for picture in pictures:
+            print(picture)
     except (SceneError, OSError) as error:
         print(error, file=sys.stderr)
         return FAILED
@@ -39,12 +49,47 @@ def render(folder: Path, index: int, output: Path) -> int:
     return 0
 
 
+def _scene(manifest: Manifest, index: int, output: Path) -> Iterator[Path]:
+    yield from _pictures(manifest.scenarios[index], [(output, None)])
+
+
+def _moments(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
+    from robbdd_tools.agent.moments import Moments
+
+    output.mkdir(parents=True, exist_ok=True)
+    for index, moments in groupby(Moments(folder), key=lambda moment: moment.index):
+        spec = manifest.scenarios[index]
+        names = {clause.line: clause.name for clause in spec.clauses}
+        stem = spec.name.rpartition(":")[2].replace(" -- ", "-")
+        yield from _pictures(spec, ((output / f"{stem}-{names[moment.line]}.png", moment) for moment in moments))
+
+
+def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]]) -> Iterator[Path]:
+    """Write pictures of one scenario: of a moment, or of the initial scene; yields their paths."""
+    from robbdd_tools.agent.execution import Execution
+    from robbdd_tools.agent.picture import Camera
+    from robbdd_tools.agent.png import write_png
+    from robbdd_tools.agent.session import calls_of
+
+    calls = calls_of(spec)
+    focus = next((call.arguments["object"] for call in calls if "object" in call.arguments), None)
+    simulation = Execution(spec, calls).simulation
+    camera = Camera(simulation)
+    try:
+        for path, moment in wanted:
+            pixels = camera.take(simulation.data) if moment is None else camera.take_state(moment.state, focus)
+            write_png(path, pixels)
+            yield path
+    finally:
+        camera.close()
+
+
 def _main() -> int:
     try:
-        folder, index, output = sys.argv[1:]
-        return render(Path(folder), int(index), Path(output))
-    except ValueError:
-        print("usage: python -m robbdd_tools.agent.render RUN_FOLDER INDEX FILE.png", file=sys.stderr)
+        folder, what, output = sys.argv[1:]
+        return render(Path(folder), what, Path(output))
+    except (ValueError, IndexError) as error:
+        print(f"{USAGE} ({error})", file=sys.stderr)
         return FAILED
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.agent.clauses import decide, is_closed
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Call, Execution, Timing
+from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.sentences import Clause, Doing, fluents_of, read_clause, read_doing, read_event
 from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
@@ -27,10 +28,13 @@ STRANGER = "the manifest of this run knows no such scenario; was the feature cha
 class ScenarioRun:
     """One scenario being executed. ``texts`` are its steps in order: line, role (given, when, then) and sentence."""
 
-    def __init__(self, index: int, spec: ScenarioSpec, texts: Sequence[tuple[int, str, str]], channel: Channel) -> None:
+    def __init__(
+        self, index: int, spec: ScenarioSpec, texts: Sequence[tuple[int, str, str]], channel: Channel, moments: Moments
+    ) -> None:
         self._index = index
         self._spec = spec
         self._channel = channel
+        self._moments = moments
         self._open = {clause.line: clause.sentence for clause in spec.clauses}
         self._doings = {line: doing for line, role, text in texts if role == "when" and (doing := read_doing(text))}
         self._clauses = {line: read_clause(text) for line, role, text in texts if role != "when"}
@@ -45,7 +49,7 @@ class ScenarioRun:
             raise SceneError(self._broken)
         if self._execution is None:
             try:
-                calls = [_call(doing) for doing in self._doings.values()]
+                calls = [call_of(doing) for doing in self._doings.values()]
                 self._execution = Execution(self._spec, calls, _timing(self._clauses.values()))
             except SceneError as error:
                 self._broken = str(error)
@@ -117,6 +121,8 @@ class ScenarioRun:
     def _report(self, line: int, verdict: Verdict) -> None:
         if self._open.pop(line, None) is None:
             return
+        if verdict.outcome is Outcome.VIOLATED and verdict.at is not None and self._execution is not None:
+            self._moments.keep(self._index, line, verdict.at, self._execution.state_at(verdict.at))
         self._channel.send(
             ClauseJudged(
                 self._index,
@@ -139,6 +145,7 @@ class Session:
             ((folder / spec.feature).resolve(), spec.line): index for index, spec in enumerate(manifest.scenarios)
         }
         self._manifest = manifest
+        self._moments = Moments(folder)
         self._finished: set[int] = set()
         self._present: tuple[int, ScenarioRun] | None = None
 
@@ -149,7 +156,10 @@ class Session:
         if index is None:
             self._channel.send(LogLine("error", f"{feature.name}:{line}: {STRANGER}"))
             return
-        self._present = (index, ScenarioRun(index, self._manifest.scenarios[index], texts, self._channel))
+        self._present = (
+            index,
+            ScenarioRun(index, self._manifest.scenarios[index], texts, self._channel, self._moments),
+        )
 
     @property
     def scenario(self) -> ScenarioRun:
@@ -178,7 +188,14 @@ class Session:
                 self._finished.add(index)
 
 
-def _call(doing: Doing) -> Call:
+def calls_of(spec: ScenarioSpec) -> list[Call]:
+    """Return the behaviours of a scenario; raises ``SceneError`` for one that is not of single elements."""
+    doings = (read_doing(clause.sentence) for clause in spec.clauses if clause.role == "when")
+    return [call_of(doing) for doing in doings if doing is not None]
+
+
+def call_of(doing: Doing) -> Call:
+    """Return a behaviour as it is executed; raises ``SceneError`` when it is not of single elements."""
     arguments: dict[str, str] = {}
     for slot, filler in doing.arguments.items():
         if not isinstance(filler, str):

@@ -7,12 +7,14 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.pictures import NoPictures, render_moments
 from robbdd_tools.commands.progress import Display
 from robbdd_tools.commands.selection import selection
 from robbdd_tools.monitor.verdict import Outcome
@@ -25,8 +27,18 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.model import AcceptanceModel, Iri
 
 
-def run(path: Path, wanted: Wanted, names: Sequence[str] | None, report: Path | None, output: Path | None) -> int:
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """Where a run leaves what: its results as JSON, its folder, pictures of violated clauses."""
+
+    report: Path | None = None
+    folder: Path | None = None
+    record: Path | None = None
+
+
+def run(path: Path, wanted: Wanted, names: Sequence[str] | None, outputs: Outputs) -> int:
     """Run a model; returns the exit code. ``names`` selects scenario variants by name, ``wanted`` their scenarios."""
+    report = outputs.report
     if report is not None and not report.absolute().parent.is_dir():
         print(f"robbdd: cannot write {report}: there is no folder {report.parent}", file=sys.stderr)
         return FAILED
@@ -42,17 +54,29 @@ def run(path: Path, wanted: Wanted, names: Sequence[str] | None, report: Path | 
         return FAILED
     request = RunRequest(model, str(path), wanted.seed, variants, selected.scenarios)
     try:
-        with _folder(output) as folder:
+        with _folder(outputs.folder) as folder:
             results, interrupted = _execute(request, Path(folder))
+            if outputs.record is not None:
+                _record(Path(folder), outputs.record)
         if report is not None:
             text = json.dumps(results.as_json(), indent=1, ensure_ascii=False)
             report.write_text(text + "\n", encoding="utf-8")
     except OSError as error:
-        print(f"robbdd: {error.filename or output or report}: {error.strerror or error}", file=sys.stderr)
+        print(f"robbdd: {error.filename or outputs.folder or report}: {error.strerror or error}", file=sys.stderr)
         return FAILED
     if interrupted:
         return INTERRUPTED
     return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS
+
+
+def _record(folder: Path, target: Path) -> None:
+    """Write the pictures; verdicts stand without them."""
+    try:
+        count = render_moments(folder, target)
+    except NoPictures as error:
+        print(f"robbdd: no pictures: {error}", file=sys.stderr)
+    else:
+        print(f"{count} picture{'' if count == 1 else 's'} of violated clauses in {target}", file=sys.stderr)
 
 
 def _model(path: Path) -> AcceptanceModel | None:

@@ -1,0 +1,49 @@
+"""Lets the agent's side render pictures of a run folder, with the first back end that works here."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+BACK_ENDS = ("egl", "osmesa")
+"""Ways to render without a display, best first."""
+NO_GRAPHICS = 3
+"""Exit code of the rendering process when a back end does not work."""
+ADVICE = (
+    "nothing here can render without a display: install EGL (libegl1 and libgl1) or OSMesa (libosmesa6), "
+    "or set MUJOCO_GL=glfw where there is a display"
+)
+MOMENTS = "moments"
+
+
+class NoPictures(Exception):
+    """There are no pictures; the message says why, and what to do about it."""
+
+
+def render_scene(folder: Path, index: int, output: Path) -> None:
+    """Write the initial scene of scenario number ``index`` of a run folder; raises ``NoPictures``."""
+    _render(folder, str(index), output)
+
+
+def render_moments(folder: Path, output: Path) -> int:
+    """Write the moment of every violated clause into a folder and return how many; raises ``NoPictures``."""
+    return len(_render(folder, MOMENTS, output))
+
+
+def _render(folder: Path, what: str, output: Path) -> list[str]:
+    """Return the names of the pictures."""
+    chosen = os.environ.get("MUJOCO_GL")
+    command = [sys.executable, "-m", "robbdd_tools.agent.render", str(folder), what, str(output.absolute())]
+    tried: list[str] = []
+    for back_end in (chosen,) if chosen else BACK_ENDS:
+        environment = {**os.environ, "MUJOCO_GL": back_end}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        if done.returncode == 0:
+            return done.stdout.splitlines()
+        said = (done.stderr.strip().splitlines() or [f"the rendering process ended with code {done.returncode}"])[-1]
+        if done.returncode != NO_GRAPHICS:
+            raise NoPictures(said)
+        tried.append(f"{back_end}: {said}")
+    raise NoPictures(f"{ADVICE} ({'; '.join(tried)})")
