@@ -6,6 +6,7 @@ from typing import Any, cast
 import pytest
 
 from kit import EVENTS, MODEL, TEMPLATE, assert_diagnostics, fixture
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.serialize import serialize
 from robbdd_tools.syntax import tree
@@ -178,6 +179,19 @@ def test_a_behaviour_lasts_as_its_clauses_tell(clauses: str, duration: tuple[str
 def test_an_event_that_tells_a_duration_is_one_reference() -> None:
     references = parse_declaration("bdd", split("bdd", PUBLISHED)[3].text).references
     assert len({reference.ref.span for reference in references}) == len(references)
+
+
+def test_other_phrases_of_a_word_have_its_slots_and_are_read_as_it() -> None:
+    catalog = load_catalog()
+    aliases = [(word, alias) for word in catalog.behaviours.values() for alias in word.aliases]
+    assert aliases
+    for word, alias in aliases:
+        root = parse_declaration("bdd", f"Scenario Template x {{ When: {alias} }}").tree
+        assert isinstance(root, tree.Template)
+        assert root.body.when is not None
+        action = root.body.when.behaviour.action
+        assert action.word == word.name
+        assert {name for name, _ in action.arguments} == {slot.name for slot in word.slots}
 
 
 def test_a_scenario_may_be_called_variant() -> None:
