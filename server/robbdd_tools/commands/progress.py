@@ -97,9 +97,9 @@ def _clause_line(judged: ClauseJudged, sentence: str, width: int) -> Text:
     line.append(f"  {margin(judged.robustness, judged.unit):>9}".rstrip())
     if outcome is Outcome.VIOLATED and judged.at is not None:
         line.append(f"  at {judged.at:.2f} s")
+    line.rstrip()
     if judged.reason and outcome is not Outcome.HOLDS:
         line.append(f"\n      {judged.reason}")
-    line.rstrip()
     return line
 
 
