@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from checks.models import fixed, found
-from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE
+from kit import EVENTS, MODEL, SCENE, TEMPLATE
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.fixes import imports_from_disk
@@ -31,7 +31,7 @@ def test_an_import_comes_below_the_others() -> None:
 
 def test_an_import_is_offered_for_the_right_kind_only() -> None:
     other = "//- more.scene\nns x = 'https://example.org/x/'\nobj set (ns=x) robots { object r2 }\n"
-    text = "//- main.bdd\n" + MODEL.replace("<arms.panda>", "<robots.r2>").replace("robot> picks", "robot> picks")
+    text = "//- main.bdd\n" + MODEL.replace("<arms.panda>", "<robots.r2>")
     assert "Import 'more.scene'" in titles(text + other)
     assert titles("//- main.bdd\n" + MODEL.replace("before <pick-start>", "before <robots>") + other) == [
         "Declare the event 'robots'"
@@ -81,7 +81,6 @@ def test_a_set_variable_is_declared_for_a_quantifier() -> None:
     )
     text = EVENTS + template
     assert "    var goal\n    set var goals\n" in fixed(text, "unknown-name", "Declare 'set var goals'")
-    assert STORY
 
 
 def test_a_link_gets_the_keyword_of_what_it_names() -> None:

@@ -199,6 +199,27 @@ async def test_the_quick_fix_mends_a_misspelt_name(editor: Editor) -> None:
     assert [action.title for action in actions] == ["Change to 'pick-place'"]
 
 
+async def test_the_types_of_variables_stand_behind_them(editor: Editor) -> None:
+    editor.open()
+    hints = await editor.client.text_document_inlay_hint_async(
+        types.InlayHintParams(text_document=types.TextDocumentIdentifier(uri=editor.uri), range=editor.everything())
+    )
+    shown = {editor.text.split("\n")[hint.position.line].strip(): str(hint.label) for hint in hints or []}
+    assert shown == {
+        "var thing": ": object",
+        "var robot": ": agent",
+        "var source": ": workspace",
+        "var goal": ": workspace",
+    }
+
+
+async def test_what_is_unused_is_shown_faded(editor: Editor) -> None:
+    editor.open(editor.text.replace("Event (ns=crit) evt-end\n", "Event (ns=crit) evt-end\nEvent (ns=crit) spare\n"))
+    (found,) = await editor.diagnostics("unused-event")
+    assert list(found.tags or ()) == [types.DiagnosticTag.Unnecessary]
+    assert found.severity is types.DiagnosticSeverity.Hint
+
+
 async def test_gherkin_is_written_beside_the_model(editor: Editor) -> None:
     editor.open()
     params = types.ExecuteCommandParams(command="robbdd.gherkin", arguments=[{"uri": editor.uri}])
@@ -227,7 +248,8 @@ async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(
         types.InlayHintParams(text_document=types.TextDocumentIdentifier(uri=editor.uri), range=editor.everything())
     )
     assert hints is not None
-    shown = {editor.text.split("\n")[hint.position.line].split(":")[0].strip(): str(hint.label) for hint in hints}
+    verdicts = [hint for hint in hints if hint.kind is not types.InlayHintKind.Type]
+    shown = {editor.text.split("\n")[hint.position.line].split(":")[0].strip(): str(hint.label) for hint in verdicts}
     assert set(shown) == {"at-source", "in-hand", "at-goal", "goal-untouched"}
     assert all(label.startswith("✔") for label in shown.values()), shown
     assert "mm" in shown["at-goal"]

@@ -81,6 +81,7 @@ class Converter:
             code=diagnostic.code,
             source=SOURCE,
             related_information=related or None,
+            tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code.startswith("unused-") else None,
         )
 
     def completion(self, document: Document, completion: Completion) -> types.CompletionItem:
