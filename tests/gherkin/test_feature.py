@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from gherkin_kit import edited, feature, pieces, steps
 from kit import MODEL, SCENE, STORY
+from robbdd_tools.gherkin.feature import feature_file_name
+from robbdd_tools.graph.model import AcceptanceModel, Iri, Story
 
 
 def test_a_scenario_lists_its_scene_and_states_its_clauses() -> None:
@@ -129,3 +131,10 @@ def test_quantifiers_are_unrolled_over_their_sets() -> None:
         "Then \"['env:nut', 'env:bolt']\" are sorted into \"['env:bench_ws', 'env:tray_ws']\""
         ' after event "t:place-end"',
     ]
+
+
+def test_stories_of_one_name_get_files_of_their_own() -> None:
+    stories = tuple(Story(Iri(iri), "", "", "", ()) for iri in ("a:tidy", "b:Tidy", "a:other/place"))
+    model = AcceptanceModel(stories, {}, {}, {"a": "a:", "b": "b:"})
+    names = [feature_file_name(model, story) for story in stories]
+    assert names == ["tidy-1.feature", "Tidy-2.feature", "other_place.feature"]

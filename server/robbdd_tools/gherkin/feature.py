@@ -97,9 +97,18 @@ def feature_pieces(
 
 
 def feature_file_name(model: AcceptanceModel, story: Story) -> str:
-    """Return the name of a story's feature file; its CURIE made safe for every file system."""
-    name = model.curie(story.iri).rsplit(":", 1)[-1]
-    return "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in name) + ".feature"
+    """Return the name of a story's feature file, safe for every file system.
+
+    It is the story's name; stories of one name in several namespaces are numbered.
+    """
+    name = _file_stem(model, story.iri)
+    same = [other.iri for other in model.stories if _file_stem(model, other.iri).casefold() == name.casefold()]
+    return f"{name}.feature" if len(same) < 2 else f"{name}-{same.index(story.iri) + 1}.feature"
+
+
+def _file_stem(model: AcceptanceModel, iri: Iri) -> str:
+    name = model.curie(iri).rsplit(":", 1)[-1]
+    return "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in name)
 
 
 class _FeatureWriter:

@@ -94,7 +94,7 @@ def write_surroundings(folder: Path, model_name: str, json_ld: str) -> None:
 
 def _fields(value: Any) -> dict[str, object]:
     """Return the fields of a dataclass, for JSON; unlike ``asdict`` it copies nothing."""
-    return {name: getattr(value, name) for name in _names(type(value))}
+    return {name: getattr(value, name) for name in _names(value.__class__)}
 
 
 @cache
