@@ -94,17 +94,17 @@ def test_expressions_keep_their_structure(published: str, current: str) -> None:
     ("written", "expected"),
     [
         (
-            "Behaviour b { <a> picks <o> and places it at <w> }",
-            "Behaviour (ns=t) b { duration: from <s> until <e> <a> picks <o> and places at <w> }",
+            "When: Behaviour b { <a> picks <o> and places it at <w> }",
+            "When: Behaviour (ns=t) b { duration: from <s> until <e> <a> picks <o> and places at <w> }",
         ),
         (
-            "<a> picks <o> from <s> until <e>",
-            "Behaviour (ns=t) x-pick { duration: from <s> until <e> <a> picks <o> }",
+            "When: <a> picks <o> from <s> until <e>",
+            "duration: from <s> until <e> When: Behaviour (ns=t) x-pick { duration: from <s> until <e> <a> picks <o> }",
         ),
     ],
 )
 def test_behaviours_are_written_out(written: str, expected: str) -> None:
-    head = "ns t = 'https://example.org/t/'\nScenario Template (ns=t) x { When: "
+    head = "ns t = 'https://example.org/t/'\nScenario Template (ns=t) x { "
     then = " Then: f: holds(<a> can reach <o>, from <s> until <e>) }"
     assert words(rewritten(head + written + then)) == words(head + expected + then)
 

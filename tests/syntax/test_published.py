@@ -17,6 +17,7 @@ CURRENT = """ns t = 'https://example.org/t/'
 Event (ns=t) pickup_start
 Event (ns=t) place_end
 Scenario Template (ns=t) fetch {
+    duration: from <pickup_start> until <place_end>
     var part
     var robot
     var start
@@ -174,6 +175,19 @@ def test_a_behaviour_lasts_as_its_clauses_tell(clauses: str, duration: tuple[str
     assert root.body.when is not None
     found = root.body.when.behaviour.duration
     assert (found and (found.start.path, found.end.path)) == duration
+
+
+def test_a_published_scenario_lasts_as_its_behaviour() -> None:
+    clauses = "When: {} Then: <a> can reach <b> from <s> until <t> }}"
+    for head, behaviour, told in (
+        ("x", "<a> picks <b>", True),
+        ("(ns=t) x", "<a> picks <b>", True),
+        ("x", "Behaviour b { <a> picks <b> }", True),
+        ("(ns=t) x", "Behaviour (ns=t) b { <a> picks <b> }", False),
+    ):
+        root = parse_declaration("bdd", f"Scenario Template {head} {{ {clauses.format(behaviour)}").tree
+        assert isinstance(root, tree.Template)
+        assert (root.duration is not None) == told
 
 
 def test_an_event_that_tells_a_duration_is_one_reference() -> None:

@@ -1,7 +1,7 @@
 """``published-form``: a declaration in the form of the 2025 paper; the fix writes it in the current form.
 
 The text is edited in pieces, so that comments stay where they are. What the published form leaves out and nothing
-tells, a template's duration and task, is left to its author.
+tells, such as a template's task, is left to its author.
 """
 
 from __future__ import annotations
@@ -74,6 +74,9 @@ class _Rewriter:
         if isinstance(root, _NAMED) and root.namespace is None and self.namespace:
             yield _put(root.name.span.start, self.namespace)
         if isinstance(root, tree.Template):
+            if root.duration is not None and root.duration.span.start >= root.body.span.start:
+                opening = self.text.index("{", root.name.span.end) + 1
+                yield _put(opening, f" {_during(root.duration)}")
             yield from self._body(root.body)
         elif isinstance(root, tree.Story):
             if "Scenarios" not in self._code(root.benefit.span.end, root.variants[0].span.start):

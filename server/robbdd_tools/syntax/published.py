@@ -2,7 +2,7 @@
 
 A clause is called after its template or variant, its role, and a number (``fetch-given-1``), so that it has an IRI
 and can be referred to; names that stand in the text are not given a second time. A behaviour lasts from the event
-before which something is given until the event after which something then holds.
+before which something is given until the event after which something then holds, and a scenario as its behaviour.
 """
 
 from __future__ import annotations
@@ -41,7 +41,13 @@ def unnamed_at(span: Span) -> Name:
 def complete_template(template: Template) -> Template:
     """Return a template with all its clauses and behaviours named, and durations where the clauses tell them."""
     namer = _Namer(template.name.text, frozenset(_names(template.body)))
-    return replace(template, body=namer.body(template.body, ""))
+    body = namer.body(template.body, "")
+    duration = template.duration
+    written, completed = _behaviour(template.body), _behaviour(body)
+    if duration is None and written is not None and completed is not None:
+        published = template.namespace is None or not written.name.text
+        duration = completed.duration if published else None
+    return replace(template, duration=duration, body=body)
 
 
 def complete_variant(variant: Variant) -> Variant:
@@ -98,6 +104,13 @@ class _Namer:
         if behaviour.duration is None:
             behaviour = replace(behaviour, duration=_duration(behaviour, body))
         return replace(when, behaviour=behaviour)
+
+
+def _behaviour(body: Body) -> BehaviourUse | None:
+    """Return the behaviour of a body or of the bodies inside it."""
+    if body.when is not None:
+        return body.when.behaviour
+    return None if body.for_all is None else _behaviour(body.for_all.body)
 
 
 def _duration(behaviour: BehaviourUse, body: Body) -> During | None:
