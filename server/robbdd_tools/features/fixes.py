@@ -163,9 +163,9 @@ def _other_role(
             allowed = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.COMPOSITION)
         case _:
             allowed = (*_SETS, SymbolKind.CONSTANT_SET)
-    if kind in allowed:
-        start = link.span.start + placed.offset
-        end = file.document.text.rindex("<", start, reference.ref.span.start + placed.offset)
+    start = link.span.start + placed.offset
+    end = file.document.text.rfind("<", start, reference.ref.span.start + placed.offset)
+    if kind in allowed and end >= 0:
         edit = Edit(file.document.uri, Span(start, end), f"{_KEYWORDS[kind]} ")
         yield Fix(f"Change to '{_KEYWORDS[kind]} <{reference.ref.path}>'", (edit,))
 
