@@ -1,0 +1,74 @@
+"""What the agent is told of a scenario: quantified givens, awaited events, steps that a template leaves out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from gherkin_kit import edited, model_of
+from kit import EVENTS
+from robbdd_tools.gherkin.files import whole_plan
+from robbdd_tools.gherkin.render import sheet
+from robbdd_tools.run.prepare import lay_out
+from robbdd_tools.run.protocol import ScenarioSpec, read_manifest
+
+QUANTIFIED = (
+    EVENTS
+    + """Scenario Template (ns=t) all {
+    duration: from <start> until <end>
+    task: <task>
+    var arm
+    set var parts
+    for all ( var x in <parts> ) {
+        Given: there: holds(<x> is located at <places.bench_ws>, before <start>)
+        When: Behaviour (ns=t) take { duration: from <pick-start> until <place-end> <arm> picks <x> }
+    }
+}
+User Story (ns=t) sorting {
+    As A "o" I Want "p" So That "w"
+    Scenarios:
+        Scenario sort {
+            template: <all>
+            scene: <bench_scene>
+            variation:
+                set var <all.parts>: { { <parts.bolt>, <parts.nut> } }
+                var <all.arm>: { <arms.panda> }
+        }
+}
+"""
+)
+
+
+def specs(folder: Path, text: str, template: str = "default") -> list[ScenarioSpec]:
+    plan = replace(whole_plan(model_of(text)), sheet=sheet(template))
+    found = list(lay_out(plan, "main.bdd", 1, folder))
+    assert list(read_manifest(folder).scenarios) == found
+    return found
+
+
+def test_things_start_where_quantified_givens_want_them(tmp_path: Path) -> None:
+    text = edited("var arm", "var arm\n    var place", QUANTIFIED).replace("<places.bench_ws>", "<place>")
+    text = edited("var <all.arm>", "var <all.place>: { <places.bench_ws> }\n                var <all.arm>", text)
+    (only,) = specs(tmp_path, text)
+    assert only.scene.places == {"env:bolt": "env:bench_ws", "env:nut": "env:bench_ws"}
+
+
+def test_an_awaited_event_is_bound_to_what_emits_it(tmp_path: Path) -> None:
+    text = edited("When: Behaviour", "When: event <evt_pick_end> occurs Behaviour", QUANTIFIED)
+    text = edited("Event (ns=t) end", "Event (ns=t) end\nEvent (ns=t) evt_pick_end", text)
+    text = text.replace("located at <places.bench_ws>", "is located at <arm>").replace("is is", "is")
+    text = edited("<x> is located at <arm>", "<x> is held by <arm>", text)
+    (only,) = specs(tmp_path, text)
+    assert only.events["t:evt_pick_end"] == "pick-end"
+    assert [clause.sentence for clause in only.clauses][1] == 'event "t:evt_pick_end" occurs'
+
+
+def test_only_steps_that_were_written_are_to_be_judged(tmp_path: Path) -> None:
+    own = tmp_path / "own.feature.jinja"
+    own.write_text(
+        "{% block scenario %}Scenario: {{ scenario.name }}\n  When {{ scenario.steps[1].text }}\n{% endblock %}",
+        encoding="utf-8",
+    )
+    text = QUANTIFIED.replace("<x> is located at <places.bench_ws>", "<x> is held by <arm>")
+    (only,) = specs(tmp_path / "out", text, str(own))
+    assert [(clause.line, clause.sentence) for clause in only.clauses] == [(2, '"env:panda" picks "env:bolt"')]
