@@ -49,8 +49,8 @@ class Agent:
     def cancel(self) -> None:
         """Stop the process; its open clauses stay unjudged."""
         with self._lock:
-            self.cancelled = True
             if self._process.poll() is None:
+                self.cancelled = True
                 self._process.terminate()
                 try:
                     self._process.wait(PATIENCE)

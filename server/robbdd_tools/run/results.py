@@ -46,8 +46,8 @@ class RunResults:
                 self.scenarios[message.index].judged[message.line] = message
             case Finished():
                 self.scenarios[message.index].finished = message
-            case RunFinished():
-                self.complete = True
+            case RunFinished(ok):
+                self.complete = ok
             case _:
                 pass
 
