@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from typing import Any, cast
 
 import pytest
 from rdflib import BNode, Graph, Literal, URIRef
@@ -81,23 +82,62 @@ def test_all_prefixes_are_bound_and_the_users_come_first(form: str) -> None:
     assert "_low" not in bound
 
 
-def test_json_ld_is_readable_and_carries_its_own_context() -> None:
-    document = json.loads(serialize(built(MODEL).graph, "json-ld"))
-    template = next(node for node in document["@graph"] if node["@id"] == "t:fetch")
+def test_json_ld_is_one_readable_document_per_story() -> None:
+    (story,) = (node for node in json.loads(serialize(built(MODEL).graph, "json-ld"))["@graph"] if "role" in node)
+    (variant,) = story["criteria-list"]
+    template = variant["of-template"]
     assert template["@type"] == ["ScenarioTemplate", "DuringEventsConstraint", "TimeConstraint"]
-    assert template["has-clause"] == ["t:on-bench", "t:when-bhv-fetch.when", "t:in-tray"]
-    assert template["after-event"] == "t:start"
-    assert all("://" not in key for node in document["@graph"] for key in node)
+    assert [clause["@id"] for clause in template["has-clause"]] == ["t:on-bench", "t:when-bhv-fetch.when", "t:in-tray"]
+    assert template["has-clause"][0]["before-event"] == {"@id": "t:pick-start", "@type": "Event"}
+    assert template["has-clause"][2]["after-event"] == "t:place-end"
+    assert all("://" not in key for node in described(story) for key in node)
+
+
+def test_every_node_is_described_once_and_what_belongs_to_no_story_follows() -> None:
+    nodes = json.loads(serialize(built(EVERYTHING).graph, "json-ld"))["@graph"]
+    assert [node["@id"] for node in nodes[:2]] == ["other_names:zz-first", "t:aa-second"]
+    names = [node["@id"] for node in described(nodes)]
+    assert {"t:fetch", "t:sort", "env:bench_scene"} <= {node["@id"] for node in described(nodes[0])}
+    assert len(names) == len(set(names))
+    assert "other_names:mixed" in [node["@id"] for node in nodes[2:]]
+
+
+def test_a_graph_whose_blank_nodes_are_joined_stays_flat() -> None:
+    graph = built(MODEL).graph
+    blank, story = BNode(), URIRef("https://example.org/t/fetching")
+    for term in ("owner", "sponsor"):
+        graph.add((story, URIRef(f"https://example.org/{term}"), blank))
+    graph.add((blank, URIRef("https://example.org/name"), Literal("Ada")))
+    assert isomorphic(parse(serialize(graph, "json-ld"), "json-ld"), graph)
+
+
+def test_expanded_json_ld_needs_no_context() -> None:
+    nodes = json.loads(serialize(built(MODEL).graph, "json-ld-expanded"))
+    story = next(node for node in nodes if node["@id"] == "https://example.org/t/fetching")
+    assert story["@type"] == [f"{PREFIXES['bdd']}UserStory"]
+    assert not [node for node in nodes if "@context" in node]
+
+
+def described(value: Any) -> list[dict[str, Any]]:
+    """Return all nodes inside a JSON value that have more than a name."""
+    if isinstance(value, list):
+        return [node for item in cast("list[Any]", value) for node in described(item)]
+    if not isinstance(value, dict):
+        return []
+    node = cast("dict[str, Any]", value)
+    inner = [found for item in node.values() for found in described(item)]
+    return [node, *inner] if "@id" in node and len(node) > 1 else inner
 
 
 def test_json_ld_uses_a_term_for_everything_that_the_language_can_say() -> None:
-    document = json.loads(serialize(built(EVERYTHING).graph, "json-ld"))
-    keys = {key for node in document["@graph"] for key in node}
-    types = {kind for node in document["@graph"] for kind in _types(node)}
+    nodes = described(json.loads(serialize(built(EVERYTHING).graph, "json-ld"))["@graph"])
+    keys = {key for node in nodes for key in node}
+    types = {kind for node in nodes for kind in _types(node)}
+    assert len(nodes) > 50
     assert not [name for name in keys | types if ":" in name or "/" in name]
 
 
-def _types(node: dict[str, str | list[str]]) -> list[str]:
+def _types(node: dict[str, Any]) -> list[str]:
     types = node.get("@type", [])
     return [types] if isinstance(types, str) else types
 
@@ -137,5 +177,5 @@ def test_a_text_that_is_no_graph_is_refused_with_a_sentence(form: str, text: str
 
 
 def test_an_unknown_format_names_the_known_ones() -> None:
-    with pytest.raises(ValueError, match="'n3' is no graph format; there are ttl, json-ld, nt, xml"):
+    with pytest.raises(ValueError, match="'n3' is no graph format; there are ttl, json-ld, json-ld-expanded, nt, xml"):
         serialize(Graph(), "n3")

@@ -19,6 +19,14 @@ def compact(expanded: list[Json], context: Json) -> Json:
     return cast(Json, jsonld.compact(expanded, {"@context": context}, options))
 
 
+def frame(expanded: list[Json], context: Json, kind: str) -> list[Json]:
+    """Return the nodes of a class (a CURIE of the context), each with all that it leads to inside it, once."""
+    jsonld = _jsonld()
+    options = {"documentLoader": ContextLoader(), "omitGraph": False, "omitDefault": True}
+    framed = jsonld.frame(expanded, {"@context": context, "@type": kind, "@embed": "@once"}, options)
+    return cast("list[Json]", framed["@graph"])
+
+
 def triples(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[Json, Json, Json]]:
     """Yield the triples of a JSON-LD document, of all its graphs, as ``{type, value, datatype, language}`` objects.
 

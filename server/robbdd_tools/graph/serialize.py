@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import urljoin
 
 from robbdd_tools.graph.canonical import canonical
 from robbdd_tools.graph.contexts import ContextLoader, Json, UnknownContext
 from robbdd_tools.graph.jsonld import context_for, expanded
-from robbdd_tools.graph.libraries import compact, json_object, triples
+from robbdd_tools.graph.libraries import compact, frame, json_object, triples
 from robbdd_tools.graph.prefixes import bind_prefixes, user_prefixes
 from robbdd_tools.graph.vocabulary import expand
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rdflib import Graph
     from rdflib.term import Node
 
-FORMATS = {"ttl": "turtle", "json-ld": "json-ld", "nt": "nt", "xml": "xml"}
+FORMATS = {"ttl": "turtle", "json-ld": "json-ld", "json-ld-expanded": "json-ld", "nt": "nt", "xml": "xml"}
 """Our name of a format → rdflib's."""
 
 
@@ -40,12 +40,39 @@ def serialize(graph: Graph, format: str) -> str:
     prefixes = bind_prefixes(ordered, user_prefixes(graph))
     if format == "json-ld":
         context = context_for(prefixes)
-        compacted = compact(expanded(ordered), context)
-        document = {"@context": context, "@graph": compacted.get("@graph", [])}
+        document = {"@context": context, "@graph": _by_story(expanded(ordered), context)}
         return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+    if format == "json-ld-expanded":
+        return json.dumps(expanded(ordered), indent=2, ensure_ascii=False) + "\n"
     if format == "nt":
         return "".join(sorted(ordered.serialize(format="nt").splitlines(keepends=True)))
     return ordered.serialize(format=FORMATS[format]).strip("\n") + "\n"
+
+
+def _by_story(nodes: list[Json], context: Json) -> list[Json]:
+    """Return each story with all that belongs to it inside, then the nodes that belong to none.
+
+    A graph with blank nodes beside its lists is left flat: what their labels join must not come apart.
+    """
+    compacted: list[Json] = compact(nodes, context).get("@graph", [])
+    stories = [node for node in nodes if expand("bdd:UserStory") in node.get("@type", ())]
+    if not stories or any(str(node["@id"]).startswith("_:") for node in nodes):
+        return compacted
+    described: set[str] = set()
+    framed = [_once(story, described) for story in frame(nodes, context, expand("bdd:UserStory"))]
+    return [*framed, *(node for node in compacted if node["@id"] not in described)]
+
+
+def _once(value: Any, described: set[str]) -> Any:
+    """Replace what was described before by its name: a list that is written twice would be two lists."""
+    if isinstance(value, list):
+        return [_once(item, described) for item in cast("list[Any]", value)]
+    fields = json_object(value)
+    if len(fields) > 1 and "@id" in fields:
+        if fields["@id"] in described:
+            return {"@id": fields["@id"]}
+        described.add(fields["@id"])
+    return {key: _once(item, described) for key, item in fields.items()} if fields else value
 
 
 def parse(text: str, format: str, base: str = "", loader: ContextLoader | None = None) -> Graph:
@@ -60,7 +87,7 @@ def parse(text: str, format: str, base: str = "", loader: ContextLoader | None =
     graph = Graph(bind_namespaces="none")
     loader = loader or ContextLoader()
     try:
-        if format == "json-ld":
+        if FORMATS[format] == "json-ld":
             document: Any = json.loads(text)
             for subject, predicate, value in triples(document, base, loader):
                 graph.add((_node(subject), _node(predicate), _node(value)))
