@@ -276,7 +276,7 @@ OTHER_EVENT = "ns t = 'https://example.org/t/'\nEvent (ns=t) kept\n"
             "t:bench-to-tray bdd:of-template t:fetch",
             "bdd:has-scene lab:",
         ),
-        (MODEL.replace("task: <task>", "task: <"), "t:fetching a bdd:UserStory", "t:fetch a"),
+        (MODEL.replace("task: <task>", "task: <"), "t:fetch a bdd:ScenarioTemplate", "of-task"),
         (MODEL.replace('import "lab.scene"', 'import "none.scene"'), "t:fetch a bdd:ScenarioTemplate", "lab:"),
     ],
 )

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from kit import EXAMPLES, MODEL, SCENE
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.checks.memo import nothing_kept
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names.analysis import FileAnalysis
 from robbdd_tools.names.project import Project
@@ -128,4 +129,6 @@ def _compare(edited: Project, files: dict[str, str], changed: str, version: int)
     for uri, text in files.items():
         fresh.open(uri, 0, text)
     for uri in files:
-        assert known(edited, uri) == known(fresh, uri)
+        with nothing_kept():
+            expected = known(fresh, uri)
+        assert known(edited, uri) == expected

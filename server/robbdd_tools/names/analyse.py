@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity, sort_key
 from robbdd_tools.names.analysis import Definition, FileAnalysis, ImportLink, PlacedDeclaration
 from robbdd_tools.names.namespaces import without_namespace
 from robbdd_tools.names.problems import repeated, unresolved
@@ -15,6 +15,7 @@ from robbdd_tools.names.resolve import Resolution, Targets, resolve_file
 if TYPE_CHECKING:
     from robbdd_tools.names.index import FileIndex
     from robbdd_tools.names.scope import Scope
+    from robbdd_tools.syntax.declaration import SyntaxFault
 
 
 class Definitions(Mapping[str, Definition]):
@@ -32,7 +33,8 @@ class Definitions(Mapping[str, Definition]):
         return path in self._names
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
+        """Yield the names in the order of the text, whatever edits led to it."""
+        return iter(sorted(self._names, key=lambda path: self._names[path][0].place))
 
     def __len__(self) -> int:
         return len(self._names)
@@ -69,10 +71,18 @@ def analyse(
 
 def syntax_errors(index: FileIndex) -> list[Diagnostic]:
     """Return the syntax errors of a file."""
-    uri = index.document.uri
     return [
-        Diagnostic(uri, fault.span.shifted(placed.offset), Severity.ERROR, "syntax", fault.message)
+        _syntax_error(index.document.uri, fault, placed.offset)
         for placed in index.declarations
         if placed.declaration.faults
         for fault in placed.declaration.faults
     ]
+
+
+def _syntax_error(uri: str, fault: SyntaxFault, offset: int) -> Diagnostic:
+    fixes: tuple[Fix, ...] = ()
+    if fault.fix is not None:
+        span = fault.fix.span.shifted(offset)
+        verb = "Insert" if span.start == span.end else "Change to"
+        fixes = (Fix(f"{verb} '{fault.fix.text}'", (Edit(uri, span, fault.fix.text),)),)
+    return Diagnostic(uri, fault.span.shifted(offset), Severity.ERROR, "syntax", fault.message, fixes=fixes)

@@ -9,11 +9,15 @@ position, so that alternatives which begin alike cost their common part once.
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from robbdd_tools.syntax import grammar
 
+DEEPEST = 6000
+"""Python calls within each other: some hundreds of brackets, far more than anybody writes. Calls of Python functions
+need no C stack."""
 _KEYWORD = re.compile(r"[^\d\W]\w*")
 _BLANK = re.compile(r"(?:[ \t\r\n]+|//[^\n]*)*")
 Log = list[tuple[str, Any]]
@@ -69,6 +73,8 @@ class Compiled:
     def parse(self, text: str) -> tuple[Node | None, State]:
         """Parse a whole text; ``None`` with the state that tells why when it does not follow the grammar."""
         state = State(text)
+        if sys.getrecursionlimit() < DEEPEST:
+            sys.setrecursionlimit(DEEPEST)
         try:
             found = self._maker(self._root)(state, 0)
         except RecursionError:
