@@ -19,7 +19,7 @@ from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names.analysis import FileAnalysis
 from robbdd_tools.names.project import Project
 
-SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "220"))
+SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "340"))
 PIECES = (
     "",
     " ",

@@ -94,6 +94,7 @@ def _matched(config: Path, text: str, patterns: list[str]) -> ProjectShapes:
     for pattern in patterns:
         try:
             matched = sorted(path for path in config.parent.glob(pattern) if path.is_file())
+        # pathlib raises NotImplementedError for a pattern that is an absolute path.
         except (ValueError, NotImplementedError, OSError) as error:
             faults.append(_fault(config, _key_offset(text), "config", f"'{pattern}' is no file pattern: {error}"))
             continue
