@@ -3,111 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import shutil
-import sys
-from collections.abc import AsyncIterator
-from pathlib import Path
 from typing import Any
 
 import pytest
-import pytest_lsp
 from lsprotocol import types
-from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
-from kit import EXAMPLES
-from robbdd_tools.base.files import path_to_uri
-
-PATIENCE = 60.0
-
-
-CLIENTS = pytest.mark.parametrize("client", ["visual-studio-code", "neovim", "emacs"], indirect=True)
-"""For tests whose answer depends on what the client can do."""
-
-
-@pytest.fixture
-def run_messages() -> list[Any]:
-    """What the server says about runs, in order."""
-    return []
-
-
-# pytest-lsp leaves the types of its decorator open.
-@pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
-    config=ClientServerConfig(server_command=[sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio"]),
-)
-async def client(
-    request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path, run_messages: list[Any]
-) -> AsyncIterator[None]:
-    def ignore(*_: object) -> None:
-        return None
-
-    def keep(message: Any) -> None:
-        run_messages.append(message.message)
-
-    lsp_client.feature(types.WORKSPACE_INLAY_HINT_REFRESH)(ignore)
-    lsp_client.feature("robbdd/runMessage")(keep)
-    shutil.copytree(EXAMPLES / "pickplace", tmp_path / "pickplace")
-    parameters = types.InitializeParams(
-        capabilities=client_capabilities(getattr(request, "param", "visual-studio-code")),
-        workspace_folders=[types.WorkspaceFolder(uri=path_to_uri(tmp_path), name="test")],
-    )
-    await lsp_client.initialize_session(parameters)
-    yield
-    await lsp_client.shutdown_session()
-
-
-class Editor:
-    """A document open in a client."""
-
-    def __init__(self, client: LanguageClient, folder: Path) -> None:
-        self.client = client
-        self.path = folder / "pickplace" / "pickplace.bdd"
-        self.uri = path_to_uri(self.path)
-        self.text = self.path.read_text(encoding="utf-8")
-        self.version = 0
-
-    def open(self, text: str | None = None) -> None:
-        self.text = self.text if text is None else text
-        item = types.TextDocumentItem(uri=self.uri, language_id="bdd", version=self.version, text=self.text)
-        self.client.text_document_did_open(types.DidOpenTextDocumentParams(text_document=item))
-
-    def change(self, old: str, new: str) -> None:
-        assert old in self.text
-        start, end = self.position(old), self.position(old, after=True)
-        self.text = self.text.replace(old, new, 1)
-        self.version += 1
-        edit = types.TextDocumentContentChangePartial(range=types.Range(start=start, end=end), text=new)
-        document = types.VersionedTextDocumentIdentifier(uri=self.uri, version=self.version)
-        self.client.text_document_did_change(
-            types.DidChangeTextDocumentParams(text_document=document, content_changes=[edit])
-        )
-
-    def position(self, text: str, after: bool = False) -> types.Position:
-        offset = self.text.index(text) + (len(text) if after else 0)
-        line = self.text.count("\n", 0, offset)
-        column = offset - (self.text.rfind("\n", 0, offset) + 1)
-        return types.Position(line=line, character=column)
-
-    def at(self, text: str, after: bool = False) -> dict[str, Any]:
-        document = types.TextDocumentIdentifier(uri=self.uri)
-        return {"text_document": document, "position": self.position(text, after)}
-
-    def everything(self) -> types.Range:
-        end = types.Position(line=self.text.count("\n") + 1, character=0)
-        return types.Range(start=types.Position(line=0, character=0), end=end)
-
-    async def diagnostics(self, *codes: str) -> list[types.Diagnostic]:
-        """Wait until exactly these codes are published for the document."""
-        async with asyncio.timeout(PATIENCE):
-            while True:
-                found = list(self.client.diagnostics.get(self.uri, []))
-                if self.uri in self.client.diagnostics and sorted(str(entry.code) for entry in found) == sorted(codes):
-                    return found
-                await asyncio.sleep(0.02)
-
-
-@pytest.fixture
-def editor(client: LanguageClient, tmp_path: Path) -> Editor:
-    return Editor(client, tmp_path)
+from lsp_kit import CLIENTS, PATIENCE, Editor
 
 
 @CLIENTS

@@ -21,6 +21,7 @@ from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
 from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.lsp.tokens import register_tokens
 from robbdd_tools.names.project import Snapshot
 
 RUN, GHERKIN, CANCEL = "robbdd.run", "robbdd.gherkin", "robbdd.cancel"
@@ -34,6 +35,7 @@ def create_server() -> RobbddServer:
     _register_actions(server)
     _register_commands(server)
     register_navigation(server)
+    register_tokens(server)
     return server
 
 

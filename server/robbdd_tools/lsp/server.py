@@ -45,6 +45,8 @@ class RobbddServer(LanguageServer):
         self._analysis = ThreadPoolExecutor(1, thread_name_prefix="analysis")
         self._validator = ShapeValidator(self._shapes_found)
         self._opened: dict[str, None] = {}
+        self.when_closed: list[Callable[[str], None]] = []
+        """Called with the URI of each document that the client closes."""
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def analyse(self, work: Callable[[Snapshot], Result]) -> Result:
@@ -65,6 +67,8 @@ class RobbddServer(LanguageServer):
         self._opened.pop(uri, None)
         self._shapes.pop(uri, None)
         self._validator.forget(uri)
+        for forget in self.when_closed:
+            forget(uri)
         await self._in_thread(lambda: self.project.close(uri))
         self._send(uri, None, [])
         await self.publish(uri)

@@ -1,0 +1,170 @@
+"""Semantic tokens on the wire: standard types, which every theme colours, with the language's concepts as modifiers.
+
+A theme that knows nothing of RobBDD colours by the type; one that does can tell a story from a template by the
+modifier (``class.story``), in any client.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from lsprotocol import types
+
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.features import semantic_tokens as feature
+from robbdd_tools.features.semantic_tokens import Token, semantic_tokens
+from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.names.project import Snapshot
+from robbdd_tools.syntax.declaration import SymbolKind
+
+_TYPES = types.SemanticTokenTypes
+APPEARANCES: Mapping[str, tuple[str, ...]] = {
+    feature.COMMENT: (_TYPES.Comment.value,),
+    feature.STRING: (_TYPES.String.value,),
+    feature.NUMBER: (_TYPES.Number.value,),
+    feature.KEYWORD: (_TYPES.Keyword.value,),
+    feature.TIME: (_TYPES.Modifier.value, "time"),
+    feature.PREDICATE: (_TYPES.Function.value, "predicate", "defaultLibrary"),
+    feature.ACTION: (_TYPES.Method.value, "behaviour", "defaultLibrary"),
+    feature.ARGUMENT: (_TYPES.Parameter.value,),
+    feature.CODE: (_TYPES.Macro.value,),
+    SymbolKind.NAMESPACE: (_TYPES.Namespace.value,),
+    SymbolKind.STORY: (_TYPES.Class.value, "story"),
+    SymbolKind.TEMPLATE: (_TYPES.Class.value, "template"),
+    SymbolKind.VARIANT: (_TYPES.Interface.value, "variant"),
+    SymbolKind.FLUENT: (_TYPES.Property.value, "clause"),
+    SymbolKind.BEHAVIOUR: (_TYPES.Method.value, "behaviour"),
+    SymbolKind.BEHAVIOUR_TREE: (_TYPES.Struct.value, "behaviour"),
+    SymbolKind.TREE_NODE: (_TYPES.Property.value, "behaviour"),
+    SymbolKind.EVENT: (_TYPES.Event.value,),
+    SymbolKind.TASK: (_TYPES.EnumMember.value, "task"),
+    SymbolKind.VARIABLE: (_TYPES.Variable.value,),
+    SymbolKind.SET_VARIABLE: (_TYPES.Variable.value, "set"),
+    SymbolKind.OBJECT: (_TYPES.EnumMember.value, "object"),
+    SymbolKind.WORKSPACE: (_TYPES.EnumMember.value, "workspace"),
+    SymbolKind.AGENT: (_TYPES.EnumMember.value, "agent"),
+    SymbolKind.OBJECT_SET: (_TYPES.Enum.value, "set", "object"),
+    SymbolKind.WORKSPACE_SET: (_TYPES.Enum.value, "set", "workspace"),
+    SymbolKind.AGENT_SET: (_TYPES.Enum.value, "set", "agent"),
+    SymbolKind.CONSTANT_SET: (_TYPES.Enum.value, "set"),
+    SymbolKind.COMPOSITION: (_TYPES.Struct.value, "composition"),
+    SymbolKind.SCENE: (_TYPES.Struct.value, "scene"),
+    SymbolKind.SCENE_INSTANCE: (_TYPES.Struct.value, "scene", "execution"),
+    SymbolKind.DISTRIBUTION: (_TYPES.Type.value, "distribution"),
+    SymbolKind.TREE_TEMPLATE: (_TYPES.Class.value, "tree"),
+    SymbolKind.TREE: (_TYPES.Struct.value, "tree"),
+    SymbolKind.TREE_INSTANCE: (_TYPES.Struct.value, "tree"),
+    SymbolKind.GRAPH: (_TYPES.Struct.value, "tree"),
+    SymbolKind.BODY: (_TYPES.Property.value, "body"),
+    SymbolKind.FRAME: (_TYPES.Property.value, "frame"),
+    SymbolKind.POSE: (_TYPES.Property.value, "pose"),
+    SymbolKind.JOINT: (_TYPES.Property.value, "joint"),
+    SymbolKind.MODEL: (_TYPES.Property.value, "model"),
+    SymbolKind.SENSOR: (_TYPES.Property.value, "sensor"),
+    SymbolKind.IMPLEMENTATION: (_TYPES.Method.value, "execution"),
+    SymbolKind.PROVIDER: (_TYPES.Function.value, "observation"),
+    SymbolKind.OBSERVATION: (_TYPES.Property.value, "observation"),
+    SymbolKind.POLICY: (_TYPES.Function.value, "policy"),
+    SymbolKind.EXECUTION: (_TYPES.Class.value, "execution"),
+}
+"""For each concept its token type, then its modifiers."""
+
+_DECLARATION = types.SemanticTokenModifiers.Declaration.value
+LEGEND = types.SemanticTokensLegend(
+    token_types=list(dict.fromkeys(look[0] for look in APPEARANCES.values())),
+    token_modifiers=list(dict.fromkeys([_DECLARATION, *(word for look in APPEARANCES.values() for word in look[1:])])),
+)
+_TYPE_NUMBERS = {name: number for number, name in enumerate(LEGEND.token_types)}
+_MODIFIER_BITS = {name: 1 << number for number, name in enumerate(LEGEND.token_modifiers)}
+_NUMBERS = {
+    concept: (_TYPE_NUMBERS[look[0]], sum(_MODIFIER_BITS[word] for word in look[1:]))
+    for concept, look in APPEARANCES.items()
+}
+
+
+@dataclass
+class SentTokens:
+    """The tokens that a client has of each document, so that only what has changed must be sent."""
+
+    _count: int = 0
+    _sent: dict[str, tuple[str, Sequence[int]]] = field(default_factory=dict[str, tuple[str, Sequence[int]]])
+
+    def whole(self, uri: str, data: Sequence[int]) -> types.SemanticTokens:
+        """Return all tokens of a document, to be known by a new result identifier."""
+        self._count += 1
+        self._sent[uri] = (str(self._count), data)
+        return types.SemanticTokens(data=data, result_id=str(self._count))
+
+    def difference(
+        self, uri: str, previous: str, data: Sequence[int]
+    ) -> types.SemanticTokens | types.SemanticTokensDelta:
+        """Return what has changed since a result, all tokens when that result is not known any more."""
+        known, before = self._sent.get(uri, ("", ()))
+        now = self.whole(uri, data)
+        if known != previous:
+            return now
+        start = _common(before, data)
+        end = min(_common(before[::-1], data[::-1]), min(len(before), len(data)) - start)
+        edit = types.SemanticTokensEdit(
+            start=start, delete_count=len(before) - start - end, data=data[start : len(data) - end]
+        )
+        changed = edit.delete_count or edit.data
+        return types.SemanticTokensDelta(edits=[edit] if changed else [], result_id=now.result_id)
+
+    def forget(self, uri: str) -> None:
+        """Drop what is known of a closed document."""
+        self._sent.pop(uri, None)
+
+
+def encoded(convert: Converter, document: Document, tokens: Sequence[Token]) -> list[int]:
+    """Return tokens as the protocol wants them: five numbers each, places relative to the token before."""
+    data: list[int] = []
+    line, column = 0, 0
+    for token in tokens:
+        start = convert.position(document, token.span.start)
+        length = convert.position(document, token.span.end).character - start.character
+        kind, modifiers = _NUMBERS[token.concept]
+        if token.is_declaration:
+            modifiers |= _MODIFIER_BITS[_DECLARATION]
+        column = start.character - (column if start.line == line else 0)
+        data += (start.line - line, column, length, kind, modifiers)
+        line, column = start.line, start.character
+    return data
+
+
+def register_tokens(server: RobbddServer) -> None:
+    """Add the methods to a server."""
+    sent = SentTokens()
+    server.when_closed.append(sent.forget)
+
+    async def data_of(ls: RobbddServer, uri: str, range: types.Range | None = None) -> list[int]:
+        def find(snapshot: Snapshot) -> list[int]:
+            document = document_of(snapshot, uri)
+            within: Span | None = None if range is None else ls.convert.span(document, range)
+            return encoded(ls.convert, document, semantic_tokens(snapshot, uri, within))
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, LEGEND)
+    async def whole(ls: RobbddServer, params: types.SemanticTokensParams) -> types.SemanticTokens:
+        uri = params.text_document.uri
+        return sent.whole(uri, await data_of(ls, uri))
+
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, LEGEND)
+    async def difference(
+        ls: RobbddServer, params: types.SemanticTokensDeltaParams
+    ) -> types.SemanticTokens | types.SemanticTokensDelta:
+        uri = params.text_document.uri
+        return sent.difference(uri, params.previous_result_id, await data_of(ls, uri))
+
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, LEGEND)
+    async def part(ls: RobbddServer, params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
+        return types.SemanticTokens(data=await data_of(ls, params.text_document.uri, params.range))
+
+
+def _common(one: Sequence[int], other: Sequence[int]) -> int:
+    """Return how many tokens two results begin with in common, counted in numbers."""
+    length = next((at for at, (left, right) in enumerate(zip(one, other, strict=False)) if left != right), None)
+    return min(len(one), len(other)) if length is None else length
