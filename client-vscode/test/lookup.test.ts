@@ -7,7 +7,7 @@ function machine(programs: readonly string[], changes: Partial<Surroundings> = {
   return {
     setting: "",
     trusted: true,
-    folders: ["/work/cell"],
+    folders: ["/srv/cell"],
     python: undefined,
     searchPath: "/usr/local/bin:/usr/bin",
     home: "/home/ada",
@@ -20,7 +20,7 @@ function machine(programs: readonly string[], changes: Partial<Surroundings> = {
 const EVERYWHERE = [
   "/opt/robbdd-lsp",
   "/envs/robots/bin/robbdd-lsp",
-  "/work/cell/.venv/bin/robbdd-lsp",
+  "/srv/cell/.venv/bin/robbdd-lsp",
   "/usr/bin/robbdd-lsp",
 ];
 
@@ -44,7 +44,7 @@ test("a relative setting is refused", () => {
 });
 
 test("the setting understands the home folder and the workspace folder", () => {
-  const programs = ["/home/ada/bin/robbdd-lsp", "/work/cell/tools/robbdd-lsp"];
+  const programs = ["/home/ada/bin/robbdd-lsp", "/srv/cell/tools/robbdd-lsp"];
   assert.equal(outcome(machine(programs, { setting: "~/bin/robbdd-lsp" })), programs[0]);
   assert.equal(outcome(machine(programs, { setting: "${workspaceFolder}/tools/robbdd-lsp" })), programs[1]);
 });
@@ -54,7 +54,7 @@ test("the selected Python environment comes before .venv", () => {
 });
 
 test("a selected environment without the server is passed over", () => {
-  assert.equal(outcome(machine(EVERYWHERE, { python: "/usr/local/bin/python" })), "/work/cell/.venv/bin/robbdd-lsp");
+  assert.equal(outcome(machine(EVERYWHERE, { python: "/usr/local/bin/python" })), "/srv/cell/.venv/bin/robbdd-lsp");
 });
 
 test(".venv comes before PATH, in the order of the folders", () => {
@@ -71,10 +71,10 @@ test("a relative entry of PATH is never used", () => {
 });
 
 test("an untrusted workspace brings no server of its own", () => {
-  const around = machine(["/work/cell/.venv/bin/robbdd-lsp", "/envs/robots/bin/robbdd-lsp"], {
+  const around = machine(["/srv/cell/.venv/bin/robbdd-lsp", "/envs/robots/bin/robbdd-lsp"], {
     trusted: false,
     python: "/envs/robots/bin/python",
-    searchPath: "/work/cell/.venv/bin:/usr/bin",
+    searchPath: "/srv/cell/.venv/bin:/usr/bin",
   });
   assert.match(outcome(around), /was not found.*not trusted/);
 });
@@ -89,7 +89,7 @@ test("a missing server says how to install it and where it was looked for", () =
   assert.match(lookup.problem, /pip install robbdd-tools/);
   assert.deepEqual(lookup.tried, [
     "/envs/robots/bin/robbdd-lsp",
-    "/work/cell/.venv/bin/robbdd-lsp",
+    "/srv/cell/.venv/bin/robbdd-lsp",
     "/usr/local/bin/robbdd-lsp",
     "/usr/bin/robbdd-lsp",
   ]);
