@@ -72,7 +72,9 @@ def _parser() -> argparse.ArgumentParser:
 
     run = commands.add_parser("run", help="execute the scenarios of a model in simulation and judge every clause")
     run.add_argument("path", metavar="FILE", type=Path)
-    run.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario variant; may be repeated")
+    run.add_argument(
+        "--scenario", metavar="NAME", action="append", help="only this scenario variant or execution; may be repeated"
+    )
     run.add_argument("--seed", type=int, default=None, help="decides everything random (default: 1)")
     run.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     run.add_argument("-o", "--output", metavar="DIR", type=Path, help="keep features, manifest and log here")
@@ -155,7 +157,7 @@ def _run(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.run import Outputs, run
 
     outputs = Outputs(options.json, options.output, options.record)
-    return run(options.path, wanted(options), options.scenario, outputs)
+    return run(options.path, wanted(options), options.scenario, outputs, options.seed)
 
 
 def _import(options: argparse.Namespace) -> int:

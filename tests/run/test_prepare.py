@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from kit import MODEL, SCENE, fixture
+from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.model import AcceptanceModel, Iri
+from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri
 from robbdd_tools.graph.read import read_model
 from robbdd_tools.run.prepare import RunRequest, prepare
-from robbdd_tools.run.protocol import Manifest, read_manifest
+from robbdd_tools.run.protocol import ExecutionSpec, Manifest, read_manifest
 
 
 def model(text: str = MODEL) -> AcceptanceModel:
@@ -78,3 +80,35 @@ def test_the_same_model_and_seed_give_the_same_bytes(tmp_path: Path) -> None:
     for path in (tmp_path / "a").rglob("*.*"):
         if path.is_file():
             assert path.read_bytes() == (tmp_path / "b" / path.relative_to(tmp_path / "a")).read_bytes()
+
+
+def test_each_execution_has_its_scenarios_its_seed_and_its_features(tmp_path: Path) -> None:
+    plain = model()
+    variant = plain.stories[0].variants[0].iri
+    own, other = Implementation("x:own", "catalog", "pick-place"), Implementation("x:other", "python", "a.b:C")
+    executions = (
+        Execution(Iri("https://example.org/t/once"), variant, own, seed=7),
+        Execution(Iri("https://example.org/t/again"), variant, other, repeat=3, timeout=20.0),
+    )
+    written = prepare(RunRequest(replace(plain, executions=executions), "main.bdd", 1), tmp_path)
+    assert read_manifest(tmp_path) == written
+    first, second = (
+        [entry for entry in written.scenarios if entry.execution is not None and entry.execution.name == name]
+        for name in ("t:once", "t:again")
+    )
+    assert [entry.name for entry in first] == [entry.name for entry in second]
+    assert len(first) * 2 == len(written.scenarios)
+    assert {Path(entry.feature).parent.name for entry in first} == {"once"}
+    alone = prepare(RunRequest(plain, "main.bdd", 7), tmp_path / "alone")
+    assert [entry.seed for entry in first] == [entry.seed for entry in alone.scenarios]
+    assert {entry.seed for entry in first}.isdisjoint({entry.seed for entry in second})
+    assert second[0].execution == ExecutionSpec(executions[1].iri, "t:again", other, (), 3, 20.0)
+
+
+def test_only_chosen_executions_are_run(tmp_path: Path) -> None:
+    plain = model()
+    variant, own = plain.stories[0].variants[0].iri, Implementation("x:own", "catalog", "pick-place")
+    one, two = (Execution(Iri(f"https://example.org/t/{name}"), variant, own) for name in ("one", "two"))
+    request = RunRequest(replace(plain, executions=(one, two)), "main.bdd", executions=(two,))
+    names = {entry.execution.name for entry in prepare(request, tmp_path).scenarios if entry.execution is not None}
+    assert names == {"t:two"}

@@ -67,20 +67,22 @@ def _write(plan: FeaturePlan, total: int | None, options: GherkinOptions, json_l
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    from robbdd_tools.gherkin.feature import feature_file_name
-    from robbdd_tools.run.prepare import FEATURES, lay_out, write_surroundings
+    from robbdd_tools.run.prepare import lay_out, write_surroundings
 
     write_surroundings(options.folder, options.path.stem, json_ld)
     console = Console(stderr=True)
     columns = (TextColumn("writing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("writing", total=total)
-        specs = lay_out(plan, options.path.name, options.wanted.seed, options.folder)
-        for written, _ in enumerate(specs, start=1):
+        executions = plan.model.executions
+        specs = lay_out(plan, options.path.name, options.wanted.seed, options.folder, executions)
+        features: dict[str, None] = {}
+        for written, spec in enumerate(specs, start=1):
+            features[spec.feature] = None
             if written % EVERY == 0:
                 progress.update(task, completed=written)
-    for story in plan.stories:
-        print(options.folder / FEATURES / feature_file_name(plan.model, story))
+    for feature in features:
+        print(options.folder / feature)
 
 
 def _failed(message: str) -> int:

@@ -7,7 +7,7 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,7 +24,7 @@ from robbdd_tools.run.results import RunResults
 
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.select import Selected, Wanted
-    from robbdd_tools.graph.model import AcceptanceModel, Iri
+    from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +36,12 @@ class Outputs:
     record: Path | None = None
 
 
-def run(path: Path, wanted: Wanted, names: Sequence[str] | None, outputs: Outputs) -> int:
-    """Run a model; returns the exit code. ``names`` selects scenario variants by name, ``wanted`` their scenarios."""
+def run(path: Path, wanted: Wanted, names: Sequence[str] | None, outputs: Outputs, seed: int | None = None) -> int:
+    """Run a model; returns the exit code.
+
+    ``names`` selects executions and scenario variants by name, ``wanted`` the scenarios of these; ``seed`` is the one
+    that goes before those of executions.
+    """
     report = outputs.report
     if report is not None and not report.absolute().parent.is_dir():
         print(f"robbdd: cannot write {report}: there is no folder {report.parent}", file=sys.stderr)
@@ -45,14 +49,17 @@ def run(path: Path, wanted: Wanted, names: Sequence[str] | None, outputs: Output
     model = _model(path)
     if model is None:
         return FAILED
-    variants = _variants(model, names)
-    if isinstance(variants, str):
-        print(f"robbdd: {variants}", file=sys.stderr)
+    chosen = _chosen(model, names)
+    if isinstance(chosen, str):
+        print(f"robbdd: {chosen}", file=sys.stderr)
         return FAILED
+    variants, executions = chosen
     selected = _selected(model, variants, wanted)
     if selected is None:
         return FAILED
-    request = RunRequest(model, str(path), wanted.seed, variants, selected.scenarios)
+    if seed is not None:
+        executions = tuple(replace(execution, seed=None) for execution in executions)
+    request = RunRequest(model, str(path), wanted.seed, variants, selected.scenarios, executions)
     try:
         with _folder(outputs.folder) as folder:
             results, interrupted = _execute(request, Path(folder))
@@ -93,15 +100,30 @@ def _model(path: Path) -> AcceptanceModel | None:
     return model
 
 
-def _variants(model: AcceptanceModel, names: Sequence[str] | None) -> frozenset[Iri] | str | None:
-    """Return the variants of some names; a sentence when a name is not among them."""
-    if not names:
-        return None
-    known = {model.curie(variant.iri).rsplit(":", 1)[-1]: variant.iri for s in model.stories for variant in s.variants}
-    missing = [name for name in names if name not in known]
+def _chosen(
+    model: AcceptanceModel, names: Sequence[str] | None
+) -> tuple[frozenset[Iri] | None, tuple[Execution, ...]] | str:
+    """Return the variants (all when ``None``) and executions of some names; a sentence for a name that is neither's.
+
+    A model with executions has those variants only that these execute.
+    """
+    executions = model.executions
+    variants = [variant.iri for story in model.stories for variant in story.variants]
+    if executions:
+        variants = [iri for iri in variants if any(execution.variant == iri for execution in executions)]
+    known = {_name(model, iri) for iri in (*variants, *(execution.iri for execution in executions))}
+    missing = [name for name in names or () if name not in known]
     if missing:
-        return f"there is no scenario '{missing[0]}'; the model has {', '.join(known)}"
-    return frozenset(known[name] for name in names)
+        return f"there is no scenario '{missing[0]}'; the model has {', '.join(sorted(known))}"
+    if names:
+        named = [one for one in executions if {_name(model, one.iri), _name(model, one.variant)} & set(names)]
+        executions = tuple(named)
+        variants = [execution.variant for execution in named] or [iri for iri in variants if _name(model, iri) in names]
+    return (frozenset(variants) if names or executions else None), executions
+
+
+def _name(model: AcceptanceModel, iri: Iri) -> str:
+    return model.curie(iri).rsplit(":", 1)[-1]
 
 
 def _selected(model: AcceptanceModel, variants: frozenset[Iri] | None, wanted: Wanted) -> Selected | None:

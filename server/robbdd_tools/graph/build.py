@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.graph.built import BuiltGraph as BuiltGraph
 from robbdd_tools.graph.built import Clash
 from robbdd_tools.graph.clauses import ClauseWriter, add_time
+from robbdd_tools.graph.executions import add_execution
 from robbdd_tools.graph.foreign import graph_format, read_graph_file
 from robbdd_tools.graph.prefixes import bind_prefixes, prefix_for
 from robbdd_tools.graph.reach import Reached, doubtful, reach
@@ -96,6 +97,8 @@ def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
     stories = [(root, frame) for root, frame in placed if isinstance(root, tree.Story)]
     for position, (story, frame) in enumerate(stories):
         add_story(frame, known, story, position)
+    for position, (root, frame) in enumerate(placed):
+        add_execution(frame, root, position)
 
 
 def _add_simple(frame: Frame, scenes: Scenes, root: tree.DeclarationTree) -> None:

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.time import TimeConstraint
 
 
@@ -185,17 +187,36 @@ class Story:
 
 
 @dataclass(frozen=True, slots=True)
+class Execution:
+    """How a scenario variant is executed.
+
+    ``implementation`` executes its behaviours, ``policies`` judge clauses of it in place of the predicates.
+    ``repeat`` is how often, ``seed`` decides everything random (``None``: the run's), ``timeout`` is in seconds of
+    simulated time.
+    """
+
+    iri: Iri
+    variant: Iri
+    implementation: Implementation
+    policies: tuple[Policy, ...] = ()
+    repeat: int = 1
+    seed: int | None = None
+    timeout: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class AcceptanceModel:
     """Everything a graph says about acceptance criteria.
 
     ``kinds`` tells of every element its kind (``object``, ``workspace``, ``agent``); ``sets`` holds the constant
-    sets; ``prefixes`` maps prefix to namespace for writing CURIEs.
+    sets; ``prefixes`` maps prefix to namespace for writing CURIEs; ``executions`` are in written order.
     """
 
     stories: tuple[Story, ...]
     kinds: Mapping[Iri, str]
     sets: Mapping[Iri, tuple[Value, ...]]
     prefixes: Mapping[str, str]
+    executions: tuple[Execution, ...] = ()
 
     def curie(self, iri: str) -> str:
         """Shorten an IRI by the longest matching namespace; one that none matches is returned as it is."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.graph.model import AcceptanceModel, Clause, Iri, SceneModel, Story, Template, Value, Variant
 from robbdd_tools.graph.prefixes import user_prefixes
 from robbdd_tools.graph.read_clauses import ClauseReader, used_names
+from robbdd_tools.graph.read_executions import read_executions
 from robbdd_tools.graph.read_variation import VariationReader
 from robbdd_tools.graph.records import Incomplete, Records
 from robbdd_tools.graph.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
@@ -27,7 +28,8 @@ def read_model(graph: Graph) -> AcceptanceModel:
     kinds = {node: kind for kind, type_ in ELEMENT_TYPES.items() for node in records.instances(type_)}
     stories = story_order(records)
     reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
-    return AcceptanceModel(tuple(reader.story(node) for node in stories), kinds, sets, user_prefixes(graph))
+    every = tuple(reader.story(node) for node in stories)
+    return AcceptanceModel(every, kinds, sets, user_prefixes(graph), read_executions(records))
 
 
 def incomplete_variants(graph: Graph) -> dict[Iri, str]:

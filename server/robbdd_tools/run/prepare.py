@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Collection, Iterable, Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from robbdd_tools.gherkin.feature import Numbered, every_scenario
 from robbdd_tools.gherkin.files import FeaturePlan, only, whole_plan, written_scenarios
-from robbdd_tools.graph.model import AcceptanceModel, Iri, Story, Variant
-from robbdd_tools.run.protocol import MANIFEST, Manifest, ScenarioSpec
+from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri, Story, Variant
+from robbdd_tools.run.protocol import MANIFEST, ExecutionSpec, Manifest, ScenarioSpec
 from robbdd_tools.run.specs import SpecWriter
 
 DEFAULT_SEED = 1
@@ -38,7 +38,9 @@ paths = {FEATURES}
 class RunRequest:
     """What to run: a model, the name it goes by in reports, the seed, and the variants (all when ``None``).
 
-    ``scenarios`` selects among those of a variant.
+    ``scenarios`` selects among those of a variant. A model with executions is run as they say, each of them the
+    scenarios of its variant, with a seed of its own where it has one; ``executions`` are those to run (all when
+    ``None``).
     """
 
     model: AcceptanceModel
@@ -46,6 +48,7 @@ class RunRequest:
     seed: int = DEFAULT_SEED
     variants: Collection[Iri] | None = None
     scenarios: Callable[[Variant], Iterable[Numbered]] = every_scenario
+    executions: tuple[Execution, ...] | None = None
 
     def wants(self, variant: Iri) -> bool:
         """Tell whether a variant is to be run."""
@@ -53,36 +56,75 @@ class RunRequest:
 
     def stories(self) -> tuple[Story, ...]:
         """Return the stories with a variant to be run, with those variants."""
-        stories = (only(story, self.wants) for story in self.model.stories)
-        return tuple(story for story in stories if story.variants)
+        return _stories(self.model.stories, self.wants)
+
+    def chosen_executions(self) -> tuple[Execution, ...]:
+        """Return the executions to be run, of the variants to be run."""
+        chosen = self.model.executions if self.executions is None else self.executions
+        return tuple(execution for execution in chosen if self.wants(execution.variant))
 
 
 def prepare(request: RunRequest, folder: Path) -> Manifest:
     """Write everything that the agent needs into ``folder`` (made if missing); raises ``OSError``."""
     plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
-    specs = tuple(lay_out(plan, request.name, request.seed, folder))
+    specs = tuple(lay_out(plan, request.name, request.seed, folder, request.chosen_executions()))
     return Manifest(request.name, request.seed, specs)
 
 
-def lay_out(plan: FeaturePlan, name: str, seed: int, folder: Path) -> Iterator[ScenarioSpec]:
+def lay_out(
+    plan: FeaturePlan, name: str, seed: int, folder: Path, executions: tuple[Execution, ...] = ()
+) -> Iterator[ScenarioSpec]:
     """Write features, hooks, steps and manifest into ``folder`` (made if missing), scenario by scenario.
 
-    ``name`` is that of the model in reports. Raises ``OSError`` and ``TemplateProblem``.
+    ``name`` is that of the model in reports. Each of the ``executions`` has a folder of features of its own.
+    Raises ``OSError`` and ``TemplateProblem``.
     """
     features = folder / FEATURES
     (features / "steps").mkdir(parents=True, exist_ok=True)
     (features / "environment.py").write_text(_ENVIRONMENT, encoding="utf-8", newline="\n")
     (features / "steps" / "catalog_steps.py").write_text(_STEPS, encoding="utf-8", newline="\n")
-    writer = SpecWriter(plan.model, seed)
+    parts = list(_parts(plan, seed, executions))
     with (folder / MANIFEST).open("w", encoding="utf-8", newline="\n") as manifest:
-        manifest.write(f'{{"model": {json.dumps(name, ensure_ascii=False)}, "seed": {seed}, "scenarios": [')
+        known = [asdict(part.writer.execution) for part in parts if part.writer.execution is not None]
+        head = {"model": name, "seed": seed, "executions": known}
+        manifest.write(json.dumps(head, ensure_ascii=False)[:-1] + ', "scenarios": [')
         separator = "\n"
-        for written in written_scenarios(plan, features):
-            spec = writer.spec(f"{FEATURES}/{written.file.name}", written.story.iri, written.scenario)
-            manifest.write(separator + json.dumps(spec, default=_fields, ensure_ascii=False))
-            separator = ",\n"
-            yield spec
+        for part in parts:
+            for written in written_scenarios(part.plan, folder / part.folder):
+                feature = f"{part.folder}/{written.file.name}"
+                spec = part.writer.spec(feature, written.story.iri, written.scenario)
+                manifest.write(separator + json.dumps(spec, default=_fields, ensure_ascii=False))
+                separator = ",\n"
+                yield spec
         manifest.write("\n]}\n")
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Scenarios that are executed in one way, with the folder of their features in that of the run."""
+
+    plan: FeaturePlan
+    writer: SpecWriter
+    folder: str
+
+
+def _parts(plan: FeaturePlan, seed: int, executions: tuple[Execution, ...]) -> Iterator[_Part]:
+    if not executions:
+        yield _Part(plan, SpecWriter(plan.model, seed), FEATURES)
+    names: set[str] = {"steps"}
+    for execution in executions:
+        own = replace(plan, stories=_stories(plan.stories, lambda iri, execution=execution: iri == execution.variant))
+        stem = plan.model.curie(execution.iri).rpartition(":")[2]
+        name = next(name for n in range(len(executions) + 2) if (name := f"{stem}-{n}" if n else stem) not in names)
+        names.add(name)
+        own_seed = seed if execution.seed is None else execution.seed
+        yield _Part(own, SpecWriter(plan.model, own_seed, execution), f"{FEATURES}/{name}")
+
+
+def _stories(stories: Iterable[Story], wanted: Callable[[Iri], bool]) -> tuple[Story, ...]:
+    """Return the stories with a wanted variant, with these variants only."""
+    chosen = (only(story, wanted) for story in stories)
+    return tuple(story for story in chosen if story.variants)
 
 
 def write_surroundings(folder: Path, model_name: str, json_ld: str) -> None:
@@ -92,8 +134,10 @@ def write_surroundings(folder: Path, model_name: str, json_ld: str) -> None:
     (folder / f"{model_name}.jsonld").write_text(json_ld, encoding="utf-8", newline="\n")
 
 
-def _fields(value: Any) -> dict[str, object]:
-    """Return the fields of a dataclass, for JSON; unlike ``asdict`` it copies nothing."""
+def _fields(value: Any) -> object:
+    """Return the fields of a dataclass, for JSON; unlike ``asdict`` it copies nothing. Executions are named."""
+    if isinstance(value, ExecutionSpec):
+        return value.iri
     return {name: getattr(value, name) for name in _names(value.__class__)}
 
 

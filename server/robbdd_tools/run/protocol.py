@@ -11,6 +11,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from robbdd_tools.base.plain import from_plain
+from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.monitor.policy import Policy
+
 MANIFEST = "manifest.json"
 
 
@@ -41,6 +45,22 @@ class SceneSpec:
 
 
 @dataclass(frozen=True, slots=True)
+class ExecutionSpec:
+    """How scenarios are executed, as a ``.bddx`` says: ``name`` is the execution's CURIE.
+
+    ``implementation`` executes the behaviours; ``policies`` judge the clauses that they name (by IRI; what they
+    observe are CURIEs). ``repeat`` is how often, ``timeout`` is in seconds of simulated time.
+    """
+
+    iri: str
+    name: str
+    implementation: Implementation
+    policies: tuple[Policy, ...] = ()
+    repeat: int = 1
+    timeout: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class ClauseSpec:
     """One clause of one scenario: the feature line of its step, the IRI it judges, its place in the scenario."""
 
@@ -56,7 +76,8 @@ class ScenarioSpec:
     """One execution: a scenario of a feature, with its values and clauses in order.
 
     ``events`` maps an event's CURIE to what emits it: ``scenario-start``, ``scenario-end`` or the name of an
-    event of the behaviour (``pick-start`` …); ``seed`` decides everything random in it.
+    event of the behaviour (``pick-start`` …); ``seed`` decides everything random in it. ``execution`` is how a
+    ``.bddx`` wants it executed, ``None`` for a scenario that is run as it is.
     """
 
     feature: str
@@ -70,6 +91,7 @@ class ScenarioSpec:
     scene: SceneSpec
     events: Mapping[str, str]
     clauses: tuple[ClauseSpec, ...]
+    execution: ExecutionSpec | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,19 +195,28 @@ def decode(line: str) -> RunMessage:
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:
     """Write the manifest into a run folder."""
-    text = json.dumps(asdict(manifest), indent=1, ensure_ascii=False)
-    (folder / MANIFEST).write_text(text + "\n", encoding="utf-8")
+    data = asdict(manifest)
+    for entry in data["scenarios"]:
+        entry["execution"] = entry["execution"] and entry["execution"]["iri"]
+    executions = {spec.execution.iri: spec.execution for spec in manifest.scenarios if spec.execution is not None}
+    data["executions"] = [asdict(execution) for execution in executions.values()]
+    (folder / MANIFEST).write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Read the manifest of a run folder; raises ``OSError`` or ``ValueError``."""
+    """Read the manifest of a run folder; raises ``OSError`` or ``ValueError``.
+
+    Scenarios name their execution by its IRI; the executions are beside them, each once.
+    """
     data = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    return Manifest(data["model"], data["seed"], tuple(_scenario(entry) for entry in data["scenarios"]))
+    executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
+    return Manifest(data["model"], data["seed"], tuple(_scenario(entry, executions) for entry in data["scenarios"]))
 
 
-def _scenario(entry: dict[str, Any]) -> ScenarioSpec:
+def _scenario(entry: dict[str, Any], executions: Mapping[str, ExecutionSpec]) -> ScenarioSpec:
     scene = entry.pop("scene")
     clauses = entry.pop("clauses")
+    execution = entry.pop("execution", None)
     return ScenarioSpec(
         scene=SceneSpec(
             tuple(scene["objects"]),
@@ -196,5 +227,6 @@ def _scenario(entry: dict[str, Any]) -> ScenarioSpec:
             tuple(ConfigSpec(**config) for config in scene["config"]),
         ),
         clauses=tuple(ClauseSpec(**clause) for clause in clauses),
+        execution=None if execution is None else executions[execution],
         **entry,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.feature import ScenarioText
@@ -15,6 +15,7 @@ from robbdd_tools.graph.model import (
     Cell,
     Clause,
     EventClause,
+    Execution,
     Fluent,
     ForAll,
     Iri,
@@ -22,7 +23,8 @@ from robbdd_tools.graph.model import (
     SceneModel,
     Variant,
 )
-from robbdd_tools.run.protocol import ClauseSpec, ConfigSpec, ScenarioSpec, SceneSpec
+from robbdd_tools.monitor.policy import Observation, Policy
+from robbdd_tools.run.protocol import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
 
 Values = Mapping[Iri, Cell]
 
@@ -39,13 +41,31 @@ class _Shared:
 
 
 class SpecWriter:
-    """Makes the specifications of the scenarios of one model."""
+    """Makes the specifications of the scenarios of one model, executed as ``execution`` wants, if there is one."""
 
-    def __init__(self, model: AcceptanceModel, seed: int) -> None:
+    def __init__(self, model: AcceptanceModel, seed: int, execution: Execution | None = None) -> None:
         self._model = model
         self._seed = seed
         self._curies: dict[str, str] = {}
         self._variants: dict[Iri, _Shared] = {}
+        self.execution = None if execution is None else self._execution(execution)
+
+    def _execution(self, execution: Execution) -> ExecutionSpec:
+        return ExecutionSpec(
+            execution.iri,
+            self._curie(execution.iri),
+            execution.implementation,
+            tuple(self._policy(policy) for policy in execution.policies),
+            execution.repeat,
+            execution.timeout,
+        )
+
+    def _policy(self, policy: Policy) -> Policy:
+        return replace(policy, observations=tuple(self._observation(one) for one in policy.observations))
+
+    def _observation(self, observation: Observation) -> Observation:
+        mapped = tuple((text, self._curie(target)) for text, target in observation.mapped)
+        return replace(observation, targets=tuple(map(self._curie, observation.targets)), mapped=mapped)
 
     def spec(self, feature: str, story: Iri, scenario: ScenarioText) -> ScenarioSpec:
         """Return the specification of a scenario of a feature (a path relative to the run's folder)."""
@@ -71,6 +91,7 @@ class SpecWriter:
                 # A template may leave a step out; there is nothing to judge then.
                 if line
             ),
+            execution=self.execution,
         )
 
     def _curie(self, iri: str) -> str:

@@ -1,0 +1,7 @@
+"""Units that the language allows, in SI units; the graph holds SI units only."""
+
+from math import pi
+
+LENGTHS = {"mm": 0.001, "cm": 0.01, "m": 1.0}
+ANGLES = {"rad": 1.0, "deg": pi / 180}
+MASSES = {"kg": 1.0, "g": 0.001}

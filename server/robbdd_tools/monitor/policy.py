@@ -1,0 +1,69 @@
+"""How a clause is to be observed, as plain data: policies, their observations and where these come from.
+
+Names are IRIs where the graph is read and CURIEs in a run. Python code is named ``module:attribute``; nothing here
+imports it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Provider:
+    """Where observations come from.
+
+    ``kind`` is ``ground-truth``, ``entity-state``, ``transforms`` or ``topic``; ``rate`` in Hz. ``noise`` (m) is the
+    standard deviation of a position by axis and ``latency`` (s) the age of what is seen, both of the ground truth.
+    ``source`` is the topic or the reference frame, ``type`` the topic's message type.
+    """
+
+    iri: str
+    kind: str
+    rate: float | None = None
+    noise: float = 0.0
+    latency: float = 0.0
+    source: str = ""
+    type: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """What of a scene is observed: variables and elements, in written order.
+
+    ``mapped`` tells for names in a message what they stand for; ``entity_mapper`` and ``time_extractor`` are code.
+    """
+
+    iri: str
+    provider: Provider
+    targets: tuple[str, ...]
+    time_extractor: str = ""
+    entity_mapper: str = ""
+    mapped: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """How observations become a verdict.
+
+    ``kind`` is ``distance`` (``form`` is ``less-than``, ``greater-than``, ``between`` or ``equals``; ``bounds`` in m:
+    one bound, two, or value and tolerance; ``max_time_offset`` in s between two observations), ``python`` (``name``
+    is the code) or ``topic`` (``name`` is the topic of verdicts).
+    """
+
+    kind: str
+    name: str = ""
+    form: str = ""
+    bounds: tuple[float, ...] = ()
+    max_time_offset: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """The rule by which a clause is judged, and on what; ``horizon`` in s, ``None`` where none is written."""
+
+    iri: str
+    clause: str
+    rule: Rule
+    horizon: float | None = None
+    observations: tuple[Observation, ...] = ()

@@ -1,0 +1,105 @@
+"""What a ``.bddx`` says comes back from the graph as plain data, from every format."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit import MODEL, SCENE, fixture
+from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.graph.build import build_graph
+from robbdd_tools.graph.model import Execution
+from robbdd_tools.graph.read import read_model
+from robbdd_tools.graph.serialize import FORMATS, parse, serialize
+from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
+
+X, T, ENV = "https://example.org/x/", "https://example.org/t/", "https://example.org/env/"
+BDDX = """import "main.bdd"
+import "bench.scenex"
+ns x = 'https://example.org/x/'
+bhv impl (ns=x) own { py { module: my.arm, attr: Pick } }
+obs provider (ns=x) truth { simulation ground truth update-rate: 100 Hz noise: 2 mm latency: 0.05 s }
+obs provider (ns=x) poses { ros topic: "/poses" type: "geometry_msgs/msg/PoseArray" }
+observation (ns=x) part-pose { provider: <truth> observes var <fetch.part> observes obj <furniture.tray> }
+observation (ns=x) seen-pose {
+    provider: <poses>
+    observes obj <parts.bolt>
+    time extractor: py { module: my.ros, attr: stamp }
+    entity mapper: string { "b" to obj <parts.bolt> }
+}
+obs policy (ns=x) near for <fetch.on-bench> horizon: 2.0 seconds {
+    observations: { <part-pose>, <seen-pose> }
+    evaluator: linear distance { between: 10 mm and 0.05 m max time offset: 0.1 s }
+}
+obs policy (ns=x) told for <fetch.on-bench> { trinary topic: "/seen" }
+obs policy (ns=x) coded for <fetch.on-bench> {
+    observations: { <part-pose> }
+    evaluator: py { module: my.rules, attr: near }
+}
+Scenario Exec (ns=x) second {
+    variant: <fetching.bench-to-tray>  scene inst: <bench_mjc>  bhv: <own>
+    policies: { <told>, <near>, <coded> }  repeat: 3  seed: 42  timeout: 60 seconds
+}
+Scenario Exec (ns=x) first { variant: <fetching.bench-to-tray>  scene inst: <bench_mjc>  bhv: <own> }
+"""
+SCENEX = """import "lab.scene"
+ns s = 'https://example.org/s/'
+scene inst (ns=s) bench_mjc { scene: <bench_scene> }
+"""
+TRUTH = Provider(X + "truth", "ground-truth", 100.0, 0.002, 0.05)
+PART = Observation(X + "part-pose", TRUTH, (T + "var-part", ENV + "tray"))
+SEEN = Observation(
+    X + "seen-pose",
+    Provider(X + "poses", "topic", source="/poses", type="geometry_msgs/msg/PoseArray"),
+    (ENV + "bolt",),
+    time_extractor="my.ros:stamp",
+    mapped=(("b", ENV + "bolt"),),
+)
+CLAUSE = T + "on-bench"
+POLICIES = (
+    Policy(X + "told", CLAUSE, Rule("topic", "/seen")),
+    Policy(X + "near", CLAUSE, Rule("distance", "", "between", (0.01, 0.05), 0.1), 2.0, (PART, SEEN)),
+    Policy(X + "coded", CLAUSE, Rule("python", "my.rules:near"), None, (PART,)),
+)
+
+
+def executions(text: str = BDDX, form: str = "ttl") -> tuple[Execution, ...]:
+    case = fixture(f"//- run.bddx\n{text}\n//- main.bdd\n{MODEL}\n//- lab.scene\n{SCENE}\n//- bench.scenex\n{SCENEX}")
+    graph = build_graph(case.snapshot, case.uri).graph
+    return read_model(parse(serialize(graph, form), form)).executions
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_executions_come_back_in_written_order(form: str) -> None:
+    own = Implementation(X + "own", "python", "my.arm:Pick")
+    second, first = executions(form=form)
+    variant = second.variant
+    assert variant == T + "bench-to-tray"
+    assert second == Execution(second.iri, variant, own, POLICIES, 3, 42, 60.0)
+    assert first == Execution(first.iri, variant, own)
+    assert (second.iri, first.iri) == (X + "second", X + "first")
+
+
+@pytest.mark.parametrize(
+    ("source", "kind", "name"),
+    [
+        ('bhv action: "/bdd/pickplace"', "ros-action", "/bdd/pickplace"),
+        ('catalog "pick-place"', "catalog", "pick-place"),
+    ],
+)
+def test_an_implementation_says_what_it_is(source: str, kind: str, name: str) -> None:
+    text = BDDX.replace("py { module: my.arm, attr: Pick }", source)
+    assert executions(text)[0].implementation == Implementation(X + "own", kind, name)
+
+
+@pytest.mark.parametrize(
+    ("condition", "form", "bounds"),
+    [
+        ("less-than: 5 cm", "less-than", (0.05,)),
+        ("greater-than: 0.5 m", "greater-than", (0.5,)),
+        ("equals: 10 cm tolerance: 5 mm", "equals", (0.1, 0.005)),
+    ],
+)
+def test_distances_are_in_metres(condition: str, form: str, bounds: tuple[float, ...]) -> None:
+    text = BDDX.replace("between: 10 mm and 0.05 m", condition)
+    rule = executions(text)[0].policies[1].rule
+    assert (rule.form, rule.bounds) == (form, pytest.approx(bounds))
