@@ -107,12 +107,12 @@ def test_velocity_and_torque_stay_within_the_published_limits() -> None:
     speeds: list[np.ndarray[tuple[int], np.dtype[np.float64]]] = []
     torques: list[np.ndarray[tuple[int], np.dtype[np.float64]]] = []
 
-    def look(_trace: Trace) -> bool:
+    def look() -> None:
         speeds.append(np.abs(simulation.data.qvel[robot.speeds]))
         torques.append(np.abs(simulation.data.qfrc_actuator[robot.speeds]))
-        return False
 
-    run.advance_until(look)
+    simulation.watchers.append(look)
+    to_the_end(run)
     assert run.completed == 1
     assert (np.max(speeds, axis=0) <= MODEL.velocity_limits).all()
     assert (np.max(torques, axis=0) <= MODEL.torque_limits).all()

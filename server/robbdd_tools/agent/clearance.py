@@ -19,8 +19,8 @@ class Clearance:
     def __init__(self, simulation: Simulation, robot: Robot, spare: str, state: Any) -> None:
         """Leave contacts with the object ``spare`` out: it is the one to be gripped."""
         self._model: Any = simulation.model
-        self._data: Any = mujoco.MjData(self._model)
-        self._data.qpos[:] = state.qpos
+        self._data: Any = simulation.scratch
+        self._state: FloatArray = state.qpos.copy()
         self._robot = robot
         self._simulation = simulation
         trees = self._model.body_rootid
@@ -30,6 +30,7 @@ class Clearance:
 
     def depth(self, joints: FloatArray) -> float:
         """Return how deep (m) the arm with open fingers would be in something else; 0 when it is clear."""
+        self._data.qpos[:] = self._state
         self._data.qpos[self._robot.joints] = joints
         self._simulation.open_fingers(self._robot, self._data)
         mujoco.mj_kinematics(self._model, self._data)

@@ -31,6 +31,8 @@ REST = 1.0
 """Seconds between the end of the last behaviour and the end of the scenario, for things to come to rest."""
 TIMEOUT = 60.0
 """Seconds of simulated time after which an execution is stopped."""
+LOOK = 8
+"""Ticks after which an execution without any news is looked at again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +63,7 @@ class Execution:
         began = perf_counter()
         self._calls = tuple(calls)
         self._timing = timing or Timing()
+        self._last = ceil(self._timing.timeout / TICK - 1e-9)
         self._names = _names_of(spec.events)
         actor = self._calls[0].arguments.get("agent") if self._calls else None
         world = build_world(spec.scene, spec.seed, actor)
@@ -98,11 +101,14 @@ class Execution:
         return self.simulation.recorder.states[self.trace.last_at_or_before(time + TICK / 2)]
 
     def advance_until(self, satisfied: Callable[[Trace], bool]) -> Trace:
-        """Run on until a trace satisfies a condition or the execution is finished; returns the trace."""
+        """Run on until a trace satisfies a condition or the execution is finished; returns the trace.
+
+        It is asked when an event has occurred or a behaviour is over, and now and then in between.
+        """
         began = perf_counter()
         trace = self.trace
         while not (self._finished or satisfied(trace)):
-            self._tick()
+            self._go_on()
             trace = self.trace
         self.wall += perf_counter() - began
         return trace
@@ -124,6 +130,13 @@ class Execution:
         self.advance_until(lambda _: self.completed > index)
         return self.completed > index
 
+    def _go_on(self) -> None:
+        known = (len(self._events), self.completed)
+        for _ in range(LOOK):
+            self._tick()
+            if self._finished or known != (len(self._events), self.completed):
+                return
+
     def _tick(self) -> None:
         try:
             next(self._script)
@@ -135,7 +148,7 @@ class Execution:
             self._finished = True
             self._remark = str(error)
             return
-        if self.simulated >= self._timing.timeout:
+        if self.simulation.ticks >= self._last:
             self._finished = True
             self._note(f"the execution was stopped after {self._timing.timeout:g} s of simulated time")
 

@@ -78,11 +78,9 @@ def present_pose(arm: Arm, joints: FloatArray) -> ToolPose:
 def frame_of(pose: ToolPose) -> tuple[FloatArray, FloatArray]:
     """Return position (3,) and rotation matrix (3, 3) of a tool pose in the base frame."""
     yaw = pose.bearing + pose.turn
-    ahead = np.array([cos(yaw), sin(yaw), 0.0])
-    across = np.array([sin(yaw), -cos(yaw), 0.0])
-    rotation = np.column_stack([ahead, across, [0.0, 0.0, -1.0]])
+    c, s = cos(yaw), sin(yaw)
     at = [pose.radius * cos(pose.bearing), pose.radius * sin(pose.bearing), pose.height]
-    return np.array(at), rotation
+    return np.array(at), np.array([[c, s, 0.0], [s, -c, 0.0], [0.0, 0.0, -1.0]])
 
 
 def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed: float) -> Motion:
@@ -99,8 +97,12 @@ def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed
     count = max(2, ceil(max(length / SPACING, turn / 0.1)))
     shares = np.linspace(0.0, 1.0, count + 1)
     points = [joints]
+    last = joints
     for share in shares[1:]:
-        points.append(arm.solve(points[-1], *frame_of(_between(start, goal, float(share)))))
+        # A path goes on as it went: the search starts one step ahead.
+        seed = 2.0 * points[-1] - last
+        last = points[-1]
+        points.append(arm.solve(seed, *frame_of(_between(start, goal, float(share)))))
     path = np.array(points)
     rate = np.abs(np.diff(path, axis=0)).max(axis=0) * count
     duration = max(

@@ -147,9 +147,10 @@ class PickPlace:
                 f"{self._robot.name} cannot follow its path within its joint limits {where}"
             ) from error
         missing = 0
-        for joints, velocities in zip(motion.joints, motion.velocities, strict=True):
+        ahead = motion.joints + self._robot.lead * motion.velocities
+        for joints, target in zip(motion.joints, ahead, strict=True):
             self._joints = joints
-            self._set(joints, velocities)
+            self._simulation.command(self._robot, target, self.control)
             yield
             if until is not None and until():
                 return
@@ -160,8 +161,5 @@ class PickPlace:
     def wait(self, ticks: int) -> Step:
         """Stay in place."""
         for _ in range(ticks):
-            self._set(self._joints, np.zeros_like(self._joints))
+            self._simulation.command(self._robot, self._joints, self.control)
             yield
-
-    def _set(self, joints: FloatArray, velocities: FloatArray) -> None:
-        self._simulation.command(self._robot, joints + self._robot.lead * velocities, self.control)

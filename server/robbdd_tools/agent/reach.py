@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from math import nan, pi
 from typing import TYPE_CHECKING, Any
 
@@ -84,8 +85,11 @@ class ReachSampler:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._data: Any = mujoco.MjData(simulation.model)
         self._margins: dict[tuple[str, str], dict[int, float]] = {}
+
+    @cached_property
+    def _data(self) -> Any:
+        return mujoco.MjData(self._simulation.model)
 
     def sample(self, agent: str, name: str, rows: range) -> None:
         """Measure at these samples of the trace; raises ``KeyError`` for an agent that the scene lacks."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,31 +11,53 @@ import numpy as np
 from robbdd_tools.monitor.trace import EventStamp, Trace
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from robbdd_tools.catalog.api import FloatArray
 
 ROWS = 1024
 
 
-class Recorder:
-    """Samples of ``names`` (bodies) and of what each agent grips. Rows are only ever appended.
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """What is recorded and where it is found.
 
-    With them goes the engine's own state of ``width`` numbers, to come back to an instant later.
+    ``positions`` (m, 3) m and ``orientations`` (m, 4) of the bodies ``names`` at the start: what is fixed keeps them.
+    The poses of those in the columns ``loose`` (k,) stand in the engine's state at the indices ``places`` (k, 3) and
+    ``turns`` (k, 4); the columns ``tools`` (a,) are the agents' tools.
     """
 
-    def __init__(self, names: tuple[str, ...], agents: tuple[str, ...], width: int) -> None:
-        self._names = names
+    names: tuple[str, ...]
+    positions: FloatArray
+    orientations: FloatArray
+    loose: NDArray[np.intp]
+    places: NDArray[np.intp]
+    turns: NDArray[np.intp]
+    tools: NDArray[np.intp]
+
+
+class Recorder:
+    """Samples of bodies and of what each agent grips. Rows are only ever appended.
+
+    A sample is kept as the engine's own state of ``width`` numbers, to come back to an instant later; what follows
+    from it is computed for many samples at once, when somebody wants a trace.
+    """
+
+    def __init__(self, bodies: Bodies, agents: tuple[str, ...], width: int) -> None:
+        self._bodies = bodies
         self._width = width
         self._agents = agents
         self.clear()
 
     def clear(self) -> None:
         """Forget all samples; traces taken before keep theirs."""
-        size = len(self._names)
-        self._rows = 0
+        bodies = self._bodies
+        self._rows = self._expanded = 0
         self._times: FloatArray = np.empty(ROWS)
-        self._positions: FloatArray = np.empty((ROWS, size, 3))
-        self._orientations: FloatArray = np.empty((ROWS, size, 4))
-        self._grips: dict[str, FloatArray] = {agent: np.empty((ROWS, size)) for agent in self._agents}
+        self._positions: FloatArray = np.empty((ROWS, *bodies.positions.shape))
+        self._orientations: FloatArray = np.empty((ROWS, *bodies.orientations.shape))
+        self._tools: FloatArray = np.empty((ROWS, len(bodies.tools), 7))
+        self._grips: dict[str, FloatArray] = {agent: np.empty((ROWS, len(bodies.names))) for agent in self._agents}
         self._states: FloatArray = np.empty((ROWS, self._width))
 
     @property
@@ -42,31 +65,27 @@ class Recorder:
         """The engine's joint positions at each sample, shape (n, width)."""
         return self._states[: self._rows]
 
-    def append(
-        self,
-        time: float,
-        positions: FloatArray,
-        orientations: FloatArray,
-        grips: Mapping[str, FloatArray],
-        state: FloatArray,
-    ) -> None:
-        """Append a sample: positions (m, 3), orientations (m, 4), per agent what it grips (m,), the state (width,)."""
+    def append(self, time: float, state: FloatArray, grips: Mapping[str, FloatArray]) -> FloatArray:
+        """Append a sample: the state (width,), per agent what it grips (m,).
+
+        Returns where the tools' positions and orientations are to be written, shape (a, 7).
+        """
         if self._rows == len(self._times):
             self._grow()
         row = self._rows
         self._rows += 1
         self._times[row] = time
-        self._positions[row] = positions
-        self._orientations[row] = orientations
         self._states[row] = state
         for agent, held in grips.items():
             self._grips[agent][row] = held
+        return self._tools[row]
 
     def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
         """Return the samples so far; what is appended later does not show in it."""
+        self._expand()
         rows = self._rows
         return Trace(
-            self._names,
+            self._bodies.names,
             self._times[:rows],
             self._positions[:rows],
             self._orientations[:rows],
@@ -76,10 +95,23 @@ class Recorder:
             remark,
         )
 
+    def _expand(self) -> None:
+        """Compute the poses of all bodies in the samples that are new."""
+        new, bodies = slice(self._expanded, self._rows), self._bodies
+        self._expanded = self._rows
+        states, tools = self._states[new], self._tools[new]
+        self._positions[new] = bodies.positions
+        self._orientations[new] = bodies.orientations
+        self._positions[new, bodies.loose] = states[:, bodies.places]
+        self._orientations[new, bodies.loose] = states[:, bodies.turns]
+        self._positions[new, bodies.tools] = tools[..., :3]
+        self._orientations[new, bodies.tools] = tools[..., 3:]
+
     def _grow(self) -> None:
         self._times = _doubled(self._times)
         self._positions = _doubled(self._positions)
         self._orientations = _doubled(self._orientations)
+        self._tools = _doubled(self._tools)
         self._states = _doubled(self._states)
         self._grips = {agent: _doubled(held) for agent, held in self._grips.items()}
 

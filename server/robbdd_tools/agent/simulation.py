@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property
+from math import isfinite
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +13,7 @@ import numpy as np
 from robbdd_tools.agent.engine import SUBSTEPS, TICK, mujoco
 from robbdd_tools.agent.errors import SimulationError
 from robbdd_tools.agent.grips import Grips
-from robbdd_tools.agent.recorder import Recorder
+from robbdd_tools.agent.recorder import Bodies, Recorder
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.world import World
@@ -53,7 +56,8 @@ class Robot:
 class Simulation:
     """A world in motion. Time counts from the end of ``settle``; sample 0 is the settled world.
 
-    ``stepping`` is the wall time (s) spent in the engine's step.
+    ``stepping`` is the wall time (s) spent in the engine's step; ``watchers`` are called after each tick, such as a
+    viewer.
     """
 
     def __init__(self, world: World) -> None:
@@ -62,31 +66,45 @@ class Simulation:
         self.data: Any = mujoco.MjData(world.model)
         self.stepping = 0.0
         self.ticks = 0
+        self.watchers: list[Callable[[], None]] = []
         self.robots = {name: Robot(world, name) for name in world.cast.agents}
         self._free = [name for name, model in world.cast.objects.items() if model.free]
         bodies = [self.model.body(name) for name in self._free]
         addresses = np.array([body.jntadr[0] for body in bodies], dtype=int)
         starts = self.model.jnt_qposadr[addresses].reshape(-1, 1)
-        self._places = starts + np.arange(3)
-        self._turns = starts + np.arange(3, 7)
         self._speeds = self.model.jnt_dofadr[addresses].reshape(-1, 1) + np.arange(6)
         names = (*world.cast.objects, *world.cast.agents)
         self._column = {name: index for index, name in enumerate(names)}
-        self._rows = np.array([self._column[name] for name in self._free], dtype=int)
-        self._positions: FloatArray = np.zeros((len(names), 3))
-        self._orientations: FloatArray = np.zeros((len(names), 4))
         self._grips = Grips(self.model, self.robots, self._column, self._free)
-        self.recorder = Recorder(names, tuple(self.robots), int(self.model.nq))
+        # Views of the engine's memory, which stays where it is: to ask for them anew in every tick takes longer.
+        self._qpos: FloatArray = self.data.qpos
+        self._qvel: FloatArray = self.data.qvel
+        self._tools: list[tuple[FloatArray, FloatArray]] = [
+            (self.data.site_xpos[robot.tool], self.data.site_xmat[robot.tool]) for robot in self.robots.values()
+        ]
         self._go_home()
-        for name in world.cast.tables:
-            body = self.data.body(name)
-            self._positions[self._column[name]] = body.xpos
-            self._orientations[self._column[name]] = body.xquat
+        things = [self.data.body(name) for name in world.cast.objects]
+        unset = len(self.robots)
+        bodies = Bodies(
+            names,
+            np.array([*(body.xpos for body in things), *[np.zeros(3)] * unset]),
+            np.array([*(body.xquat for body in things), *[np.zeros(4)] * unset]),
+            np.array([self._column[name] for name in self._free], dtype=int),
+            starts + np.arange(3),
+            starts + np.arange(3, 7),
+            np.array([self._column[name] for name in self.robots], dtype=int),
+        )
+        self.recorder = Recorder(bodies, tuple(self.robots), int(self.model.nq))
 
     @property
     def time(self) -> float:
         """Simulated time of the last sample, s."""
         return round(self.ticks * TICK, 6)
+
+    @cached_property
+    def scratch(self) -> Any:
+        """A state of the engine to try things in: whoever does sets all that matters; made once, as it takes long."""
+        return mujoco.MjData(self.model)
 
     def settle(self) -> None:
         """Step until nothing moves any more, then start the clock and take the first sample."""
@@ -113,20 +131,18 @@ class Simulation:
         self._step()
         self.ticks += 1
         self.record()
+        for watch in self.watchers:
+            watch()
 
     def record(self) -> None:
         """Take a sample of the world as it is."""
         # Positions in the engine's data are those of one step ago until they are computed anew.
         mujoco.mj_kinematics(self.model, self.data)
         self._grips.find(self.data)
-        qpos = self.data.qpos
-        self._positions[self._rows] = qpos[self._places]
-        self._orientations[self._rows] = qpos[self._turns]
-        for robot in self.robots.values():
-            column = self._column[robot.name]
-            self._positions[column] = self.data.site_xpos[robot.tool]
-            mujoco.mju_mat2Quat(self._orientations[column], self.data.site_xmat[robot.tool])
-        self.recorder.append(self.time, self._positions, self._orientations, self._grips.held, qpos)
+        rows = self.recorder.append(self.time, self._qpos, self._grips.held)
+        for row, (position, rotation) in zip(rows, self._tools, strict=True):
+            row[:3] = position
+            mujoco.mju_mat2Quat(row[3:], rotation)
 
     def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
         """Return what was recorded so far, without copying it."""
@@ -163,7 +179,7 @@ class Simulation:
         began = perf_counter()
         mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
         self.stepping += perf_counter() - began
-        if not np.isfinite(self.data.qvel).all():
+        if not isfinite(self._qvel @ self._qvel):
             raise SimulationError(f"the simulation became unstable at {self.time:.2f} s")
 
     def _go_home(self) -> None:

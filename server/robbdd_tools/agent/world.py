@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from math import cos, sin
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -74,9 +75,14 @@ def mjcf_path(robot: RobotModel) -> Path:
 def load_robot(robot: RobotModel) -> Any:
     """Return the engine's editable description of a robot; raises ``SceneError`` when its file is broken."""
     try:
-        return mujoco.MjSpec.from_file(str(mjcf_path(robot)))
+        return _read(str(mjcf_path(robot))).copy()
     except ValueError as error:
         raise SceneError(f"the model file of robot '{robot.name}' cannot be read: {error}") from error
+
+
+@cache
+def _read(path: str) -> Any:
+    return mujoco.MjSpec.from_file(path)
 
 
 def _compile(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -> Any:
