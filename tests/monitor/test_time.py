@@ -50,7 +50,8 @@ def test_selects_the_samples_of_the_definition(constraint: TimeConstraint, expec
     ],
 )
 def test_says_why_there_is_no_window(constraint: TimeConstraint, reason: str) -> None:
-    assert a_window(constraint, e=1.0, late=1.55) == NoWindow(reason, open=False)
+    found = a_window(constraint, e=1.0, late=1.55)
+    assert found == NoWindow(reason, open=False, empty=reason.startswith("no sample"))
 
 
 @pytest.mark.parametrize("constraint", [Before("never"), After("never"), During("e", "never"), After("e", 1.5)])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from robbdd_tools.monitor.time import NoWindow, TimeConstraint, Window, window
-from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Outcome, Verdict, unknown
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Arguments, FloatArray, Predicate, Region
@@ -86,7 +86,7 @@ def judge(
         return unknown(f"there is no evaluator for '{predicate.name}'")
     selected = window(constraint, trace)
     if isinstance(selected, NoWindow):
-        return unknown(selected.reason)
+        return unknown(selected.reason, EMPTY_WINDOW if selected.empty else "")
     evidence = WindowEvidence(trace, selected, regions)
     try:
         margins = predicate.evaluate(evidence, arguments)
@@ -99,8 +99,8 @@ def _verdict(margins: FloatArray, times: FloatArray, unit: str) -> Verdict:
     if not np.all(np.isfinite(margins)):
         return unknown("the margin is not a number at some sample")
     worst = int(np.argmin(margins))
-    robustness = float(margins[worst])
+    robustness, worst_at = float(margins[worst]), float(times[worst])
     if robustness >= 0:
-        return Verdict(Outcome.HOLDS, robustness, unit, float(times[worst]))
+        return Verdict(Outcome.HOLDS, robustness, unit, worst_at, worst_at=worst_at)
     first = int(np.argmax(margins < 0))
-    return Verdict(Outcome.VIOLATED, robustness, unit, float(times[first]))
+    return Verdict(Outcome.VIOLATED, robustness, unit, float(times[first]), worst_at=worst_at)

@@ -49,14 +49,20 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class NoWindow:
-    """The window cannot be had: ``reason`` says why; ``open`` while a longer trace may still close it."""
+    """The window cannot be had: ``reason`` says why; ``open`` while a longer trace may still close it.
+
+    ``empty`` tells that it is closed and holds no sample.
+    """
 
     reason: str
     open: bool
+    empty: bool = False
 
 
 def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
     """Select the samples that a constraint speaks of.
+
+    docs/semantics.md is its definition.
 
     With ``t_e`` the time of an event's first occurrence and ``h`` the horizon: ``before``: the last sample in
     ``[0, t_e]``, or all in ``[t_e - h, t_e]``; ``after``: the first sample in ``[t_e, ∞)``, or all in
@@ -77,7 +83,7 @@ def _before(trace: Trace, event: str, horizon: float | None) -> Window | NoWindo
         return _missing(trace, event)
     last = trace.last_at_or_before(time + TOLERANCE)
     if horizon is None:
-        return Window(last, last) if last >= 0 else NoWindow(f"no sample was taken before event {event}", False)
+        return Window(last, last) if last >= 0 else NoWindow(f"no sample was taken before event {event}", False, True)
     if time - horizon < -TOLERANCE:
         return NoWindow(
             f"event {event} occurred at {time:.2f} s, less than {horizon:g} s after the execution began",
@@ -112,7 +118,7 @@ def _during(trace: Trace, start: str, end: str) -> Window | NoWindow:
 
 
 def _closed(first: int, last: int) -> Window | NoWindow:
-    return Window(first, last) if first <= last else NoWindow("no sample was taken in the window", False)
+    return Window(first, last) if first <= last else NoWindow("no sample was taken in the window", False, True)
 
 
 def _missing(trace: Trace, event: str) -> NoWindow:

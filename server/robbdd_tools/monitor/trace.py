@@ -69,7 +69,7 @@ class Trace:
 
     def event_time(self, name: str) -> float | None:
         """Return when an event first occurred, or ``None``."""
-        return next((stamp.time for stamp in self.events if stamp.name == name), None)
+        return min((stamp.time for stamp in self.events if stamp.name == name), default=None)
 
     def first_at_or_after(self, time: float) -> int:
         """Return the index of the first sample in ``[time, ∞)``; ``len(times)`` when there is none."""

@@ -6,6 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+EMPTY_WINDOW = "its window holds no sample"
+EMPTY_SET = "a set that it quantifies over is empty"
+"""Why a clause could not have been violated."""
+
 
 class Outcome(StrEnum):
     """What is known of a clause."""
@@ -21,7 +25,8 @@ class Verdict:
 
     ``robustness`` is the signed margin in ``unit`` (positive: holds), ``None`` when unknown. ``at`` (s) is the
     instant of violation (the first sample with a negative margin), of the worst margin when it holds, ``None``
-    when unknown. ``reason`` says in words why it is violated or unknown.
+    when unknown; ``worst_at`` (s) is that of the worst margin in any case. ``reason`` says in words why it is
+    violated or unknown; ``vacuous`` why it could not have been violated, nothing where it could.
     """
 
     outcome: Outcome
@@ -29,19 +34,21 @@ class Verdict:
     unit: str = ""
     at: float | None = None
     reason: str = ""
+    worst_at: float | None = None
+    vacuous: str = ""
 
 
-def unknown(reason: str) -> Verdict:
+def unknown(reason: str, vacuous: str = "") -> Verdict:
     """Return the verdict for missing evidence; it never passes."""
-    return Verdict(Outcome.UNKNOWN, reason=reason)
+    return Verdict(Outcome.UNKNOWN, reason=reason, vacuous=vacuous)
 
 
 def negation(verdict: Verdict) -> Verdict:
-    """Strong Kleene negation; the margin changes its sign."""
+    """Strong Kleene negation; the margin changes its sign, the instant is that of the worst one."""
     if verdict.robustness is None:
         return verdict
     outcome = Outcome.VIOLATED if verdict.outcome is Outcome.HOLDS else Outcome.HOLDS
-    return replace(verdict, outcome=outcome, robustness=-verdict.robustness, reason="")
+    return replace(verdict, outcome=outcome, robustness=-verdict.robustness, at=verdict.worst_at, reason="")
 
 
 def conjunction(verdicts: Iterable[Verdict]) -> Verdict:
@@ -56,7 +63,7 @@ def disjunction(verdicts: Iterable[Verdict]) -> Verdict:
 
 def _combine(verdicts: list[Verdict], decisive: Outcome, sign: float) -> Verdict:
     if not verdicts:
-        return unknown("there is nothing to judge: the set is empty")
+        return unknown("there is nothing to judge: the set is empty", EMPTY_SET)
     deciding = [verdict for verdict in verdicts if verdict.outcome is decisive]
     if not deciding:
         open_ones = [verdict for verdict in verdicts if verdict.outcome is Outcome.UNKNOWN]

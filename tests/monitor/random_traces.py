@@ -1,0 +1,110 @@
+"""Random traces and clauses for the tests that compare the monitor with something else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hypothesis import strategies as st
+
+from monitor.traces import STEP, heights, trace_of
+from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
+from robbdd_tools.monitor.judge import judge
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.monitor.trace import EventStamp, Trace
+from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+
+EVENTS = ("a", "b", "c")
+
+
+def _height(evidence: Evidence, arguments: Arguments) -> FloatArray:
+    return evidence.position(str(arguments["thing"]))[:, 2]
+
+
+ABOVE = Predicate(
+    "above", "<thing> is above", "x:Above", (Slot("thing", Kind.OBJECT, "x:thing"),), "", "m", "", _height
+)
+
+
+@dataclass(frozen=True)
+class Holds:
+    """The predicate *above* of a thing, which has a path of heights."""
+
+    thing: str
+    time: TimeConstraint
+
+
+@dataclass(frozen=True)
+class Joined:
+    """``and``, ``or`` or ``not`` of clauses."""
+
+    operator: str
+    parts: tuple[Clause, ...]
+
+
+Clause = Holds | Joined
+
+
+@dataclass(frozen=True)
+class Story:
+    """What happened: heights by thing, one per sample, and stamped events."""
+
+    paths: dict[str, list[float]]
+    events: tuple[tuple[str, float], ...]
+
+    @property
+    def trace(self) -> Trace:
+        """The same as a trace."""
+        found = trace_of({name: heights(path) for name, path in self.paths.items()})
+        stamps = tuple(EventStamp(name, time) for name, time in self.events)
+        return Trace(found.names, found.times, found.positions, found.orientations, {}, stamps)
+
+
+def by_the_monitor(clause: Clause, story: Story) -> Verdict:
+    """Judge a clause with what is under test."""
+    match clause:
+        case Holds(thing, time):
+            return judge(ABOVE, {"thing": thing}, time, story.trace, {})
+        case Joined("not", (part,)):
+            return negation(by_the_monitor(part, story))
+        case Joined(operator, parts):
+            verdicts = [by_the_monitor(part, story) for part in parts]
+            return conjunction(verdicts) if operator == "and" else disjunction(verdicts)
+
+
+# Multiples of 1/8 are exact in binary: equal margins are equal in every implementation.
+MARGINS = st.integers(-16, 16).map(lambda number: number / 8)
+
+
+@st.composite
+def stories(draw: st.DrawFn, *, events_on_samples: bool) -> Story:
+    """Traces of two things; events may be missing, or come twice, unless they are to lie on samples, once each."""
+    count = draw(st.integers(1, 12))
+    paths = {name: draw(st.lists(MARGINS, min_size=count, max_size=count)) for name in ("x", "y")}
+    instants = st.integers(0, count - 1).map(lambda row: row * STEP)
+    if events_on_samples:
+        return Story(paths, tuple((name, draw(instants)) for name in EVENTS))
+    anywhere = instants | st.floats(0.0, count * STEP)
+    stamps = draw(st.lists(st.tuples(st.sampled_from(EVENTS), anywhere), max_size=5))
+    return Story(paths, tuple(sorted(stamps, key=lambda stamp: stamp[1])))
+
+
+_EVENT = st.sampled_from(EVENTS)
+_HORIZON = st.none() | st.integers(0, 8).map(lambda steps: steps * STEP)
+TIMES: st.SearchStrategy[TimeConstraint] = (
+    st.builds(Before, _EVENT, _HORIZON) | st.builds(After, _EVENT, _HORIZON) | st.builds(During, _EVENT, _EVENT)
+)
+OBSERVED: st.SearchStrategy[Clause] = st.builds(Holds, st.sampled_from(["x", "y"]), TIMES)
+FLUENTS: st.SearchStrategy[Clause] = OBSERVED | st.builds(Holds, st.just("missing"), TIMES)
+
+
+def _joined(parts: st.SearchStrategy[Clause]) -> st.SearchStrategy[Clause]:
+    several = st.lists(parts, max_size=3).map(tuple)
+    one = st.tuples(parts)
+    return st.builds(Joined, st.sampled_from(["and", "or"]), several) | st.builds(Joined, st.just("not"), one)
+
+
+CLAUSES: st.SearchStrategy[Clause] = st.recursive(FLUENTS, _joined, max_leaves=5)

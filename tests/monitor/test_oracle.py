@@ -1,0 +1,105 @@
+"""The monitor against a brute-force oracle that follows docs/semantics.md sentence by sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+from hypothesis import given, settings
+
+from monitor.random_traces import CLAUSES, Clause, Holds, Joined, Story, by_the_monitor, stories
+from monitor.traces import STEP
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+
+TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the oracle says: outcome, margin, reported instant and worst instant."""
+
+    outcome: str
+    margin: float | None = None
+    at: float | None = None
+    worst: float | None = None
+
+
+UNKNOWN = Answer("unknown")
+
+
+def occurrence(story: Story, event: str) -> float | None:
+    times = [time for name, time in story.events if name == event]
+    return min(times) if times else None
+
+
+def in_window(time: TimeConstraint, story: Story, samples: list[float]) -> list[int] | None:
+    """Rows of the samples of a window; ``None`` where the page says *unknown*."""
+
+    def between(low: float, high: float) -> list[int]:
+        return [row for row, t in enumerate(samples) if low - TOLERANCE <= t <= high + TOLERANCE]
+
+    match time:
+        case Before(event, horizon):
+            t = occurrence(story, event)
+            if t is None or (horizon is not None and t - horizon < -TOLERANCE):
+                return None
+            return between(0.0, t)[-1:] if horizon is None else between(t - horizon, t)
+        case After(event, horizon):
+            t = occurrence(story, event)
+            if t is None or max(samples) < t + (horizon or 0.0) - TOLERANCE:
+                return None
+            return between(t, float("inf"))[:1] if horizon is None else between(t, t + horizon)
+        case During(start, end):
+            a, b = occurrence(story, start), occurrence(story, end)
+            return None if a is None or b is None or b < a else between(a, b)
+
+
+def fluent(clause: Holds, story: Story) -> Answer:
+    samples = [row * STEP for row in range(len(story.paths["x"]))]
+    rows = in_window(clause.time, story, samples)
+    if not rows or clause.thing not in story.paths:
+        return UNKNOWN
+    margins = {row: story.paths[clause.thing][row] for row in rows}
+    least = min(margins.values())
+    worst = next(samples[row] for row in rows if margins[row] == least)
+    if least >= 0:
+        return Answer("holds", least, worst, worst)
+    return Answer("violated", least, next(samples[row] for row in rows if margins[row] < 0), worst)
+
+
+def answer(clause: Clause, story: Story) -> Answer:
+    match clause:
+        case Holds():
+            return fluent(clause, story)
+        case Joined("not", (part,)):
+            inner = answer(part, story)
+            if inner.margin is None:
+                return UNKNOWN
+            outcome = {"holds": "violated", "violated": "holds"}[inner.outcome]
+            return Answer(outcome, -inner.margin, inner.worst, inner.worst)
+        case Joined(operator, parts):
+            answers = [answer(part, story) for part in parts]
+            order = ("violated", "unknown", "holds")
+            ranks = [order.index(one.outcome) for one in answers] or [1]
+            outcome = order[min(ranks) if operator == "and" else max(ranks)]
+            if outcome == "unknown":
+                return UNKNOWN
+            margins = [one.margin for one in answers if one.margin is not None and one.outcome == outcome]
+            decisive = min(margins) if operator == "and" else max(margins)
+            return next(one for one in answers if one.margin == decisive and one.outcome == outcome)
+
+
+@settings(deadline=None, max_examples=500)
+@given(CLAUSES, stories(events_on_samples=False))
+def test_outcome_margin_and_instants_are_those_of_the_page(clause: Clause, story: Story) -> None:
+    expected, found = answer(clause, story), by_the_monitor(clause, story)
+    assert (str(found.outcome), found.robustness) == (expected.outcome, expected.margin)
+    assert found.at == pytest.approx(expected.at)
+    assert found.worst_at == pytest.approx(expected.worst)
+
+
+@settings(deadline=None, max_examples=200)
+@given(CLAUSES, stories(events_on_samples=False))
+def test_what_is_unknown_has_a_reason_and_what_is_not_has_a_margin(clause: Clause, story: Story) -> None:
+    found = by_the_monitor(clause, story)
+    assert bool(found.reason) == (found.robustness is None) == (str(found.outcome) == "unknown")

@@ -1,0 +1,86 @@
+"""The monitor against RTAMT, a signal temporal logic monitor, by the formulas of docs/semantics.md."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from monitor.random_traces import EVENTS, OBSERVED, Clause, Holds, Joined, Story, by_the_monitor, stories
+from monitor.traces import STEP
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+
+HUGE = 1e6
+"""Margin of the proposition "the event is at this sample", far beyond any margin of a predicate."""
+
+
+def steps(horizon: float | None) -> str:
+    return f"[0,{round((horizon or 0.0) / STEP)}]"
+
+
+def formula(clause: Clause) -> str:
+    match clause:
+        case Holds(thing, time):
+            return f"always({when(time)} implies ({thing} >= 0))"
+        case Joined("not", (part,)):
+            return f"(not {formula(part)})"
+        case Joined(operator, parts):
+            return "(" + f" {operator} ".join(map(formula, parts)) + ")"
+
+
+def when(time: TimeConstraint) -> str:
+    match time:
+        case Before(event, horizon):
+            return f"(eventually{steps(horizon)} ({event} >= 0))"
+        case After(event, horizon):
+            return f"(once{steps(horizon)} ({event} >= 0))"
+        case During(start, end):
+            return f"((once ({start} >= 0)) and (eventually ({end} >= 0)))"
+
+
+def by_rtamt(clause: Clause, story: Story) -> float:
+    """Robustness at the first sample."""
+    # rtamt has no types.
+    specification: Any = import_module("rtamt").StlDiscreteTimeSpecification()
+    for name in (*story.paths, *EVENTS):
+        specification.declare_var(name, "float")
+    specification.spec = formula(clause)
+    specification.parse()
+    count = len(story.paths["x"])
+    instants = {name: round(time / STEP) for name, time in story.events}
+    marks = {name: [HUGE if row == instants[name] else -HUGE for row in range(count)] for name in EVENTS}
+    found = specification.evaluate({"time": list(range(count)), **story.paths, **marks})
+    return float(found[0][1])
+
+
+def _joined(parts: st.SearchStrategy[Clause]) -> st.SearchStrategy[Clause]:
+    several = st.lists(parts, min_size=2, max_size=3).map(tuple)
+    one = st.tuples(parts)
+    return st.builds(Joined, st.sampled_from(["and", "or"]), several) | st.builds(Joined, st.just("not"), one)
+
+
+CLAUSES = st.recursive(OBSERVED, _joined, max_leaves=4)
+
+
+def known(clause: Clause, story: Story) -> bool:
+    """Whether the semantics coincide: no fluent of a clause is unknown."""
+    if isinstance(clause, Holds):
+        return by_the_monitor(clause, story).robustness is not None
+    return all(known(part, story) for part in clause.parts)
+
+
+@settings(deadline=None, max_examples=150)
+@given(CLAUSES, stories(events_on_samples=True))
+def test_robustness_is_that_of_signal_temporal_logic(clause: Clause, story: Story) -> None:
+    # rtamt takes the sampling period from the first two samples.
+    assume(len(story.paths["x"]) > 1 and known(clause, story))
+    assert by_the_monitor(clause, story).robustness == by_rtamt(clause, story)
+
+
+@pytest.mark.parametrize("time", [Before("a"), After("a"), Before("a", 0.2), After("a", 0.2), During("a", "b")])
+def test_every_kind_of_window_is_compared(time: TimeConstraint) -> None:
+    story = Story({"x": [0.5, -1.0, 0.25, -2.0, 0.75, -3.0], "y": [0.0] * 6}, (("a", 0.2), ("b", 0.4), ("c", 0.0)))
+    assert by_the_monitor(Holds("x", time), story).robustness == by_rtamt(Holds("x", time), story)
