@@ -13,7 +13,7 @@ from pathlib import Path
 
 from robbdd_tools import __version__
 from robbdd_tools.commands import FAILED, INTERRUPTED, OK
-from robbdd_tools.commands.arguments import allow_selection, wanted
+from robbdd_tools.commands.arguments import allow_policy, allow_selection, policy, wanted
 
 FORMATS = ("ttl", "json-ld", "json-ld-expanded", "nt", "xml")
 
@@ -79,6 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     run.add_argument("-o", "--output", metavar="DIR", type=Path, help="keep features, manifest and log here")
     run.add_argument("--record", metavar="DIR", type=Path, help="write a picture of each violated clause's moment here")
+    allow_policy(run)
     allow_selection(run)
     run.set_defaults(command=_run)
 
@@ -157,7 +158,7 @@ def _run(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.run import Outputs, run
 
     outputs = Outputs(options.json, options.output, options.record)
-    return run(options.path, wanted(options), options.scenario, outputs, options.seed)
+    return run(options.path, wanted(options), options.scenario, policy(options), outputs, options.seed)
 
 
 def _import(options: argparse.Namespace) -> int:

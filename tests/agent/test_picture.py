@@ -93,7 +93,9 @@ def test_the_moment_of_every_violated_clause_is_kept_with_the_run(tmp_path: Path
     right, wrong = (f'"{CUBE}" is located at "{ws}" after event "t:place-end"' for ws in (BIN_WS, OTHER_WS))
     doing = f'"{PANDA}" picks "{CUBE}" and places it at "{BIN_WS}"'
     (spec,) = write_run(tmp_path / "run", [Steps((("when", doing), ("then", right), ("then", wrong)))])
-    (tmp_path / "run" / "moments.jsonl").write_text("left by an earlier run\n")
+    left = tmp_path / "run" / "moments" / "000000.jsonl"
+    left.parent.mkdir()
+    left.write_text("left by an earlier run\n")
     command = [sys.executable, "-m", "robbdd_tools.agent", str(tmp_path / "run")]
     environment = {**os.environ, "MUJOCO_GL": "nonsense"}
     subprocess.run(command, check=True, capture_output=True, env=environment)
@@ -112,7 +114,8 @@ def test_the_moment_of_every_violated_clause_is_kept_with_the_run(tmp_path: Path
 
 def test_moments_that_are_none_are_explained(tmp_path: Path) -> None:
     write_run(tmp_path / "run", [Steps(())])
-    (tmp_path / "run" / "moments.jsonl").write_text("[1]\n")
+    (tmp_path / "run" / "moments").mkdir()
+    (tmp_path / "run" / "moments" / "000000.jsonl").write_text("[1]\n")
     done = render(tmp_path / "run", tmp_path / "pictures", "moments", MUJOCO_GL="egl")
     assert done.returncode in (2, 3)
     assert "Traceback" not in done.stderr

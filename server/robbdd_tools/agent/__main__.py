@@ -1,4 +1,7 @@
-"""``python -m robbdd_tools.agent RUN_FOLDER``: executes a prepared run and reports on its standard output."""
+"""``python -m robbdd_tools.agent RUN_FOLDER``: executes scenarios of a prepared run.
+
+Which ones it reads on its standard input, as they come; it reports on its standard output (``run.protocol``).
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ def _main() -> int:
     # The handlers are in place before the slow imports.
     from robbdd_tools.agent.runner import run_folder
 
-    return run_folder(sys.argv[1], messages)
+    return run_folder(sys.argv[1], sys.stdin, messages)
 
 
 if __name__ == "__main__":

@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from robbdd_tools.agent.channel import current_channel
-from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.session import Session
 from robbdd_tools.run.protocol import MANIFEST, read_manifest
+
+EXECUTION = "robbdd.execution"
+"""Where behave's user data holds which scenario of the manifest is being executed: several may share a feature's."""
 
 
 def before_all(context: Any) -> None:
@@ -19,7 +21,6 @@ def before_all(context: Any) -> None:
     folder = Path(context.config.base_dir).resolve().parent
     if not (folder / MANIFEST).is_file():
         raise OSError(f"there is no {MANIFEST} in {folder}: run a folder that 'robbdd run' has written")
-    Moments(folder).clear()
     context.session = Session(folder, read_manifest(folder), current_channel())
 
 
@@ -28,7 +29,9 @@ def before_scenario(context: Any, scenario: Any) -> None:
     # A failed clause says nothing about the others: each gets its verdict.
     scenario.continue_after_failed_step = True
     texts = [(int(step.line), str(step.step_type), str(step.name)) for step in scenario.all_steps]
-    context.session.start(Path(scenario.filename), int(scenario.line), texts)
+    handed_out = context.config.userdata.get(EXECUTION)
+    index = None if handed_out is None else int(handed_out)
+    context.session.start(Path(scenario.filename), int(scenario.line), texts, index)
 
 
 def after_scenario(context: Any, _scenario: Any) -> None:
@@ -37,7 +40,7 @@ def after_scenario(context: Any, _scenario: Any) -> None:
 
 
 def after_all(context: Any) -> None:
-    """Report what was never executed."""
+    """Give a scenario that was broken off its verdict."""
     session = getattr(context, "session", None)
     if session is not None:
-        session.close("behave did not execute the scenario")
+        session.finish()

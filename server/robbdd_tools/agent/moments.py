@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
-FILE = "moments.jsonl"
+FOLDER = "moments"
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,28 +25,34 @@ class Moment:
 
 
 class Moments:
-    """The moments of a run folder, one JSON object per line, in the order in which they were found."""
+    """The moments of a run folder: a file per scenario with one JSON object per line, in the order of their finding.
+
+    Several agent processes may work on one folder, each on scenarios of its own.
+    """
 
     def __init__(self, folder: Path) -> None:
-        self._path = folder / FILE
+        self._folder = folder / FOLDER
 
-    def clear(self) -> None:
-        """Forget those of an earlier run; raises ``OSError``."""
-        self._path.unlink(missing_ok=True)
+    def clear(self, index: int) -> None:
+        """Forget those of an earlier execution of a scenario; raises ``OSError``."""
+        self._file(index).unlink(missing_ok=True)
 
     def keep(self, index: int, line: int, at: float, state: FloatArray) -> None:
         """Add a moment; raises ``OSError``."""
         moment = Moment(index, line, at, tuple(state.tolist()))
-        with self._path.open("a", encoding="utf-8") as file:
+        self._folder.mkdir(exist_ok=True)
+        with self._file(index).open("a", encoding="utf-8") as file:
             file.write(json.dumps(asdict(moment)) + "\n")
 
     def __iter__(self) -> Iterator[Moment]:
-        """Yield the moments; raises ``OSError`` or ``ValueError`` when they cannot be read."""
-        if not self._path.is_file():
-            return
-        for line in self._path.read_text(encoding="utf-8").splitlines():
-            try:
-                fields = json.loads(line)
-                yield Moment(fields["index"], fields["line"], fields["at"], tuple(fields["state"]))
-            except (KeyError, TypeError) as error:
-                raise ValueError(f"{self._path} holds something else than moments") from error
+        """Yield the moments, scenario by scenario; raises ``OSError`` or ``ValueError`` when they cannot be read."""
+        for path in sorted(self._folder.glob("*.jsonl")):
+            for line in path.read_text(encoding="utf-8").splitlines():
+                try:
+                    fields = json.loads(line)
+                    yield Moment(fields["index"], fields["line"], fields["at"], tuple(fields["state"]))
+                except (KeyError, TypeError) as error:
+                    raise ValueError(f"{path} holds something else than moments") from error
+
+    def _file(self, index: int) -> Path:
+        return self._folder / f"{index:06}.jsonl"

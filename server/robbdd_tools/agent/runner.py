@@ -1,15 +1,28 @@
-"""Runs behave in this process on a prepared run folder."""
+"""Runs behave in this process on the scenarios of a prepared run folder, one after the other as they are ordered."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from copy import copy
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent.channel import Channel, Lines, use_channel
 from robbdd_tools.agent.engine import version
-from robbdd_tools.agent.session import Session
-from robbdd_tools.run.protocol import LogLine, RunFinished, RunStarted, read_manifest
+from robbdd_tools.agent.hooks import EXECUTION
+from robbdd_tools.agent.session import STRANGER
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    LogLine,
+    RunFinished,
+    RunMessage,
+    RunStarted,
+    ScenarioFinished,
+    ScenarioStarted,
+    decode_order,
+    read_manifest,
+)
 
 if TYPE_CHECKING:
     from robbdd_tools.run.protocol import Manifest
@@ -17,9 +30,9 @@ if TYPE_CHECKING:
 QUIET = ("--format=null", "--no-summary", "--no-capture", "--no-capture-stderr", "--no-logcapture", "--no-snippets")
 
 
-def run_folder(name: str, descriptor: int) -> int:
-    """Execute a run folder and write its messages to a file descriptor; returns the exit code."""
-    channel = Lines(descriptor)
+def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
+    """Execute scenarios of a run folder and write messages to a file descriptor; returns the exit code."""
+    channel = Reports(descriptor)
     use_channel(channel)
     folder = Path(name)
     try:
@@ -29,27 +42,100 @@ def run_folder(name: str, descriptor: int) -> int:
         channel.send(RunFinished(False))
         return 2
     channel.send(RunStarted(len(manifest.scenarios), version()))
-    problem = _behave(folder, manifest)
+    problem = _behave(Features(folder, manifest, channel), orders)
     if problem:
         channel.send(LogLine("error", problem))
-        _give_up(folder, manifest, channel, problem)
     channel.send(RunFinished(not problem))
     return 1 if problem else 0
 
 
-def _behave(folder: Path, manifest: Manifest) -> str:
-    """Run behave on the manifest's features in their order; returns what kept it from running, else nothing."""
-    features = [str(folder / feature) for feature in dict.fromkeys(spec.feature for spec in manifest.scenarios)]
-    if not features:
-        return ""
-    configuration = import_module("behave.configuration").Configuration
-    runner = import_module("behave.runner").Runner(configuration([*QUIET, *features], load_config=False))
+def _behave(features: Features, orders: Iterable[str]) -> str:
+    """Let behave execute what is ordered; returns what kept it from working, else nothing."""
+    configuration: Any = import_module("behave.configuration").Configuration
+    behave: Any = import_module("behave.runner")
+    config = configuration([*QUIET, str(features.folder / "features")], load_config=False)
+    runner = behave.Runner(config)
     try:
-        runner.run()
-    except Exception as error:  # behave's own failures (a broken feature or steps file) are of many types
+        runner.setup_paths()
+        with runner.path_manager:
+            runner.context = behave.Context(runner)
+            runner.load_hooks()
+            runner.load_step_definitions()
+            runner.run_model(features.ordered(orders, config.userdata))
+    except Exception as error:  # behave's own failures (a broken hooks or steps file) are of many types
         return f"behave cannot run the features: {' '.join(str(error).split())}"
     return ""
 
 
-def _give_up(folder: Path, manifest: Manifest, channel: Channel, reason: str) -> None:
-    Session(folder, manifest, channel).close(reason)
+class Reports(Lines):
+    """The channel to the parent; knows which scenarios it was told to be finished."""
+
+    def __init__(self, descriptor: int) -> None:
+        super().__init__(descriptor)
+        self.finished: set[int] = set()
+
+    def send(self, message: RunMessage) -> None:
+        """Pass a message on."""
+        super().send(message)
+        if isinstance(message, ScenarioFinished):
+            self.finished.add(message.index)
+
+
+class Features:
+    """The features of a run folder, each parsed when it is first needed."""
+
+    def __init__(self, folder: Path, manifest: Manifest, channel: Reports) -> None:
+        self.folder = folder
+        self._manifest = manifest
+        self._channel = channel
+        self._parsed: dict[str, tuple[Any, dict[int, Any]] | Exception] = {}
+
+    def ordered(self, orders: Iterable[str], userdata: dict[str, str]) -> Iterator[Any]:
+        """Yield one feature per order, with the one scenario that was ordered; every order gets its report."""
+        for line in orders:
+            index = decode_order(line).index
+            self._channel.finished.discard(index)
+            userdata[EXECUTION] = str(index)
+            try:
+                yield self._feature(index)
+            except Exception as error:  # an unreadable file, or a feature that is no Gherkin: behave's own types
+                reason = f"behave cannot run the features: {' '.join(str(error).split())}"
+                self._channel.send(LogLine("error", reason))
+                self._unknown(index, reason)
+            if index not in self._channel.finished:
+                self._unknown(index, "behave did not execute the scenario")
+
+    def _feature(self, index: int) -> Any:
+        spec = self._manifest.scenarios[index]
+        if spec.feature not in self._parsed:
+            self._parsed[spec.feature] = self._parse(spec.feature)
+        found = self._parsed[spec.feature]
+        if isinstance(found, Exception):
+            raise found
+        feature, scenarios = found
+        scenario = scenarios.get(spec.line)
+        if scenario is None:
+            raise ValueError(f"{Path(spec.feature).name}:{spec.line}: {STRANGER}")
+        # A repetition executes the same scenario once more.
+        scenario.reset()
+        alone = copy(feature)
+        alone.run_items = alone.scenarios = [scenario]
+        return alone
+
+    def _parse(self, name: str) -> tuple[Any, dict[int, Any]] | Exception:
+        try:
+            feature: Any = import_module("behave.parser").parse_file(str(self.folder / name))
+        except Exception as error:
+            return error
+        return feature, {int(scenario.line): scenario for scenario in feature.walk_scenarios()}
+
+    def _unknown(self, index: int, reason: str) -> None:
+        give_up(self._channel, self._manifest, index, reason)
+
+
+def give_up(channel: Channel, manifest: Manifest, index: int, reason: str) -> None:
+    """Report a scenario that cannot be executed."""
+    channel.send(ScenarioStarted(index))
+    for clause in manifest.scenarios[index].clauses:
+        channel.send(ClauseJudged(index, clause.line, "unknown", None, "", None, reason))
+    channel.send(ScenarioFinished(index, 0.0, 0.0, 0.0))

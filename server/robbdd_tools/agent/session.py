@@ -114,7 +114,10 @@ class ScenarioRun:
             found = unknown(str(error))
         else:
             assert self._execution is not None
-            found = verdict(self._execution)
+            try:
+                found = verdict(self._execution)
+            except Exception as error:  # user code may be called; what it breaks is this clause's evidence only
+                found = unknown(f"the step failed: {type(error).__name__}: {error}")
         self._report(line, found)
         return found
 
@@ -141,51 +144,44 @@ class Session:
 
     def __init__(self, folder: Path, manifest: Manifest, channel: Channel) -> None:
         self._channel = channel
+        # Repetitions share a feature's scenario; by hand, behave executes the first of them.
         self._indices = {
-            ((folder / spec.feature).resolve(), spec.line): index for index, spec in enumerate(manifest.scenarios)
+            ((folder / spec.feature).resolve(), spec.line): index
+            for index, spec in reversed(list(enumerate(manifest.scenarios)))
         }
         self._manifest = manifest
         self._moments = Moments(folder)
-        self._finished: set[int] = set()
-        self._present: tuple[int, ScenarioRun] | None = None
+        self._present: ScenarioRun | None = None
 
-    def start(self, feature: Path, line: int, texts: Sequence[tuple[int, str, str]]) -> None:
-        """Begin the scenario whose heading stands there; without one in the manifest, its steps will fail."""
+    def start(
+        self, feature: Path, line: int, texts: Sequence[tuple[int, str, str]], handed_out: int | None = None
+    ) -> None:
+        """Begin the scenario whose heading stands there; without one in the manifest, its steps will fail.
+
+        ``handed_out`` is its number where the parent process asked for it.
+        """
         self._present = None
         index = self._indices.get((feature.resolve(), line))
         if index is None:
             self._channel.send(LogLine("error", f"{feature.name}:{line}: {STRANGER}"))
             return
-        self._present = (
-            index,
-            ScenarioRun(index, self._manifest.scenarios[index], texts, self._channel, self._moments),
-        )
+        index = index if handed_out is None else handed_out
+        self._moments.clear(index)
+        spec = self._manifest.scenarios[index]
+        self._present = ScenarioRun(index, spec, texts, self._channel, self._moments)
 
     @property
     def scenario(self) -> ScenarioRun:
         """The scenario at hand; raises ``SceneError`` when the manifest does not know it."""
         if self._present is None:
             raise SceneError(STRANGER)
-        return self._present[1]
+        return self._present
 
     def finish(self) -> None:
         """End the scenario at hand."""
         if self._present is not None:
-            index, run = self._present
-            run.finish()
-            self._finished.add(index)
+            self._present.finish()
             self._present = None
-
-    def close(self, reason: str) -> None:
-        """Report every scenario that was never executed."""
-        self.finish()
-        for index, spec in enumerate(self._manifest.scenarios):
-            if index not in self._finished:
-                self._channel.send(ScenarioStarted(index))
-                for clause in spec.clauses:
-                    self._channel.send(ClauseJudged(index, clause.line, "unknown", None, "", None, reason))
-                self._channel.send(ScenarioFinished(index, 0.0, 0.0, 0.0))
-                self._finished.add(index)
 
 
 def calls_of(spec: ScenarioSpec) -> list[Call]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.text import Text
 
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import ClauseJudged, LogLine, RunMessage, RunStarted, ScenarioFinished
+from robbdd_tools.run.protocol import ClauseJudged, LogLine, RunMessage, RunStarted, ScenarioFinished, ScenarioStarted
 from robbdd_tools.run.report import SIGNS, margin, plain_sentence, values_words
 
 if TYPE_CHECKING:
@@ -31,10 +31,14 @@ class Display:
             BarColumn(),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
             console=self._console,
             transient=True,
             disable=not self._console.is_terminal,
         )
+        self._held = self._failed = 0
+        self._fails: set[int] = set()
         self._task = self._progress.add_task("starting", total=len(results.scenarios))
 
     def __enter__(self) -> Display:
@@ -44,14 +48,28 @@ class Display:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None):
         self._progress.stop()
 
+    def watch(self, message: RunMessage) -> None:
+        """Count a message as soon as it comes, whosever turn it is."""
+        match message:
+            case ScenarioStarted():
+                self._fails.discard(message.index)
+            case ClauseJudged() if message.verdict != Outcome.HOLDS:
+                self._fails.add(message.index)
+            case ScenarioFinished():
+                failed = message.index in self._fails
+                self._failed += failed
+                self._held += not failed
+                self._progress.update(self._task, description=self._counts(), advance=1)
+            case _:
+                pass
+
     def show(self, message: RunMessage) -> None:
         """Show what a message means to a reader, after the results have taken it."""
         match message:
             case RunStarted():
-                self._progress.update(self._task, description="running")
+                self._progress.update(self._task, description=self._counts())
             case ScenarioFinished():
                 self._scenario(self._results.scenarios[message.index])
-                self._progress.advance(self._task)
             case LogLine(level, text) if level != "info":
                 self._console.print(Text(f"{level}: {text}", STYLES[Outcome.UNKNOWN]))
             case _:
@@ -74,6 +92,10 @@ class Display:
             f"{total} scenario{'' if total == 1 else 's'}: {', '.join(counts)}"
             f"  (seed {self._results.manifest.seed}; {simulated:.1f} s simulated in {wall:.1f} s)"
         )
+
+    def _counts(self) -> str:
+        failed = f"[{STYLES[Outcome.VIOLATED]}]{self._failed} failed[/]" if self._failed else "0 failed"
+        return f"[{STYLES[Outcome.HOLDS]}]{self._held} hold[/], {failed}"
 
     def _scenario(self, scenario: ScenarioResult) -> None:
         spec = scenario.spec

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import signal
 import sys
 import tempfile
-from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
+import threading
+from collections.abc import Generator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,11 +20,13 @@ from robbdd_tools.commands.pictures import NoPictures, render_moments
 from robbdd_tools.commands.progress import Display
 from robbdd_tools.commands.selection import selection
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.launch import Agent
 from robbdd_tools.run.prepare import RunRequest, prepare
 from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.scheduler import Policy, Scheduler
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from robbdd_tools.gherkin.select import Selected, Wanted
     from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri
 
@@ -36,7 +40,14 @@ class Outputs:
     record: Path | None = None
 
 
-def run(path: Path, wanted: Wanted, names: Sequence[str] | None, outputs: Outputs, seed: int | None = None) -> int:
+def run(
+    path: Path,
+    wanted: Wanted,
+    names: Sequence[str] | None,
+    policy: Policy,
+    outputs: Outputs,
+    seed: int | None = None,
+) -> int:
     """Run a model; returns the exit code.
 
     ``names`` selects executions and scenario variants by name, ``wanted`` the scenarios of these; ``seed`` is the one
@@ -62,7 +73,7 @@ def run(path: Path, wanted: Wanted, names: Sequence[str] | None, outputs: Output
     request = RunRequest(model, str(path), wanted.seed, variants, selected.scenarios, executions)
     try:
         with _folder(outputs.folder) as folder:
-            results, interrupted = _execute(request, Path(folder))
+            results, interrupted = _execute(request, Path(folder), policy)
             if outputs.record is not None:
                 _record(Path(folder), outputs.record)
         if report is not None:
@@ -135,23 +146,34 @@ def _folder(output: Path | None) -> AbstractContextManager[str | Path]:
     return tempfile.TemporaryDirectory(prefix="robbdd-") if output is None else nullcontext(output)
 
 
-def _execute(request: RunRequest, folder: Path) -> tuple[RunResults, bool]:
-    """Run the agent on a prepared folder; Ctrl-C ends it and keeps what is finished."""
+@contextmanager
+def _ctrl_c_cancels(scheduler: Scheduler) -> Generator[threading.Event]:
+    """Let Ctrl-C cancel a run instead of breaking off whatever is being done; yields whether it was pressed."""
+    pressed = threading.Event()
+
+    def cancel(_signal: int, _frame: FrameType | None) -> None:
+        pressed.set()
+        scheduler.cancel()
+
+    before = signal.signal(signal.SIGINT, cancel)
+    try:
+        yield pressed
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _execute(request: RunRequest, folder: Path, policy: Policy) -> tuple[RunResults, bool]:
+    """Run a prepared folder; Ctrl-C ends it and keeps what is finished."""
     results = RunResults(prepare(request, folder))
-    agent = Agent(folder)
-    interrupted = False
     with Display(results) as display:
-        try:
-            for message in agent.messages():
+        scheduler = Scheduler(folder, results.manifest, policy, display.watch)
+        with _ctrl_c_cancels(scheduler) as interrupted:
+            for message in scheduler.messages():
                 results.apply(message)
                 display.show(message)
-        except KeyboardInterrupt:
-            interrupted = True
-        finally:
-            agent.cancel()
         if not results.complete:
-            reason = "the run was interrupted" if interrupted else agent.ending()
+            reason = "the run was interrupted" if interrupted.is_set() else scheduler.ending
             results.close(reason)
             display.broken(reason)
         display.summary()
-    return results, interrupted
+    return results, interrupted.is_set()

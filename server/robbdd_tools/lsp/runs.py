@@ -20,7 +20,6 @@ from robbdd_tools.gherkin.files import FeaturePlan, write_features
 from robbdd_tools.graph.model import AcceptanceModel, Iri
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.names.project import Snapshot
-from robbdd_tools.run.launch import Agent
 from robbdd_tools.run.prepare import RunRequest, prepare
 from robbdd_tools.run.protocol import (
     ClauseJudged,
@@ -33,6 +32,7 @@ from robbdd_tools.run.protocol import (
 )
 from robbdd_tools.run.report import plain_sentence, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.scheduler import Scheduler
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -50,13 +50,13 @@ class ActiveRun:
     token: str
     uris: tuple[str, ...]
     results: RunResults
-    agent: Agent
+    scheduler: Scheduler
     found: dict[str, list[ClauseResult]] = field(default_factory=dict[str, list[ClauseResult]])
     texts: dict[str, str] = field(default_factory=dict[str, str])
 
     def cancel(self) -> None:
-        """Stop the agent; the loop that reads its messages then ends by itself."""
-        self.agent.cancel()
+        """Stop the agents; the loop that reads their messages then ends by itself."""
+        self.scheduler.cancel()
 
 
 class ModelError(Exception):
@@ -88,9 +88,8 @@ async def start_run(ls: RobbddServer, uri: str, variant: str | None) -> None:
         model = await ls.analyse(lambda snapshot: _sound_model(snapshot, uri))
         request = RunRequest(model, uri, variants=None if variant is None else {Iri(variant)})
         manifest = await asyncio.to_thread(prepare, request, folder)
-        agent = await asyncio.to_thread(Agent, folder)
         uris = await ls.analyse(lambda snapshot: tuple(file.document.uri for file in snapshot.scope(uri).files))
-        ls.run = ActiveRun(uri, f"robbdd-run-{folder.name}", uris, RunResults(manifest), agent)
+        ls.run = ActiveRun(uri, f"robbdd-run-{folder.name}", uris, RunResults(manifest), Scheduler(folder, manifest))
         await _follow(ls, ls.run)
     except (ModelError, OSError) as error:
         _tell(ls, str(error))
@@ -102,18 +101,17 @@ async def start_run(ls: RobbddServer, uri: str, variant: str | None) -> None:
 def cancel_run(ls: RobbddServer) -> None:
     """Cancel the run in progress, if any."""
     if ls.run is not None:
-        run = ls.run
-        asyncio.get_running_loop().run_in_executor(None, run.cancel)
+        ls.run.cancel()
 
 
 async def _follow(ls: RobbddServer, run: ActiveRun) -> None:
-    """Hand every message of the agent on, keep its results, and report progress."""
+    """Hand every message of the run on, keep its results, and report progress."""
     await _begin_progress(ls, run)
-    messages = run.agent.messages()
+    messages = run.scheduler.messages()
     while (message := await asyncio.to_thread(next, messages, None)) is not None:
         await _take(ls, run, message)
     if not run.results.complete:
-        for judged in run.results.close(run.agent.ending()):
+        for judged in run.results.close(run.scheduler.ending):
             await _take(ls, run, judged)
         ls.protocol.notify(RUN_MESSAGE, _for_client(run, RunFinished(False)))
     holding = run.results.count(Outcome.HOLDS)

@@ -1,4 +1,4 @@
-"""Starts the agent process, streams its messages, stops it."""
+"""Starts agent processes, gives them orders, streams their messages, stops them."""
 
 from __future__ import annotations
 
@@ -6,35 +6,49 @@ import os
 import signal
 import subprocess
 import sys
-import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from pathlib import Path
+from time import monotonic
 
-from robbdd_tools.run.protocol import LogLine, RunMessage, decode
+from robbdd_tools.run.protocol import Execute, LogLine, RunMessage, decode, encode
 
-LOG = "agent.log"
-PATIENCE = 0.4
-"""Seconds that the agent has to end by itself when it is told to stop."""
+LOGS = "logs"
+PATIENCE = 0.2
+"""Seconds that agents have to end by themselves when they are told to stop."""
 
 
 class Agent:
-    """One agent process working on one run folder. ``cancel`` may be called from any thread."""
+    """One agent process working on a run folder; ``number`` names its log."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.cancelled = False
-        self._lock = threading.Lock()
-        with (folder / LOG).open("wb") as log:
+    def __init__(self, folder: Path, number: int = 1) -> None:
+        self._log = folder / LOGS / f"agent-{number}.log"
+        self._log.parent.mkdir(exist_ok=True)
+        with self._log.open("wb") as log:
             # Its own session: Ctrl-C in a terminal reaches the parent, which then stops the agent in good order.
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "robbdd_tools.agent", str(folder)],
-                stdin=subprocess.DEVNULL,
+                stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=log,
                 text=True,
                 encoding="utf-8",
                 start_new_session=True,
             )
+
+    @property
+    def pid(self) -> int:
+        """The process's number."""
+        return self._process.pid
+
+    def execute(self, index: int) -> None:
+        """Order a scenario; an agent that is gone says so by the end of its messages."""
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(encode(Execute(index)) + "\n")
+            self._process.stdin.flush()
+        except OSError:
+            pass
 
     def messages(self) -> Iterator[RunMessage]:
         """Yield the messages as they come until the process ends; a line that is no message becomes a log line."""
@@ -46,34 +60,47 @@ class Agent:
                 yield LogLine("warning", line.rstrip())
         self._process.wait()
 
-    def cancel(self) -> None:
-        """Stop the process; its open clauses stay unjudged."""
-        with self._lock:
-            if self._process.poll() is None:
-                self.cancelled = True
-                self._process.terminate()
-                try:
-                    self._process.wait(PATIENCE)
-                except subprocess.TimeoutExpired:
-                    self._kill()
-
-    def _kill(self) -> None:
-        if hasattr(os, "killpg"):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        else:
-            self._process.kill()
+    def kill(self) -> None:
+        """End the process and its children at once."""
+        if self._process.poll() is None:
+            if hasattr(os, "killpg"):
+                os.killpg(self._process.pid, signal.SIGKILL)
+            else:
+                self._process.kill()
 
     def ending(self) -> str:
         """Say how the process ended, for clauses that it left open."""
-        if self.cancelled:
-            return "the run was cancelled"
-        code = self._process.poll()
+        code = self._process.wait()
+        how = f"signal {signal.Signals(-code).name}" if code < 0 else f"code {code}"
         tail = self._last_log_line()
-        return f"the agent process ended unexpectedly with code {code}" + (f": {tail}" if tail else "")
+        return f"the agent process ended unexpectedly with {how}" + (f": {tail}" if tail else "")
+
+    def terminate(self) -> None:
+        """Ask the process to end now."""
+        if self._process.poll() is None:
+            self._process.terminate()
+
+    def wait(self, seconds: float) -> None:
+        """Wait for the process's end, at most for a time."""
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(max(0.0, seconds))
 
     def _last_log_line(self) -> str:
         try:
-            lines = (self.folder / LOG).read_text(encoding="utf-8", errors="replace").split("\n")
+            lines = self._log.read_text(encoding="utf-8", errors="replace").split("\n")
         except OSError:
             return ""
         return next((line.strip() for line in reversed(lines) if line.strip()), "")
+
+
+def stop(agents: Iterable[Agent]) -> None:
+    """Stop processes together, in good order where they heed it, within ``PATIENCE``."""
+    stopping = list(agents)
+    for agent in stopping:
+        agent.terminate()
+    deadline = monotonic() + PATIENCE
+    for agent in stopping:
+        agent.wait(deadline - monotonic())
+        agent.kill()
+    for agent in stopping:
+        agent.wait(PATIENCE)

@@ -1,6 +1,7 @@
-"""What the parent and the agent process say to each other: a manifest in, one JSON object per line out.
+"""What the parent and the agent process say to each other: a manifest, and one JSON object per line both ways.
 
-The only module that both sides share. Every message is a frozen dataclass; ``encode`` and ``decode`` are inverse.
+The agent reads orders (``Execute``) on its standard input, ends at its end, and writes ``RunMessage``s. The only module
+that both sides share. Every message is a frozen dataclass; ``encode`` and ``decode`` are inverse.
 """
 
 from __future__ import annotations
@@ -104,8 +105,15 @@ class Manifest:
 
 
 @dataclass(frozen=True, slots=True)
+class Execute:
+    """The parent's order to execute scenario number ``index`` of the manifest."""
+
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
 class RunStarted:
-    """The agent is up; ``total`` scenarios follow."""
+    """The agent is up; the manifest has ``total`` scenarios."""
 
     total: int
     simulator: str
@@ -159,7 +167,7 @@ class LogLine:
 
 @dataclass(frozen=True, slots=True)
 class RunFinished:
-    """The agent ends by itself; anything else at the end of the stream is a crash."""
+    """The agent ends by itself, not ``ok`` when it cannot work; anything else at the end of the stream is a crash."""
 
     ok: bool
 
@@ -179,7 +187,7 @@ _TYPES: dict[str, type[RunMessage]] = {
 }
 
 
-def encode(message: RunMessage) -> str:
+def encode(message: RunMessage | Execute) -> str:
     """Return a message as one line of JSON, without the line end."""
     return json.dumps({"type": type(message).__name__, **asdict(message)}, ensure_ascii=False)
 
@@ -191,6 +199,15 @@ def decode(line: str) -> RunMessage:
         return _TYPES[fields.pop("type")](**fields)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ValueError(f"not a run message: {line[:200]!r}") from error
+
+
+def decode_order(line: str) -> Execute:
+    """Return the order of a line; raises ``ValueError`` for anything that is not one."""
+    match json.loads(line):
+        case {"type": "Execute", "index": int(index)}:
+            return Execute(index)
+        case _:
+            raise ValueError(f"not an order: {line[:200]!r}")
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:

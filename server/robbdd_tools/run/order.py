@@ -1,0 +1,38 @@
+"""Puts the messages of scenarios that are executed side by side into the order of the manifest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from robbdd_tools.run.protocol import RunMessage, ScenarioFinished
+
+
+class InOrder:
+    """Lets the messages of one scenario through as they come, and keeps those of later ones until it is their turn."""
+
+    def __init__(self) -> None:
+        self._turn = 0
+        self._kept: dict[int, list[RunMessage]] = {}
+
+    def take(self, index: int, message: RunMessage) -> Iterator[RunMessage]:
+        """Take a message that belongs to scenario ``index``; yields those that are due now."""
+        if index != self._turn:
+            self._kept.setdefault(index, []).append(message)
+            return
+        due = [message]
+        while due:
+            yield from due
+            if not isinstance(due[-1], ScenarioFinished):
+                return
+            self._turn += 1
+            due = self._kept.pop(self._turn, [])
+
+    def forget(self, index: int) -> None:
+        """Drop what is kept of scenario ``index`` and later ones."""
+        self._kept = {kept: messages for kept, messages in self._kept.items() if kept < index}
+
+    def finished(self) -> Iterator[RunMessage]:
+        """Yield the messages of the finished scenarios whose turn never came."""
+        for _, messages in sorted(self._kept.items()):
+            if isinstance(messages[-1], ScenarioFinished):
+                yield from messages

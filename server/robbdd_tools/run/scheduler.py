@@ -1,0 +1,265 @@
+"""Hands the scenarios of a run folder out to several agent processes and keeps all of them busy.
+
+Standard library only: a pool of processes as libraries have it neither replaces a worker that hangs nor tells which
+task a worker died of, and both are wanted here.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from math import inf
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from time import monotonic
+
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.launch import Agent, stop
+from robbdd_tools.run.order import InOrder
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    ClauseStarted,
+    LogLine,
+    Manifest,
+    RunFinished,
+    RunMessage,
+    RunStarted,
+    ScenarioFinished,
+    ScenarioStarted,
+)
+
+TIMEOUT = 300.0
+"""Seconds of wall time that a scenario has unless something else is said."""
+STARTUP = 120.0
+"""Seconds of wall time that a process has from its start, or from an order, until it starts with the scenario."""
+ATTEMPTS = 3
+"""Processes in a row that may end before they start a scenario, until the run is given up."""
+CANCELLED = "the run was cancelled"
+STOPPED = "not executed: the run was stopped at the first failure"
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """How a run goes: processes at a time, seconds of wall time per scenario, whether its first failure ends it."""
+
+    jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
+    timeout: float = TIMEOUT
+    stop_on_failure: bool = False
+
+
+@dataclass(slots=True, eq=False)
+class _Worker:
+    """An agent, the scenario that it is at, and the instant until which it must have finished or begun with it."""
+
+    agent: Agent
+    index: int | None = None
+    deadline: float = inf
+    started: bool = False
+    failed: bool = False
+    timed_out: bool = False
+    complaint: str = "the agent cannot work"
+    judged: set[int] = field(default_factory=set[int])
+
+    def employ(self, index: int) -> None:
+        """Give it a scenario."""
+        self.index = index
+        self.started = self.failed = False
+        self.judged = set()
+        self.deadline = monotonic() + STARTUP
+        self.agent.execute(index)
+
+    def release(self) -> None:
+        """Take note that it has nothing to do."""
+        self.index, self.deadline, self.started = None, inf, False
+
+    def expire(self) -> None:
+        """End it because it missed its deadline."""
+        self.timed_out, self.deadline = True, inf
+        self.agent.kill()
+
+
+Event = tuple[_Worker, RunMessage | None]
+
+
+def no_watcher(_: RunMessage) -> None:
+    """Look at nothing."""
+
+
+class Scheduler:
+    """Executes the scenarios of a prepared run folder.
+
+    ``messages`` is to be consumed by one thread; ``cancel`` may be called from any thread and from a signal handler.
+    ``watch`` is told every message when it comes; those that ``messages`` yields are in the manifest's order, so that
+    they do not depend on how many processes there are. ``ending`` says why scenarios were left open.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        manifest: Manifest,
+        policy: Policy | None = None,
+        watch: Callable[[RunMessage], None] = no_watcher,
+    ) -> None:
+        self._folder = folder
+        self._specs = manifest.scenarios
+        self._policy = policy or Policy()
+        self._watch = watch
+        self._events: SimpleQueue[Event | None] = SimpleQueue()
+        self._waiting = deque(range(len(self._specs)))
+        self._workers: list[_Worker] = []
+        self._order = InOrder()
+        self._launched = 0
+        self._wasted = 0
+        self._greeted = False
+        self._cancelled = False
+        self.ending = ""
+
+    @property
+    def busy(self) -> dict[int, int]:
+        """Process number → number of the scenario that it executes."""
+        return {w.agent.pid: w.index for w in list(self._workers) if w.index is not None and w.started}
+
+    def cancel(self) -> None:
+        """End the run within half a second, keeping what is finished."""
+        self._cancelled = True
+        self._events.put(None)
+
+    def messages(self) -> Iterator[RunMessage]:
+        """Yield the messages of the run until its end; the last one is ``RunFinished``. Raises ``OSError``."""
+        complaints: set[str] = set()
+        for message in self._messages():
+            # Every process, and every scenario of a broken feature, has the same complaint: once is enough.
+            if isinstance(message, LogLine):
+                if message.text in complaints:
+                    continue
+                complaints.add(message.text)
+            yield message
+        yield RunFinished(not self.ending)
+
+    def _messages(self) -> Iterator[RunMessage]:
+        try:
+            while not (self._cancelled or self._gave_up) and self._open:
+                self._employ()
+                event = self._next_event()
+                if event is not None and event[0] in self._workers:
+                    yield from self._take(*event)
+            if self._cancelled and self._open:
+                self.ending = CANCELLED
+            yield from self._order.finished()
+        finally:
+            stop(worker.agent for worker in self._workers)
+
+    @property
+    def _gave_up(self) -> bool:
+        return bool(self.ending) and self.ending != STOPPED
+
+    @property
+    def _open(self) -> bool:
+        return bool(self._waiting) or any(worker.index is not None for worker in self._workers)
+
+    def _employ(self) -> None:
+        """Hand out what waits to processes that have nothing to do, new ones as far as there may be."""
+        idle = [worker for worker in self._workers if worker.index is None]
+        while self._waiting and (idle or len(self._workers) < self._policy.jobs):
+            worker = idle.pop() if idle else self._launch()
+            worker.employ(self._waiting.popleft())
+
+    def _launch(self) -> _Worker:
+        self._launched += 1
+        worker = _Worker(Agent(self._folder, self._launched))
+        self._workers.append(worker)
+        threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
+        return worker
+
+    def _listen(self, worker: _Worker) -> None:
+        for message in worker.agent.messages():
+            self._events.put((worker, message))
+        self._events.put((worker, None))
+
+    def _next_event(self) -> Event | None:
+        """Wait for a message, or for the first deadline: a process that missed it is ended, and says so itself."""
+        first = min(self._workers, key=lambda worker: worker.deadline)
+        try:
+            return self._events.get(timeout=None if first.deadline == inf else max(0.0, first.deadline - monotonic()))
+        except Empty:
+            first.expire()
+            return None
+
+    def _take(self, worker: _Worker, message: RunMessage | None) -> Iterator[RunMessage]:
+        """Act on a message, or on the end of a process (``None``)."""
+        match message:
+            case None:
+                self._workers.remove(worker)
+                yield from self._bury(worker)
+            case RunStarted():
+                if not self._greeted:
+                    self._greeted = True
+                    yield message
+            case RunFinished():
+                self.ending = worker.complaint
+            case LogLine(level, text):
+                worker.complaint = text if level == "error" else worker.complaint
+                yield from self._pass_on(worker, message)
+            case ScenarioStarted(index):
+                self._wasted = 0
+                worker.started, worker.deadline = True, monotonic() + self._limit(index)
+                yield from self._pass_on(worker, message)
+            case ClauseStarted():
+                yield from self._pass_on(worker, message)
+            case ClauseJudged():
+                worker.judged.add(message.line)
+                worker.failed = worker.failed or message.verdict != Outcome.HOLDS
+                yield from self._pass_on(worker, message)
+            case ScenarioFinished():
+                yield from self._finish(worker, message)
+
+    def _limit(self, _index: int) -> float:
+        """Seconds that a scenario may take."""
+        return self._policy.timeout or inf
+
+    def _finish(self, worker: _Worker, message: ScenarioFinished) -> Iterator[RunMessage]:
+        if worker.failed and self._policy.stop_on_failure:
+            self._stop_after(message.index)
+        yield from self._pass_on(worker, message)
+        worker.release()
+
+    def _stop_after(self, index: int) -> None:
+        """Leave scenarios after one undone; those before it go on, so that the outcome does not depend on timing."""
+        if index + 1 < len(self._specs):
+            self.ending = STOPPED
+        self._waiting = deque(waiting for waiting in self._waiting if waiting < index)
+        self._order.forget(index + 1)
+        beyond = [worker for worker in self._workers if worker.index is not None and worker.index > index]
+        self._workers = [worker for worker in self._workers if worker not in beyond]
+        stop(worker.agent for worker in beyond)
+
+    def _bury(self, worker: _Worker) -> Iterator[RunMessage]:
+        """Judge what a process left open when it ended, or have it done by another when it had not begun."""
+        if worker.index is None:
+            return
+        spec = self._specs[worker.index]
+        if worker.started:
+            limit = self._limit(worker.index)
+            reason = f"timed out after {limit:g} s" if worker.timed_out else worker.agent.ending()
+            for clause in spec.clauses:
+                if clause.line not in worker.judged:
+                    worker.failed = True
+                    judged = ClauseJudged(worker.index, clause.line, Outcome.UNKNOWN, None, "", None, reason)
+                    yield from self._pass_on(worker, judged)
+            yield from self._finish(worker, ScenarioFinished(worker.index, 0.0, 0.0, 0.0))
+            return
+        self._wasted += 1
+        self._waiting.appendleft(worker.index)
+        if self._wasted == ATTEMPTS:
+            late = f"the agent process did not begin within {STARTUP:g} s"
+            self.ending = late if worker.timed_out else worker.agent.ending()
+
+    def _pass_on(self, worker: _Worker, message: RunMessage) -> Iterator[RunMessage]:
+        self._watch(message)
+        if worker.index is None:
+            yield message
+        else:
+            yield from self._order.take(worker.index, message)

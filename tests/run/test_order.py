@@ -1,0 +1,35 @@
+"""Messages of scenarios side by side come out in the manifest's order."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robbdd_tools.run.order import InOrder
+from robbdd_tools.run.protocol import RunMessage, ScenarioFinished, ScenarioStarted
+
+
+def story(index: int) -> list[RunMessage]:
+    return [ScenarioStarted(index), ScenarioFinished(index, 1.0, 1.0, 1.0)]
+
+
+@given(st.permutations([0, 1, 2, 3] * 2))
+def test_any_interleaving_becomes_the_order_of_the_manifest(turns: list[int]) -> None:
+    order, stories = InOrder(), {index: iter(story(index)) for index in range(4)}
+    found = [due for index in turns for due in order.take(index, next(stories[index]))]
+    assert found == [message for index in range(4) for message in story(index)]
+
+
+def test_the_scenario_whose_turn_it_is_is_heard_at_once() -> None:
+    order = InOrder()
+    assert list(order.take(0, ScenarioStarted(0))) == [ScenarioStarted(0)]
+    assert list(order.take(1, ScenarioStarted(1))) == []
+
+
+def test_what_is_finished_is_not_lost_when_its_turn_never_comes() -> None:
+    order = InOrder()
+    for message in (*story(2), ScenarioStarted(1)):
+        assert list(order.take(2 if message in story(2) else 1, message)) == []
+    assert list(order.finished()) == story(2)
+    order.forget(2)
+    assert list(order.finished()) == []
