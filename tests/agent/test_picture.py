@@ -19,6 +19,7 @@ from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.png import SIGNATURE, write_png
 from robbdd_tools.agent.session import calls_of
+from robbdd_tools.run.protocol import Execute, encode
 
 
 def read_png(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
@@ -98,7 +99,7 @@ def test_the_moment_of_every_violated_clause_is_kept_with_the_run(tmp_path: Path
     left.write_text("left by an earlier run\n")
     command = [sys.executable, "-m", "robbdd_tools.agent", str(tmp_path / "run")]
     environment = {**os.environ, "MUJOCO_GL": "nonsense"}
-    subprocess.run(command, check=True, capture_output=True, env=environment)
+    subprocess.run(command, check=True, capture_output=True, env=environment, input=encode(Execute(0)).encode() + b"\n")
     (moment,) = Moments(tmp_path / "run")
     assert (moment.index, moment.line) == (0, spec.clauses[2].line)
     simulation = Execution(spec, calls_of(spec)).simulation

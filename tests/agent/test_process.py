@@ -174,13 +174,15 @@ def test_a_broken_manifest_is_explained(tmp_path: Path) -> None:
     assert "Traceback" not in done.stderr
 
 
-def test_a_run_without_its_features_leaves_every_clause_unknown(tmp_path: Path) -> None:
+def test_an_agent_without_features_says_that_it_cannot_work(tmp_path: Path) -> None:
     (spec,) = write_run(tmp_path / "run", [Steps(STEPS)])
     (tmp_path / "run" / spec.feature).unlink()
     done = agent(tmp_path / "run")
-    found = messages(done.stdout)
-    assert set(verdicts(found, spec, 0)) == {"unknown"}
-    assert found[-1] == RunFinished(True)
+    _, complaint, end = messages(done.stdout)
+    assert done.returncode == 1
+    assert isinstance(complaint, LogLine)
+    assert "No feature files" in complaint.text
+    assert end == RunFinished(False)
     assert "Traceback" not in done.stderr
 
 
@@ -203,8 +205,8 @@ def test_scenarios_that_moved_in_the_feature_are_not_mistaken(tmp_path: Path) ->
     assert any(isinstance(message, LogLine) and "was the feature changed?" in message.text for message in found)
 
 
-def test_an_empty_run_finishes(tmp_path: Path) -> None:
-    write_manifest(tmp_path, Manifest("t", 1, ()))
+def test_an_agent_without_orders_finishes(tmp_path: Path) -> None:
+    write_run(tmp_path, [Steps(STEPS)])
     found = messages(agent(tmp_path, orders=()).stdout)
     assert isinstance(found[0], RunStarted)
     assert found[1:] == [RunFinished(True)]
@@ -226,7 +228,7 @@ def test_a_scenario_is_executed_as_often_as_it_is_ordered(tmp_path: Path) -> Non
 
 def test_repetitions_share_the_scenario_of_their_feature(tmp_path: Path) -> None:
     folder = tmp_path / "run"
-    (spec,) = write_run(folder, [Steps(STEPS[:1])])
+    (spec,) = write_run(folder, [Steps((("then", f'"{CUBE}" is located at "env:bench_ws" after event "t:end"'),))])
     write_manifest(folder, Manifest("t", 1, (spec, replace(spec, seed=2))))
     judged = [message for message in messages(agent(folder, orders=(1, 0)).stdout) if isinstance(message, ClauseJudged)]
     assert [message.index for message in judged] == [1, 0]
