@@ -97,6 +97,19 @@ export class Server implements vscode.Disposable {
     }
   }
 
+  /** Ask the server something that no user waits for: undefined when there is no server or it has no answer. */
+  async request(method: string, params: object): Promise<unknown> {
+    if (this.client?.state !== State.Running) {
+      return undefined;
+    }
+    try {
+      return await this.client.sendRequest(method, params);
+    } catch (error) {
+      this.log.warn(`${method}: ${String(error)}`);
+      return undefined;
+    }
+  }
+
   dispose(): void {
     this.files.dispose();
     void this.stop();

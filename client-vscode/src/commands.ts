@@ -1,18 +1,21 @@
 // The commands of the palette. Those of code lenses (robbdd.run, …) are the server's own.
 import * as vscode from "vscode";
 import type { Server } from "./client";
+import type { PreviewView } from "./preview/view";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
 
 export function registerCommands(
   server: Server,
   runs: RunMonitor,
+  previews: PreviewView,
   log: vscode.LogOutputChannel,
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
     "robbdd.runFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri })),
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
     "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
+    "robbdd.previewGherkin": (target) => withModel(target, (uri) => previews.open(vscode.Uri.parse(uri))),
     "robbdd.restartServer": () => server.restart(),
     "robbdd.showLog": () => {
       log.show();

@@ -2,6 +2,7 @@
 import * as vscode from "vscode";
 import { Server } from "./client";
 import { registerCommands } from "./commands";
+import { PreviewView } from "./preview/view";
 import { onInterpreterChange } from "./python";
 import { RunMonitor } from "./runs/monitor";
 import { StatusItem } from "./status";
@@ -16,13 +17,18 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   });
   const started = new Server(log, runs, (state) => {
     status.showServer(state);
+    if (state.kind === "ready") {
+      previews.refreshSoon();
+    }
   });
+  const previews = new PreviewView(started);
   server = started;
   context.subscriptions.push(
     log,
     status,
     runs,
-    ...registerCommands(started, runs, log),
+    previews,
+    ...registerCommands(started, runs, previews, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
         void started.restart();

@@ -1,4 +1,4 @@
-// The TextMate grammars of the five file kinds. The build writes them as JSON.
+// The TextMate grammars of the five file kinds and of features. The build writes them as JSON.
 import { COMMON, NAME, QUALIFIED, declaration, grammar, labels, phrases, property } from "./building.mjs";
 
 const DECLARE = "storage.type.declaration";
@@ -198,4 +198,24 @@ const bddx = grammar("RobBDD Execution", "source.robbdd.bddx", [
   phrases(DECLARE, "Scenario Exec", "bhv impl", "obs policy", "obs provider", "observation"),
 ]);
 
-export const grammars = { common, scene, bdd, scenex, bddx };
+// Features as our templates write them, English or German, for editors that have no extension for Gherkin.
+const STEP_WORDS = "Given|When|Then|And|But|Angenommen|Wenn|Dann|Und|Aber";
+const HEADINGS = "Feature|Background|Scenario Outline|Scenario|Examples|Funktionalität|Grundlage|Szenariogrundriss|Szenario|Beispiele";
+const feature = grammar("Gherkin", "text.gherkin.robbdd", [
+  { match: String.raw`^\s*#.*$`, name: "comment.line.number-sign.robbdd" },
+  { match: String.raw`(?<=^|\s)@\S+`, name: "storage.type.annotation.tag.robbdd" },
+  {
+    match: String.raw`^\s*(${HEADINGS})(:)\s*(.*)$`,
+    captures: {
+      1: { name: `${SECTION}.robbdd` },
+      2: { name: "punctuation.separator.label.robbdd" },
+      3: { name: "entity.name.type.scenario.robbdd" },
+    },
+  },
+  { match: String.raw`^\s*(${STEP_WORDS})(?=\s)`, captures: { 1: { name: "keyword.control.step.robbdd" } } },
+  { match: String.raw`"(?:[^"\\]|\\.)*"`, name: "string.quoted.double.robbdd" },
+  { match: String.raw`(?<=\|)[^|]*(?=\|)`, name: "variable.other.constant.robbdd" },
+  { match: String.raw`(?<![\w-])(?:before|after) event|(?<![\w-])(?:within|from|until)(?![\w-])`, name: `${WORD}.time.robbdd` },
+]);
+
+export const grammars = { common, scene, bdd, scenex, bddx, feature };

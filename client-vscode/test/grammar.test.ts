@@ -16,6 +16,7 @@ const FILES: Record<string, string> = {
   "source.robbdd.scene": "scene",
   "source.robbdd.scenex": "scenex",
   "source.robbdd.bddx": "bddx",
+  "text.gherkin.robbdd": "feature",
 };
 
 const wasm = readFileSync(createRequire(join(process.cwd(), "x.js")).resolve("vscode-oniguruma/release/onig.wasm"));
@@ -57,6 +58,26 @@ async function expectTokens(scope: string, text: string, ...expected: string[]):
     assert.ok(found.includes(token), `missing "${token}" among\n  ${found.join("\n  ")}`);
   }
 }
+
+test("a feature has its tags, headings, steps, names and times", async () => {
+  const text = `@story=https:;;x.org
+  Szenario: t:fetch -- 1
+    Given "a:b" is located at "c \\" d" within 0.5 seconds after event "t:e"
+      | name |`;
+  assert.deepEqual(await tokens("text.gherkin.robbdd", text), [
+    "@story=https:;;x.org → storage.type.annotation.tag",
+    "Szenario → keyword.control.section",
+    ": → punctuation.separator.label",
+    "t:fetch -- 1 → entity.name.type.scenario",
+    "Given → keyword.control.step",
+    '"a:b" → string.quoted.double',
+    '"c \\" d" → string.quoted.double',
+    "within → keyword.other.time",
+    "after event → keyword.other.time",
+    '"t:e" → string.quoted.double',
+    "name → variable.other.constant",
+  ]);
+});
 
 test("a reference is split into its qualifier and its name", async () => {
   assert.deepEqual(await tokens("source.robbdd", "<places.tray_ws>"), [

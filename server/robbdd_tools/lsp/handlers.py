@@ -19,6 +19,7 @@ from robbdd_tools.features.scenarios import RunnableScenario, runnable_scenarios
 from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.navigation import register_navigation
+from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.tokens import register_tokens
@@ -36,6 +37,7 @@ def create_server() -> RobbddServer:
     _register_commands(server)
     register_navigation(server)
     register_tokens(server)
+    register_preview(server)
     return server
 
 

@@ -14,6 +14,7 @@ from robbdd_tools import __version__
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.features.clause_results import JudgedClause, clause_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.worker import Answer, Request
@@ -43,6 +44,7 @@ class RobbddServer(LanguageServer):
         self._shaped_texts: dict[str, dict[str, str]] = {}
         self._requested_texts: dict[str, dict[str, str]] = {}
         self._analysis = ThreadPoolExecutor(1, thread_name_prefix="analysis")
+        self._background = Background()
         self._validator = ShapeValidator(self._shapes_found)
         self._opened: dict[str, None] = {}
         self.when_closed: list[Callable[[str], None]] = []
@@ -55,6 +57,11 @@ class RobbddServer(LanguageServer):
 
     async def _in_thread(self, work: Callable[[], Result]) -> Result:
         return await asyncio.get_running_loop().run_in_executor(self._analysis, work)
+
+    async def in_background(self, work: Callable[[Snapshot], Result]) -> Result:
+        """Run ``work`` on the newest texts in a thread of its own: what is asked for meanwhile does not wait for it."""
+        texts = await self._in_thread(self.project.texts)
+        return await self._background.work(texts, work)
 
     async def text_changed(self, uri: str, version: int, text: str) -> None:
         """Take a new text of an open document and publish what it means."""
@@ -118,6 +125,7 @@ class RobbddServer(LanguageServer):
         if self.run is not None:
             self.run.cancel()
         self._validator.stop()
+        self._background.stop()
         self._analysis.shutdown(wait=False, cancel_futures=True)
 
     async def _publish_one(self, uri: str) -> None:

@@ -1,0 +1,114 @@
+"""What the Gherkin of a model looks like, for reading beside its text: the first scenarios, with the way back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from robbdd_tools.gherkin.feature import FeaturePiece, Numbered, ScenarioText, every_scenario, feature_pieces
+from robbdd_tools.gherkin.files import only
+from robbdd_tools.gherkin.variations import count
+from robbdd_tools.graph.source_map import Location
+from robbdd_tools.names.variants import variants_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.graph.model import AcceptanceModel, Story, Variant
+    from robbdd_tools.graph.source_map import SourceMap
+    from robbdd_tools.names.project import Snapshot
+
+MOST_SHOWN = 50
+"""Scenarios that a reader is shown unless they ask for more."""
+
+
+@dataclass(frozen=True, slots=True)
+class PreviewLine:
+    """A line of a preview, from 0, and what in the text it comes from: a clause, a variant, a row of its table."""
+
+    line: int
+    iri: str
+    location: Location
+
+
+@dataclass(frozen=True, slots=True)
+class Preview:
+    """Features one below the other; how many scenarios they show of how many there are."""
+
+    text: str
+    lines: tuple[PreviewLine, ...]
+    shown: int
+    total: int
+
+
+def preview(snapshot: Snapshot, uri: str, variant: str | None = None, most: int = MOST_SHOWN) -> Preview:
+    """Return the features of a file without errors, of one variant where given, with ``most`` scenarios at most."""
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.read import read_model
+
+    built = build_graph(snapshot, uri)
+    model = read_model(built.graph)
+    stories = [only(story, lambda iri: variant in (None, iri)) for story in model.stories]
+    shown = [story for story in stories if story.variants]
+    return _written(model, shown, most, _Places(snapshot, uri, built.sources))
+
+
+def _written(model: AcceptanceModel, stories: list[Story], most: int, places: _Places) -> Preview:
+    total = sum(count(variant.variation) for story in stories for variant in story.variants)
+    texts: list[str] = []
+    lines: list[PreviewLine] = []
+    shown = above = 0
+    for story in stories:
+        for piece in _pieces(model, story, most - shown):
+            texts.append(piece.text)
+            if piece.scenario is not None:
+                shown += 1
+                lines += places.lines(piece.scenario, above)
+        if shown >= most:
+            break
+        texts.append("\n")
+        above = sum(text.count("\n") for text in texts)
+    text = "".join(texts).rstrip("\n")
+    return Preview(f"{text}\n" if text else "", tuple(lines), shown, total)
+
+
+def _pieces(model: AcceptanceModel, story: Story, most: int) -> Iterator[FeaturePiece]:
+    """Yield the pieces of a story with so many scenarios at most."""
+    limits: dict[str, int] = {}
+    for variant in story.variants:
+        limits[variant.iri] = min(most, count(variant.variation))
+        most -= limits[variant.iri]
+
+    def first(variant: Variant) -> Iterator[Numbered]:
+        return islice(every_scenario(variant), limits[variant.iri])
+
+    return feature_pieces(model, story, first)
+
+
+class _Places:
+    """Finds the whole text of clauses, variants and rows."""
+
+    def __init__(self, snapshot: Snapshot, uri: str, sources: SourceMap) -> None:
+        self._sources = sources
+        self._extents: dict[Location, Location] = {}
+        self._variants: dict[str, Location] = {}
+        self._rows: dict[tuple[str, int], Location] = {}
+        for file in snapshot.closure(uri):
+            name = file.document.uri
+            for found in file.definitions.values():
+                self._extents[Location(name, found.span)] = Location(name, found.extent)
+            for variant in variants_of(snapshot, name):
+                self._variants[variant.iri] = Location(name, variant.definition.extent)
+                for number, row in enumerate(variant.rows, start=1):
+                    self._rows[variant.iri, number] = Location(name, row)
+
+    def lines(self, scenario: ScenarioText, above: int) -> Iterator[PreviewLine]:
+        """Yield what the lines of a scenario come from; ``above`` is the number of lines before its feature."""
+        variant = scenario.variant.iri
+        heading = self._rows.get((variant, scenario.number), self._variants.get(variant))
+        if heading is not None:
+            yield PreviewLine(above + scenario.line - 1, variant, heading)
+        for line, step in zip(scenario.lines, scenario.steps, strict=True):
+            written = self._sources.node(step.clause)
+            if line and written is not None:
+                yield PreviewLine(above + line - 1, step.clause, self._extents.get(written, written))

@@ -1,0 +1,98 @@
+"""The request ``robbdd/preview``: the Gherkin of a document as it is being edited.
+
+Parameters: ``uri``; optionally ``scenario`` (IRI of a variant) and ``most`` (scenarios to show). The answer is described
+by ``docs/schemas/preview.schema.json``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.gherkin.preview import MOST_SHOWN, Preview, preview
+from robbdd_tools.lsp.convert import Converter, document_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.names.project import Snapshot
+
+PREVIEW = "robbdd/preview"
+
+
+class Previews:
+    """Makes previews and keeps the last good one of each document and scenario."""
+
+    def __init__(self) -> None:
+        self._kept: dict[tuple[str, str | None], dict[str, Any]] = {}
+
+    def show(self, snapshot: Snapshot, convert: Converter, params: Any) -> dict[str, Any]:
+        """Return the answer to a request; text with errors is answered with the last preview without."""
+        uri = str(params.uri)
+        scenario = getattr(params, "scenario", None)
+        most = int(getattr(params, "most", None) or MOST_SHOWN)
+        error = _first_error(snapshot, uri)
+        if error is None:
+            made = _answer(snapshot, convert, preview(snapshot, uri, scenario, most))
+            self._kept[uri, scenario] = made
+            return {"uri": uri, "problem": None, **made, "text": _headed(made, _extent(made))}
+        kept = self._kept.get((uri, scenario), {"text": "", "lines": [], "shown": 0, "total": 0})
+        place = document_of(snapshot, error.uri).position(error.span.start)
+        problem = f"line {place.line + 1}: {error.message}"
+        if error.uri != uri:
+            problem = f"{error.uri.rsplit('/', 1)[-1]}, {problem}"
+        made_of = "this was made before" if kept["text"] else "there is nothing to show yet"
+        said = f"out of date: the model has an error ({' '.join(problem.split())}); {made_of}"
+        return {"uri": uri, "problem": problem, **kept, "text": _headed(kept, said)}
+
+    def forget(self, uri: str) -> None:
+        """Drop what is kept of a document."""
+        for key in [key for key in self._kept if key[0] == uri]:
+            del self._kept[key]
+
+
+def register_preview(server: RobbddServer) -> None:
+    """Add the request to a server."""
+    previews = Previews()
+    server.when_closed.append(previews.forget)
+
+    @server.feature(PREVIEW)
+    async def show(ls: RobbddServer, params: Any) -> dict[str, Any]:
+        return await ls.in_background(lambda snapshot: previews.show(snapshot, ls.convert, params))
+
+
+def _first_error(snapshot: Snapshot, uri: str) -> Diagnostic | None:
+    for file in snapshot.closure(uri) if snapshot.file(uri) is not None else ():
+        for found in fast_diagnostics(snapshot, file.document.uri):
+            if found.severity is Severity.ERROR:
+                return found
+    return None
+
+
+def _answer(snapshot: Snapshot, convert: Converter, made: Preview) -> dict[str, Any]:
+    return {
+        "text": made.text,
+        # The line that says how much is shown stands above all others.
+        "lines": [
+            {
+                "line": entry.line + 1,
+                "iri": entry.iri,
+                "uri": entry.location.uri,
+                "range": convert.range(document_of(snapshot, entry.location.uri), entry.location.span),
+            }
+            for entry in made.lines
+        ],
+        "shown": made.shown,
+        "total": made.total,
+    }
+
+
+def _extent(made: dict[str, Any]) -> str:
+    if made["shown"] < made["total"]:
+        return f"the first {made['shown']} of {made['total']} scenarios"
+    return f"{made['total']} scenario{'' if made['total'] == 1 else 's'}"
+
+
+def _headed(made: dict[str, Any], remark: str) -> str:
+    """Put the line that the numbers of lines count on above a text."""
+    return f"# {remark}\n{made['text']}"

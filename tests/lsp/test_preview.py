@@ -1,0 +1,53 @@
+"""The preview of a model's Gherkin, as a client asks for it."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+from kit import schema_errors
+from lsp_kit import CLIENTS, Editor
+
+
+async def preview_of(editor: Editor, **more: object) -> Any:
+    answer = await editor.client.protocol.send_request_async("robbdd/preview", {"uri": editor.uri, **more})
+    return answer
+
+
+@CLIENTS
+async def test_the_preview_follows_the_text_and_keeps_the_last_good_one(editor: Editor) -> None:
+    editor.open("// 😀\n" + editor.text)
+    first = await preview_of(editor)
+    assert first.problem is None
+    lines = first.text.split("\n")
+    assert lines[:2] == ["# 4 scenarios", "@story=https:;;example.org;robbdd;criteria;tidy-bench"]
+    place = next(entry for entry in first.lines if "is held by" in lines[entry.line])
+    assert editor.text.split("\n")[place.range.start.line].strip().startswith("in-hand: holds(")
+    editor.change("<thing> is held by <robot>", "<thing> is held by <rob>")
+    broken = await preview_of(editor)
+    assert broken.text.split("\n")[1:] == lines[1:]
+    assert broken.text.startswith("# out of date: the model has an error (line ")
+    assert "'rob'" in broken.problem
+    editor.change("<thing> is held by <rob>", "<robot> can reach <thing>")
+    mended = await preview_of(editor, most=1)
+    assert mended.problem is None
+    assert " can reach " in mended.text
+    assert mended.text.startswith("# the first 1 of 4 scenarios\n")
+
+
+async def test_a_preview_of_nothing_says_so(editor: Editor) -> None:
+    editor.open("Event (ns=")
+    assert (await preview_of(editor)).text.endswith("there is nothing to show yet\n")
+    editor.change("Event (ns=", "ns t = 'https://example.org/t/'")
+    assert (await preview_of(editor)).text == "# 0 scenarios\n"
+
+
+async def test_the_answer_to_a_preview_is_as_documented(editor: Editor) -> None:
+    editor.open()
+    assert schema_errors("preview.schema.json", plain(await preview_of(editor))) == []
+
+
+def plain(value: Any) -> Any:
+    """An object of the client, as the JSON that it was."""
+    if isinstance(value, tuple) and hasattr(value, "_asdict"):
+        return {name: plain(entry) for name, entry in value._asdict().items()}
+    return [plain(entry) for entry in value] if isinstance(value, list) else value
