@@ -9,8 +9,7 @@ from lsp_kit import CLIENTS, Editor
 
 
 async def preview_of(editor: Editor, **more: object) -> Any:
-    answer = await editor.client.protocol.send_request_async("robbdd/preview", {"uri": editor.uri, **more})
-    return answer
+    return await editor.client.protocol.send_request_async("robbdd/preview", {"uri": editor.uri, **more})
 
 
 @CLIENTS
@@ -18,10 +17,11 @@ async def test_the_preview_follows_the_text_and_keeps_the_last_good_one(editor: 
     editor.open("// 😀\n" + editor.text)
     first = await preview_of(editor)
     assert first.problem is None
-    lines = first.text.split("\n")
+    lines = str(first.text).split("\n")
     assert lines[:2] == ["# 4 scenarios", "@story=https:;;example.org;robbdd;criteria;tidy-bench"]
     place = next(entry for entry in first.lines if "is held by" in lines[entry.line])
-    assert editor.text.split("\n")[place.range.start.line].strip().startswith("in-hand: holds(")
+    written: str = editor.text.split("\n")[int(place.range.start.line)]
+    assert written.strip().startswith("in-hand: holds(")
     editor.change("<thing> is held by <robot>", "<thing> is held by <rob>")
     broken = await preview_of(editor)
     assert broken.text.split("\n")[1:] == lines[1:]
@@ -48,6 +48,6 @@ async def test_the_answer_to_a_preview_is_as_documented(editor: Editor) -> None:
 
 def plain(value: Any) -> Any:
     """An object of the client, as the JSON that it was."""
-    if isinstance(value, tuple) and hasattr(value, "_asdict"):
+    if hasattr(value, "_asdict"):
         return {name: plain(entry) for name, entry in value._asdict().items()}
-    return [plain(entry) for entry in value] if isinstance(value, list) else value
+    return list(map(plain, cast(list[Any], value))) if isinstance(value, list) else value

@@ -32,11 +32,6 @@ export class PreviewView implements vscode.TextDocumentContentProvider, vscode.D
           this.followAll();
         }
       }),
-      vscode.workspace.onDidCloseTextDocument(({ uri }) => {
-        if (uri.scheme === SCHEME) {
-          this.shown.delete(modelOf(uri));
-        }
-      }),
       vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => {
         this.follow(textEditor);
       }),
@@ -78,7 +73,13 @@ export class PreviewView implements vscode.TextDocumentContentProvider, vscode.D
   }
 
   private async refresh(): Promise<void> {
+    // A change of a document's language closes it for a moment: what is closed is told when it is needed.
+    const open = new Set(vscode.workspace.textDocuments.map(({ uri }) => uri.toString()));
     for (const [model, { text }] of [...this.shown]) {
+      if (!open.has(previewOf(vscode.Uri.parse(model)).toString())) {
+        this.shown.delete(model);
+        continue;
+      }
       await this.load(model);
       if (this.shown.get(model)?.text !== text) {
         this.changed.fire(previewOf(vscode.Uri.parse(model)));

@@ -11,6 +11,7 @@ from robbdd_tools.gherkin.feature import FeaturePiece, Numbered, ScenarioText, e
 from robbdd_tools.gherkin.files import only
 from robbdd_tools.gherkin.variations import count
 from robbdd_tools.graph.source_map import Location
+from robbdd_tools.names.clauses import clauses_in
 from robbdd_tools.names.variants import variants_of
 
 if TYPE_CHECKING:
@@ -90,13 +91,12 @@ class _Places:
 
     def __init__(self, snapshot: Snapshot, uri: str, sources: SourceMap) -> None:
         self._sources = sources
-        self._extents: dict[Location, Location] = {}
+        self._clauses: dict[str, Location] = {}
         self._variants: dict[str, Location] = {}
         self._rows: dict[tuple[str, int], Location] = {}
         for file in snapshot.closure(uri):
             name = file.document.uri
-            for found in file.definitions.values():
-                self._extents[Location(name, found.span)] = Location(name, found.extent)
+            self._clauses |= {clause.iri: Location(name, clause.span) for clause in clauses_in(snapshot, name)}
             for variant in variants_of(snapshot, name):
                 self._variants[variant.iri] = Location(name, variant.definition.extent)
                 for number, row in enumerate(variant.rows, start=1):
@@ -109,6 +109,7 @@ class _Places:
         if heading is not None:
             yield PreviewLine(above + scenario.line - 1, variant, heading)
         for line, step in zip(scenario.lines, scenario.steps, strict=True):
-            written = self._sources.node(step.clause)
+            # A model that is read from a graph has no clauses in its text, but places.
+            written = self._clauses.get(step.clause) or self._sources.node(step.clause)
             if line and written is not None:
-                yield PreviewLine(above + line - 1, step.clause, self._extents.get(written, written))
+                yield PreviewLine(above + line - 1, step.clause, written)

@@ -55,7 +55,7 @@ class ClauseWriter:
         if expression is None:
             return []
         path = f"{path}.{role}"
-        expression = _bare(expression)
+        expression = tree.bare(expression)
         if isinstance(expression, tree.Conjunction):
             return self._each(expression.operands, role, path)
         return self._each([expression], role, path)
@@ -76,7 +76,7 @@ class ClauseWriter:
         if path.count(".") > MOST_NESTED:
             return []
         written = [
-            self._clause(_bare(expression), role, f"{path}.{index}") for index, expression in enumerate(expressions)
+            self._clause(tree.bare(expression), role, f"{path}.{index}") for index, expression in enumerate(expressions)
         ]
         return [node for node in written if node is not None]
 
@@ -145,7 +145,7 @@ class ClauseWriter:
         if node is not None:
             self._start(node, ["bdd:ThereExists"], role, self.frame.at(exists.variable))
             self._quantified(node, exists.variable, exists.in_set)
-            body = _bare(exists.body)
+            body = tree.bare(exists.body)
             operands = body.operands if isinstance(body, tree.Conjunction) else (body,)
             self._sink.add(node, "bdd:has-clause", self._sink.make_list(self._each(operands, role, path)))
         return node
@@ -216,10 +216,3 @@ def add_time(frame: Frame, node: URIRef, time: tree.TimeConstraint) -> None:
     if time.horizon is not None:
         horizon = sink.literal(float(time.horizon.value))
         sink.add(node, "time:horizon-seconds", horizon, frame.at(time.horizon))
-
-
-def _bare(expression: tree.Expression) -> tree.Expression:
-    """Take off parentheses that hold a single expression."""
-    while isinstance(expression, tree.Conjunction | tree.Disjunction) and len(expression.operands) == 1:
-        expression = expression.operands[0]
-    return expression

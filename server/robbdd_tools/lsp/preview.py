@@ -1,7 +1,7 @@
 """The request ``robbdd/preview``: the Gherkin of a document as it is being edited.
 
-Parameters: ``uri``; optionally ``scenario`` (IRI of a variant) and ``most`` (scenarios to show). The answer is described
-by ``docs/schemas/preview.schema.json``.
+Parameters: ``uri``; optionally ``scenario`` (IRI of a variant) and ``most`` (scenarios to show).
+The answer is described by ``docs/schemas/preview.schema.json``.
 """
 
 from __future__ import annotations

@@ -147,6 +147,13 @@ class Exists(Node):
 Expression = Fluent | TextClause | Negation | Conjunction | Disjunction | Exists
 
 
+def bare(expression: Expression) -> Expression:
+    """Take off parentheses that hold a single expression."""
+    while isinstance(expression, Conjunction | Disjunction) and len(expression.operands) == 1:
+        expression = expression.operands[0]
+    return expression
+
+
 @dataclass(frozen=True, slots=True)
 class Occurrence(Node):
     """``event <e> occurs``."""

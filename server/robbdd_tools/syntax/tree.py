@@ -40,6 +40,7 @@ from robbdd_tools.syntax.bdd_tree import (
     Variable,
     Variant,
     When,
+    bare,
 )
 from robbdd_tools.syntax.bddx_tree import (
     Between,
@@ -269,4 +270,5 @@ __all__ = [
     "Variant",
     "Vector",
     "When",
+    "bare",
 ]

@@ -1,0 +1,106 @@
+"""Where the clauses of a file stand, each with the IRI that the graph gives it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.names.variants import variants_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.project import Snapshot
+
+MOST_NESTED = 100
+"""Clauses in clauses; deeper ones are in no graph."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedClause:
+    """A clause, a group of clauses or a quantifier: all of its text (absolute), its name or else what it is."""
+
+    iri: str
+    name: str
+    span: Span
+
+
+def clauses_in(snapshot: Snapshot, uri: str) -> Iterator[PlacedClause]:
+    """Yield the clauses of the templates and variants of a file, those in others after these."""
+    file = snapshot.file(uri)
+    for placed in file.declarations if file is not None else ():
+        template = placed.declaration.tree
+        found = file.definitions.get(template.name.text) if file and isinstance(template, tree.Template) else None
+        if isinstance(template, tree.Template) and found is not None and found.iri is not None:
+            owner = template.name.text
+            walk = _Walk(found.iri.removesuffix(owner), owner, placed.offset)
+            yield from walk.body(template.body, "")
+    for variant in variants_of(snapshot, uri):
+        name = variant.definition.symbol.name
+        walk = _Walk(variant.iri.removesuffix(name), variant.definition.symbol.path, variant.site.placed.offset)
+        yield from walk.top(variant.node.given, "given", "")
+        yield from walk.occurrences(variant.node.events, "")
+        yield from walk.top(variant.node.then, "then", "")
+
+
+@dataclass(frozen=True, slots=True)
+class _Walk:
+    """Goes through the clauses of one owner; the paths are those of ``graph.clauses``."""
+
+    namespace: str
+    owner: str
+    offset: int
+
+    def body(self, body: tree.Body, path: str) -> Iterator[PlacedClause]:
+        yield from self.top(body.given, "given", path)
+        if body.when is not None:
+            yield from self.occurrences(body.when.events, path)
+            use = body.when.behaviour
+            yield self._placed("when-bhv", f"{path}.when", use, use.name.text)
+        if body.for_all is not None:
+            inner = f"{path}.all"
+            yield self._placed("forall", inner, body.for_all, "for all")
+            if inner.count(".") <= MOST_NESTED:
+                yield from self.body(body.for_all.body, inner)
+        yield from self.top(body.then, "then", path)
+
+    def top(self, expression: tree.Expression | None, role: str, path: str) -> Iterator[PlacedClause]:
+        if expression is not None:
+            bare = tree.bare(expression)
+            parts = bare.operands if isinstance(bare, tree.Conjunction) else (bare,)
+            yield from self._each(parts, f"{path}.{role}")
+
+    def occurrences(self, events: Sequence[tree.Occurrence], path: str) -> Iterator[PlacedClause]:
+        for index, occurrence in enumerate(events):
+            yield self._placed("when-evt", f"{path}.when.{index}", occurrence, "event")
+
+    def _each(self, parts: Sequence[tree.Expression], path: str) -> Iterator[PlacedClause]:
+        if path.count(".") <= MOST_NESTED:
+            for index, part in enumerate(parts):
+                yield from self._clause(tree.bare(part), f"{path}.{index}")
+
+    def _clause(self, clause: tree.Expression, path: str) -> Iterator[PlacedClause]:
+        match clause:
+            case tree.Fluent():
+                yield PlacedClause(
+                    self.namespace + clause.name.text, clause.name.text, clause.span.shifted(self.offset)
+                )
+            case tree.TextClause():
+                yield self._placed("text", path, clause, clause.text.value)
+            case tree.Negation():
+                yield self._placed("not", path, clause, "not")
+                yield from self._each((clause.operand,), path)
+            case tree.Conjunction():
+                yield self._placed("and", path, clause, "and")
+                yield from self._each(clause.operands, path)
+            case tree.Disjunction():
+                yield self._placed("or", path, clause, "or")
+                yield from self._each(clause.operands, path)
+            case tree.Exists():
+                yield self._placed("exists", path, clause, "exists")
+                body = tree.bare(clause.body)
+                yield from self._each(body.operands if isinstance(body, tree.Conjunction) else (body,), path)
+
+    def _placed(self, kind: str, path: str, node: tree.Node, name: str) -> PlacedClause:
+        return PlacedClause(f"{self.namespace}{kind}-{self.owner}{path}", name, node.span.shifted(self.offset))

@@ -1,0 +1,81 @@
+// The Gherkin of a model beside its text: it follows every edit and the cursor, and outlives a mistake.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { EXAMPLES, LANGUAGE_SERVER, required } from "./harness/checkout.mjs";
+import { Session } from "./harness/session.mjs";
+
+const FILE = "pickplace/pickplace.bdd";
+
+/** @type {Session} */
+let session;
+/** @type {import("./harness/workbench.mjs").Workbench} */
+let workbench;
+let failed;
+
+function step(name, body) {
+  test(name, async () => {
+    assert.equal(failed, undefined, `the step before failed: ${failed}`);
+    try {
+      await body();
+    } catch (error) {
+      failed = name;
+      throw error;
+    }
+  });
+}
+
+before(async () => {
+  const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
+  session = await Session.open({ workspace: EXAMPLES, settings: { "robbdd.server.path": server } });
+  workbench = session.workbench;
+});
+
+after(async () => {
+  await session?.close(failed === undefined ? undefined : "preview-failed");
+});
+
+/** The lines of the preview that match; it is the group that does not have the keyboard. */
+function shown(text) {
+  return workbench.page.locator(".editor-group-container:not(.active) .view-line", { hasText: text });
+}
+
+step("the command opens the feature beside the model", async () => {
+  await workbench.openFile(FILE);
+  await workbench.codeLens("Run").first().waitFor();
+  await workbench.command("RobBDD: Preview Gherkin");
+  await shown(/Feature:\s/).waitFor();
+  await shown(/#\s4\sscenarios/).waitFor();
+});
+
+step("the cursor in a clause shows its step", async () => {
+  const { line, column } = await placeOf("is held by");
+  await workbench.goTo(line, column);
+  await shown(/is\sheld\sby/).first().waitFor();
+  await workbench.page.locator(".editor-group-container:not(.active) .cdr[class*=ced-]").first().waitFor();
+  await workbench.screenshot("preview");
+});
+
+step("an edit changes the feature, unsaved", async () => {
+  const { line, column } = await placeOf("So That");
+  await workbench.goTo(line, column + 'So That "'.length);
+  await workbench.type("quickly ");
+  await workbench.goTo(1, 1);
+  await shown(/So\sthat\squickly/).waitFor();
+});
+
+step("a mistake keeps the last good feature and says so", async () => {
+  await workbench.type("oops");
+  await shown(/#\sout\sof\sdate/).waitFor();
+  assert.ok((await shown(/So\sthat\squickly/).count()) > 0);
+  await workbench.screenshot("preview-out-of-date");
+  await workbench.undo();
+  await shown(/#\s4\sscenarios/).waitFor();
+});
+
+/** Line and column, from 1, of a text in the model on disk. */
+async function placeOf(text) {
+  const lines = (await session.text(FILE)).split("\n");
+  const line = lines.findIndex((entry) => entry.includes(text));
+  assert.ok(line >= 0);
+  return { line: line + 1, column: lines[line].indexOf(text) + 1 };
+}
