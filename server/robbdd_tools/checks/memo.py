@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Edit, Fix, Related
 from robbdd_tools.checks.facts import facts_of
+from robbdd_tools.names.anchors import Anchored, Anchors
 from robbdd_tools.names.elements import Site
 from robbdd_tools.names.table import changed_paths
 from robbdd_tools.syntax import tree
@@ -17,8 +16,7 @@ from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
-    from robbdd_tools.base.document import Span
-    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
+    from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.index import FileIndex
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.scope import Scope
@@ -34,23 +32,12 @@ _TRANSPARENT = (tree.Scene, tree.Composition, tree.ConstantSet)
 
 
 @dataclass(frozen=True, slots=True)
-class _Anchor:
-    """The declaration that a span counts from."""
-
-    uri: str
-    declaration: Declaration
-
-
-@dataclass(frozen=True, slots=True)
 class _Entry:
-    """Findings with spans that count from their anchors, in the order diagnostic, related places, edits.
-
-    They depend on the declarations in ``around`` and on which declarations have the ``names``.
-    """
+    """Findings, which depend on the declarations in ``around`` and on which declarations have the ``names``."""
 
     names: frozenset[str]
     around: frozenset[Declaration]
-    findings: tuple[tuple[Diagnostic, tuple[_Anchor, ...]], ...]
+    findings: tuple[Anchored, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +56,7 @@ def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...])
     uri = file.document.uri
     scope = snapshot.scope(uri)
     known = _still_valid(_runs.get(uri), scope)
-    places = _Places(snapshot)
+    anchors = Anchors(snapshot)
     entries: dict[Declaration, _Entry] = {}
     for placed in file.declarations:
         declaration = placed.declaration
@@ -80,10 +67,10 @@ def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...])
             site = Site(snapshot, file, placed)
             found = [diagnostic for rule in rules for diagnostic in rule(site)]
             names, around = _around(scope, declaration)
-            entry = _Entry(names, around, tuple(places.loosened(diagnostic, site) for diagnostic in found))
+            entry = _Entry(names, around, tuple(anchors.loosened(diagnostic, uri, placed) for diagnostic in found))
         entries[declaration] = entry
-        for diagnostic, anchors in entry.findings:
-            yield places.fixed(diagnostic, anchors, uri, placed)
+        for finding in entry.findings:
+            yield anchors.fixed(finding, uri, placed)
     if len(_runs) >= KEPT_FILES:
         _runs.clear()
     _runs[uri] = _Run(scope, entries)
@@ -145,66 +132,6 @@ def _around(scope: Scope, declaration: Declaration) -> tuple[frozenset[str], fro
 def _declared(file: FileIndex, name: str) -> Iterator[Declaration]:
     for entry in file.names.entries.get(name, ()):
         yield file.declarations[entry.declaration].declaration
-
-
-@dataclass(frozen=True, slots=True)
-class _Places:
-    """Turns absolute places into ones that stay valid wherever their declarations move to, and back."""
-
-    snapshot: Snapshot
-
-    def loosened(self, diagnostic: Diagnostic, site: Site) -> tuple[Diagnostic, tuple[_Anchor, ...]]:
-        """Return a diagnostic with spans that count from the anchors beside it."""
-        anchors: list[_Anchor] = []
-
-        def loosen(uri: str, span: Span) -> Span:
-            placed = site.placed if uri == site.uri and _holds(site.placed, span) else self._placed(uri, span)
-            anchors.append(_Anchor(uri, placed.declaration))
-            return span.shifted(-placed.offset)
-
-        return _moved(diagnostic, loosen), tuple(anchors)
-
-    def fixed(
-        self, diagnostic: Diagnostic, anchors: tuple[_Anchor, ...], uri: str, placed: PlacedDeclaration
-    ) -> Diagnostic:
-        """Return a diagnostic with the places that its anchors have now."""
-        following = iter(anchors)
-
-        def fix(_: str, span: Span) -> Span:
-            anchor = next(following)
-            own = anchor.uri == uri and anchor.declaration is placed.declaration
-            return span.shifted(placed.offset if own else self._offset(anchor))
-
-        return _moved(diagnostic, fix)
-
-    def _placed(self, uri: str, span: Span) -> PlacedDeclaration:
-        declarations = self._declarations(uri)
-        return declarations[bisect_right(declarations, span.start, key=lambda placed: placed.offset) - 1]
-
-    def _offset(self, anchor: _Anchor) -> int:
-        declarations = self._declarations(anchor.uri)
-        return next(placed.offset for placed in declarations if placed.declaration is anchor.declaration)
-
-    def _declarations(self, uri: str) -> tuple[PlacedDeclaration, ...]:
-        file = self.snapshot.file(uri)
-        assert file is not None  # A finding only names files that were read.
-        return file.declarations
-
-
-def _holds(placed: PlacedDeclaration, span: Span) -> bool:
-    return placed.span.start <= span.start and span.end <= placed.span.end
-
-
-def _moved(diagnostic: Diagnostic, move: Callable[[str, Span], Span]) -> Diagnostic:
-    return replace(
-        diagnostic,
-        span=move(diagnostic.uri, diagnostic.span),
-        related=tuple(Related(place.uri, move(place.uri, place.span), place.message) for place in diagnostic.related),
-        fixes=tuple(
-            Fix(fix.title, tuple(Edit(edit.uri, move(edit.uri, edit.span), edit.text) for edit in fix.edits))
-            for fix in diagnostic.fixes
-        ),
-    )
 
 
 @contextmanager

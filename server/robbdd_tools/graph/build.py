@@ -14,8 +14,9 @@ from robbdd_tools.graph.built import Clash
 from robbdd_tools.graph.clauses import ClauseWriter, add_time
 from robbdd_tools.graph.executions import add_execution
 from robbdd_tools.graph.foreign import graph_format, read_graph_file
+from robbdd_tools.graph.identities import SHARED, Identities, identities
 from robbdd_tools.graph.prefixes import bind_prefixes, prefix_for
-from robbdd_tools.graph.reach import Reached, doubtful, reach
+from robbdd_tools.graph.reach import Reached, Uses, doubtful, reach
 from robbdd_tools.graph.scenes import (
     Memberships,
     Scenes,
@@ -50,31 +51,43 @@ def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
     file = snapshot.file(uri) if graph_format(uri) else None
     if file is not None:
         return read_graph_file(file.document)
-    reached = reach(snapshot.closure(uri))
+    uses = Uses(snapshot.closure(uri))
+    reached = reach(uses)
+    return build_declarations(uri, uses, reached, identities(snapshot, reached))
+
+
+def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: Identities) -> BuiltGraph:
+    """Return the graph of some declarations: of a file with all that it leads to, or of a part that is complete.
+
+    A part is complete when it holds all that its declarations use and who contests a node with one of them.
+    ``known`` are the nodes of all of the file's declarations.
+    """
     sink = Sink()
+    for node, declarers in known.shared.items():
+        sink.sources.mark([(node,)], declarers[0].location)
     _add_foundations(sink, reached)
     bind_prefixes(sink.graph, _add_prefixes(sink, reached))
     clashes = tuple(Clash(str(node), location, first) for node, location, first in sink.clashes)
-    uncertain = doubtful(reached, [clash.location for clash in clashes])
+    uncertain = doubtful(uses, reached, [clash.location for clash in clashes])
     return BuiltGraph(
         uri,
         sink.graph,
         sink.sources.build(),
-        _names(reached),
+        known.names,
         clashes,
         tuple(Location(entry.uri, entry.placed.span) for entry in uncertain),
         frozenset(node for entry in uncertain for node in _nodes_of(entry)),
+        authors=sink.authors,
     )
 
 
 def _nodes_of(entry: Reached) -> Iterator[str]:
-    """Yield what a declaration stands for in the graph, the parts of a template included, but not its variables.
+    """Yield what a declaration alone stands for in the graph, the parts of a template included.
 
-    Templates of one namespace share variables, so that an error in one says nothing of a variable in another.
+    Templates of one namespace share variables and behaviours, so that an error in one says nothing of another.
     """
-    variables = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
     for definition in entry.file.definitions.values():
-        if definition.iri is not None and definition.kind not in variables and entry.holds(definition):
+        if definition.iri is not None and definition.kind not in SHARED and entry.holds(definition):
             yield definition.iri
             if definition.kind is SymbolKind.TEMPLATE:
                 yield from (definition.iri + part for part in TEMPLATE_PARTS)
@@ -86,16 +99,19 @@ def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
     tasks: dict[URIRef, URIRef] = {}
     placed = [(entry.tree, Frame(sink, entry.file, entry.placed)) for entry in reached]
     for root, frame in placed:
+        frame.begin()
         if isinstance(root, tree.Template):
             _add_template(frame, root, tasks)
         elif root is not None:
             _add_simple(frame, scenes, root)
     for root, frame in placed:
         if isinstance(root, tree.Composition):
+            frame.begin()
             add_composition_contents(frame, scenes, root)
     known = Known(scenes, Memberships(sink), tasks)
     stories = [(root, frame) for root, frame in placed if isinstance(root, tree.Story)]
     for position, (story, frame) in enumerate(stories):
+        frame.begin()
         add_story(frame, known, story, position)
     for position, (root, frame) in enumerate(placed):
         add_execution(frame, root, position)
@@ -199,12 +215,3 @@ def _add_prefixes(sink: Sink, reached: Iterable[Reached]) -> dict[str, str]:
 def _namespaces(reached: Iterable[Reached]) -> Iterator[tree.Namespace]:
     own_first = sorted(reached, key=lambda entry: not entry.own)
     return (entry.tree for entry in own_first if isinstance(entry.tree, tree.Namespace))
-
-
-def _names(reached: Iterable[Reached]) -> dict[str, str]:
-    names: dict[str, str] = {}
-    for file in {entry.uri: entry.file for entry in reached}.values():
-        for path, definition in file.definitions.items():
-            if definition.iri is not None:
-                names.setdefault(definition.iri, path)
-    return names

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rdflib import Graph
 
     from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.graph.reach import Key
     from robbdd_tools.graph.source_map import Location, SourceMap
 
 
@@ -29,7 +30,8 @@ class BuiltGraph:
     ``names`` gives the qualified name that stands in the text for an IRI (a CURIE for a graph that was read);
     ``doubtful`` the extents of declarations that already have an error or build on one that has;
     ``doubtful_nodes`` what these declare. ``faults`` are what kept a graph file from being read;
-    ``is_read`` tells that it is one, whose findings have to name their node.
+    ``is_read`` tells that it is one, whose findings have to name their node. ``authors`` are the declarations (document
+    and offset) that a node is described by.
     """
 
     uri: str
@@ -41,3 +43,4 @@ class BuiltGraph:
     doubtful_nodes: frozenset[str]
     faults: tuple[Diagnostic, ...] = ()
     is_read: bool = False
+    authors: Mapping[str, Mapping[Key, None]] = field(default_factory=dict[str, Mapping["Key", None]])

@@ -2,43 +2,46 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.graph.source_map import Location
+from robbdd_tools.names.uses import KEPT_DECLARATIONS
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import Definition, FileAnalysis, PlacedDeclaration
+    from robbdd_tools.syntax.declaration import Declaration
 
-_Key = tuple[str, int]
+Key = tuple[str, int]
+"""What identifies a declaration among all of one revision: its document and its offset."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """A declaration that belongs to a graph; ``own`` when it stands in the file the graph is made of."""
+    """A declaration that belongs to a graph; ``own`` when it stands in the file the graph is made of.
+
+    ``key`` identifies it among all declarations of the revision.
+    """
 
     file: FileAnalysis
     placed: PlacedDeclaration
     own: bool
+    key: Key
 
     @property
     def uri(self) -> str:
         """The document it stands in."""
-        return self.file.document.uri
+        return self.key[0]
 
     @property
     def tree(self) -> tree.DeclarationTree | None:
         """Its tree, ``None`` when it is broken."""
         return self.placed.declaration.tree
-
-    @property
-    def key(self) -> _Key:
-        """What identifies it among all declarations."""
-        return (self.uri, self.placed.offset)
 
     def holds(self, definition: Definition) -> bool:
         """Tell whether a definition is part of it."""
@@ -50,22 +53,58 @@ class Reached:
         return location.uri == self.uri and span.start <= location.span.start < span.end
 
 
-def reach(closure: Sequence[FileAnalysis]) -> tuple[Reached, ...]:
+class Uses:
+    """Which declarations lead to which, among all of a file and its imports (``closure``, the file first)."""
+
+    def __init__(self, closure: Sequence[FileAnalysis]) -> None:
+        self._files = {
+            file.document.uri: tuple(
+                Reached(file, placed, file is closure[0], (file.document.uri, placed.offset))
+                for placed in file.declarations
+            )
+            for file in reversed(closure)
+        }
+        self._found: dict[Key, list[Reached]] = {}
+        self._errors: dict[str, list[int]] = {}
+
+    def __iter__(self) -> Iterator[Reached]:
+        """Yield all declarations, imports before their importers, each file's in the order of the text."""
+        return (entry for entries in self._files.values() for entry in entries)
+
+    def of(self, entry: Reached) -> list[Reached]:
+        """Return the declarations that the references of one lead to, in the order of the references."""
+        key = entry.key
+        if key not in self._found:
+            places = entry.placed.targets.declarations()
+            self._found[key] = [self._files[uri][position] for uri, position in places]
+        return self._found[key]
+
+    def has_error(self, entry: Reached) -> bool:
+        """Tell whether an error stands in a declaration or one of its references leads nowhere."""
+        if entry.tree is None or len(entry.placed.targets) < _distinct_references(entry.placed.declaration):
+            return True
+        if entry.uri not in self._errors:
+            faults = (fault for fault in entry.file.diagnostics if fault.severity is Severity.ERROR)
+            self._errors[entry.uri] = sorted(fault.span.start for fault in faults)
+        starts, span = self._errors[entry.uri], entry.placed.span
+        first = bisect_left(starts, span.start)
+        return first < len(starts) and starts[first] < span.end
+
+
+def reach(uses: Uses) -> tuple[Reached, ...]:
     """Return all declarations of the first file and those it leads to, imports before their importers."""
-    every = [Reached(file, placed, file is closure[0]) for file in closure for placed in file.declarations]
-    index = _Index(every)
-    found = {entry.key for entry in every if entry.own}
+    every = tuple(uses)
     waiting = [entry for entry in every if entry.own]
+    found = {entry.key for entry in waiting}
     while waiting:
-        for used in index.uses(waiting.pop()):
+        for used in uses.of(waiting.pop()):
             if used.key not in found:
                 found.add(used.key)
                 waiting.append(used)
-    order = {file.document.uri: position for position, file in enumerate(reversed(closure))}
-    return tuple(sorted((entry for entry in every if entry.key in found), key=lambda e: (order[e.uri], e.key[1])))
+    return tuple(entry for entry in every if entry.key in found)
 
 
-def doubtful(reached: Sequence[Reached], left_out: Iterable[Location]) -> tuple[Reached, ...]:
+def doubtful(uses: Uses, reached: Sequence[Reached], left_out: Iterable[Location]) -> tuple[Reached, ...]:
     """Return the declarations about which no further finding can be trusted.
 
     These are the ones with an error or of which something was left out, and those that use one of which something
@@ -73,12 +112,11 @@ def doubtful(reached: Sequence[Reached], left_out: Iterable[Location]) -> tuple[
     nothing about its users.
     """
     places = tuple(left_out)
-    suspect = [entry for entry in reached if _has_error(entry) or any(map(entry.covers, places))]
+    suspect = [entry for entry in reached if uses.has_error(entry) or any(map(entry.covers, places))]
     spreading = [entry for entry in suspect if not isinstance(entry.tree, tree.Template | tree.Story)]
-    index = _Index(reached)
-    users: dict[_Key, list[Reached]] = {}
-    for entry in reached:
-        for used in index.uses(entry):
+    users: dict[Key, list[Reached]] = {}
+    for entry in reached if spreading else ():
+        for used in uses.of(entry):
             users.setdefault(used.key, []).append(entry)
     found = {entry.key for entry in suspect}
     reaching = {entry.key for entry in spreading}
@@ -90,33 +128,6 @@ def doubtful(reached: Sequence[Reached], left_out: Iterable[Location]) -> tuple[
     return tuple(entry for entry in reached if entry.key in found | reaching)
 
 
-class _Index:
-    """Finds the declaration that a definition is part of."""
-
-    def __init__(self, entries: Iterable[Reached]) -> None:
-        self._by_uri: dict[str, list[Reached]] = {}
-        for entry in entries:
-            self._by_uri.setdefault(entry.uri, []).append(entry)
-        self._starts = {uri: [entry.placed.offset for entry in found] for uri, found in self._by_uri.items()}
-
-    def uses(self, entry: Reached) -> list[Reached]:
-        """Return the declarations that the references of one lead to."""
-        found = (self._at(definition) for definition in entry.placed.targets.values())
-        return [used for used in found if used is not None]
-
-    def _at(self, definition: Definition) -> Reached | None:
-        starts = self._starts.get(definition.uri, [])
-        position = bisect_right(starts, definition.span.start) - 1
-        if position < 0:
-            return None
-        entry = self._by_uri[definition.uri][position]
-        return entry if entry.holds(definition) else None
-
-
-def _has_error(entry: Reached) -> bool:
-    if entry.tree is None or any(
-        reference.ref not in entry.placed.targets for reference in entry.placed.declaration.references
-    ):
-        return True
-    errors = (fault for fault in entry.file.diagnostics if fault.severity is Severity.ERROR)
-    return any(entry.covers(Location(fault.uri, fault.span)) for fault in errors)
+@lru_cache(maxsize=KEPT_DECLARATIONS)
+def _distinct_references(declaration: Declaration) -> int:
+    return len({reference.ref for reference in declaration.references})

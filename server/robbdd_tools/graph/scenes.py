@@ -86,15 +86,14 @@ class Memberships:
             known.append((template_scene, members))
         number = known.index((template_scene, members)) + 1
         node = URIRef(scene + MEMBERSHIPS[kind][2] + (f"-{number}" if number > 1 else ""))
+        self.sink.mark_node(node, self.sink.claims[scene])
         if is_new:
-            self._state(node, kind, scene, template_scene, members)
+            self._state(node, kind, template_scene, members)
         return node
 
-    def _state(
-        self, node: URIRef, kind: str, scene: URIRef, template_scene: URIRef, members: tuple[URIRef, ...]
-    ) -> None:
+    def _state(self, node: URIRef, kind: str, template_scene: URIRef, members: tuple[URIRef, ...]) -> None:
         type_, term, _ = MEMBERSHIPS[kind]
-        self.sink.add_types(node, [type_], self.sink.claims[scene])
+        self.sink.add_types(node, [type_])
         self.sink.add(node, "bdd:of-scene", template_scene)
         for member in members:
             self.sink.add(node, term, member)

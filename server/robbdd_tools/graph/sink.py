@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rdflib import Graph, URIRef
     from rdflib.term import Node
 
+    from robbdd_tools.graph.reach import Key
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.syntax.tree import Name, Ref
     from robbdd_tools.syntax.tree import Node as TreeNode
@@ -31,6 +32,8 @@ class Sink:
         self.sources = SourceMapBuilder()
         self.claims: dict[URIRef, Location] = {}
         self.clashes: list[tuple[URIRef, Location, Location]] = []
+        self.authors: dict[str, dict[Key, None]] = {}
+        self._author: Key | None = None
         self._behaviours: dict[URIRef, str] = {}
         self._type = RDF.type
         self._blank_nodes = 0
@@ -66,17 +69,27 @@ class Sink:
         self.clashes.append((node, location, first))
         return False
 
-    def add_types(self, node: Node, types: Iterable[str], location: Location) -> None:
+    def add_types(self, node: Node, types: Iterable[str], location: Location | None = None) -> None:
         """Declare a node with its classes (CURIEs)."""
         from rdflib import URIRef
 
         for name in types:
             self.graph.add((node, self._type, URIRef(expand(name))))
-        self.mark_node(node, location)
+        if location is not None:
+            self.mark_node(node, location)
 
     def mark_node(self, node: Node, location: Location) -> None:
         """Note where a node is declared."""
         self.sources.mark([(str(node),)], location)
+        self._credit(node)
+
+    def begin(self, author: Key) -> None:
+        """Note that what follows is stated by another declaration."""
+        self._author = author
+
+    def _credit(self, node: Node) -> None:
+        if self._author is not None:
+            self.authors.setdefault(str(node), {})[self._author] = None
 
     def add(self, node: Node, term: str, value: Node | None, location: Location | None = None) -> None:
         """State a property of a node; a value that is no node states nothing."""
@@ -85,6 +98,7 @@ class Sink:
         if value is None:
             return
         self.graph.add((node, URIRef(expand(term)), value))
+        self._credit(node)
         if location is not None:
             self.mark(node, term, value, location)
 
@@ -121,6 +135,10 @@ class Frame:
         self._uri = file.document.uri
         self._definitions = file.definitions
         self._placed = placed
+
+    def begin(self) -> None:
+        """Tell the sink that this declaration states what follows."""
+        self.sink.begin((self._uri, self._placed.offset))
 
     def at(self, node: TreeNode) -> Location:
         """Return the absolute place of a node of the declaration's tree."""

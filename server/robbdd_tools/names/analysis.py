@@ -12,8 +12,8 @@ from robbdd_tools.syntax.declaration import SymbolKind
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
     from robbdd_tools.base.document import Document
+    from robbdd_tools.names.resolve import Targets
     from robbdd_tools.syntax.declaration import Declaration, Symbol
-    from robbdd_tools.syntax.tree import Ref
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class PlacedDeclaration:
 
     declaration: Declaration
     offset: int
-    targets: Mapping[Ref, Definition]
+    targets: Targets
 
     @property
     def span(self) -> Span:

@@ -67,6 +67,12 @@ class Targets(Mapping["Ref", Definition]):
     def __len__(self) -> int:
         return len(self._targets)
 
+    def declarations(self) -> Iterator[tuple[str, int]]:
+        """Yield for each reference the document and the position in it of the declaration that it leads to."""
+        for target in self._targets.values():
+            file = self._scope.files[target.file]
+            yield file.document.uri, file.names.entries[target.path][target.number].declaration
+
 
 def define(scope: Scope, target: Target) -> Definition:
     """Return the definition that a target stands for."""

@@ -16,6 +16,7 @@ from robbdd_tools.syntax.tree import Namespace
 if TYPE_CHECKING:
     from robbdd_tools.names.index import Declared, FileIndex
     from robbdd_tools.names.table import NameTable
+    from robbdd_tools.syntax.declaration import Symbol
 
 
 @dataclass(frozen=True)
@@ -65,8 +66,13 @@ class Scope:
         return names
 
     def _iri(self, file: FileIndex, declared: Declared) -> str | None:
-        symbol = declared.symbol
-        namespace = only_namespace(file.names) if symbol.namespace == FILE_NAMESPACE else symbol.namespace
+        start = self.namespace_iri(file, declared.symbol.namespace)
+        return None if start is None else start + local_name(declared.symbol)
+
+    def namespace_iri(self, file: FileIndex, namespace: str | None) -> str | None:
+        """Return what the IRIs of a file's declarations in a namespace begin with, ``None`` while that is unknown."""
+        if namespace == FILE_NAMESPACE:
+            namespace = only_namespace(file.names)
         if namespace is None:
             return None
         # A declaration's namespace is looked up from its own file; the nearest one outside is a file it imports.
@@ -74,7 +80,7 @@ class Scope:
             for entry in other.names.entries.get(namespace, ()):
                 root = other.declarations[entry.declaration].declaration.tree
                 if isinstance(root, Namespace):
-                    return root.iri.value + _local_name(declared)
+                    return root.iri.value
         return None
 
 
@@ -86,6 +92,6 @@ def shortened(path: str, scopes: tuple[str, ...]) -> str:
     return path
 
 
-def _local_name(declared: Declared) -> str:
-    symbol = declared.symbol
+def local_name(symbol: Symbol) -> str:
+    """Return what the IRI of a declared name ends with."""
     return f"var-{symbol.name}" if symbol.kind in ROLE_KINDS["Variable"] else symbol.name

@@ -1,0 +1,91 @@
+"""Findings that stay valid wherever their declarations move to: their places count from declarations."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Edit, Fix, Related
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.analysis import PlacedDeclaration
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import Declaration
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """The declaration that a span counts from; ``None`` in a file without declarations."""
+
+    uri: str
+    declaration: Declaration | None
+
+
+@dataclass(frozen=True, slots=True)
+class Anchored:
+    """A diagnostic whose spans count from its anchors, in the order diagnostic, related places, edits."""
+
+    diagnostic: Diagnostic
+    anchors: tuple[Anchor, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Anchors:
+    """Turns absolute places into ones that count from declarations, and back."""
+
+    snapshot: Snapshot
+
+    def loosened(self, diagnostic: Diagnostic, uri: str, own: PlacedDeclaration) -> Anchored:
+        """Return a finding about the declaration ``own`` of a file without absolute places."""
+        anchors: list[Anchor] = []
+
+        def loosen(file: str, span: Span) -> Span:
+            placed = own if file == uri and _holds(own, span) else self._placed(file, span)
+            anchors.append(Anchor(file, None if placed is None else placed.declaration))
+            return span if placed is None else span.shifted(-placed.offset)
+
+        return Anchored(_moved(diagnostic, loosen), tuple(anchors))
+
+    def fixed(self, anchored: Anchored, uri: str, own: PlacedDeclaration) -> Diagnostic:
+        """Return a finding about the declaration ``own`` with the places that its anchors have now."""
+        following = iter(anchored.anchors)
+
+        def fix(_: str, span: Span) -> Span:
+            anchor = next(following)
+            is_own = anchor.uri == uri and anchor.declaration is own.declaration
+            return span.shifted(own.offset if is_own else self._offset(anchor))
+
+        return _moved(anchored.diagnostic, fix)
+
+    def _placed(self, uri: str, span: Span) -> PlacedDeclaration | None:
+        declarations = self._declarations(uri)
+        position = bisect_right(declarations, span.start, key=lambda placed: placed.offset) - 1
+        return declarations[position] if position >= 0 else None
+
+    def _offset(self, anchor: Anchor) -> int:
+        declarations = self._declarations(anchor.uri) if anchor.declaration is not None else ()
+        return next((placed.offset for placed in declarations if placed.declaration is anchor.declaration), 0)
+
+    def _declarations(self, uri: str) -> tuple[PlacedDeclaration, ...]:
+        file = self.snapshot.file(uri)
+        return () if file is None else file.declarations
+
+
+def _holds(placed: PlacedDeclaration, span: Span) -> bool:
+    return placed.span.start <= span.start and span.end <= placed.span.end
+
+
+def _moved(diagnostic: Diagnostic, move: Callable[[str, Span], Span]) -> Diagnostic:
+    return replace(
+        diagnostic,
+        span=move(diagnostic.uri, diagnostic.span),
+        related=tuple(Related(place.uri, move(place.uri, place.span), place.message) for place in diagnostic.related),
+        fixes=tuple(
+            Fix(fix.title, tuple(Edit(edit.uri, move(edit.uri, edit.span), edit.text) for edit in fix.edits))
+            for fix in diagnostic.fixes
+        ),
+    )
