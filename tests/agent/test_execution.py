@@ -24,7 +24,6 @@ from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Call, Execution, Timing
 from robbdd_tools.agent.placement import TABLE_TOP
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.catalog.robots.panda import PANDA as MODEL
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 from robbdd_tools.monitor.trace import Trace
@@ -98,26 +97,6 @@ def test_bins_are_loose_and_can_be_pushed() -> None:
     data.qvel[model.body(BIN).dofadr[0]] = 1.0
     trace = to_the_end(run)
     assert trace.positions[-1, trace.column(BIN), 0] - trace.positions[0, trace.column(BIN), 0] > 0.02
-
-
-def test_velocity_and_torque_stay_within_the_published_limits() -> None:
-    run = execution([pick_place(BALL, OTHER_WS)])
-    simulation = run.simulation
-    robot = simulation.robots[PANDA]
-    speeds: list[np.ndarray[tuple[int], np.dtype[np.float64]]] = []
-    torques: list[np.ndarray[tuple[int], np.dtype[np.float64]]] = []
-
-    def look() -> None:
-        speeds.append(np.abs(simulation.data.qvel[robot.speeds]))
-        torques.append(np.abs(simulation.data.qfrc_actuator[robot.speeds]))
-
-    simulation.watchers.append(look)
-    to_the_end(run)
-    assert run.completed == 1
-    assert (np.max(speeds, axis=0) <= MODEL.velocity_limits).all()
-    assert (np.max(torques, axis=0) <= MODEL.torque_limits).all()
-    assert np.max(speeds) > 0.5
-    assert np.max(torques) > 5.0
 
 
 def test_samples_are_taken_at_every_control_tick_and_events_fall_on_them() -> None:
