@@ -25,6 +25,6 @@ KINOVA_GEN3 = RobotModel(
         "Kinova, 'KINOVA Gen3 Ultra lightweight robot User Guide'. Link masses, joint speeds and torques: the "
         "description of the Gen3 that Kinova publishes with its robot driver. Stroke, smallest gripping force and mass "
         "of the gripper: Robotiq, '2F-85 and 2F-140 Instruction Manual'; its linkage is ours: pads that slide in "
-        "parallel. The height of the base on the table's edge is ours: the robot's reach is the shortest in the catalog."
+        "parallel. It stands on the table's edge, which is ours: its reach is the shortest of the catalog."
     ),
 )
