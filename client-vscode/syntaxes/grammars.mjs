@@ -70,6 +70,7 @@ const predicates = phrases(
   "are sorted into",
   "can reach",
   "does not drop",
+  "moves safely",
   "does not collide",
 );
 

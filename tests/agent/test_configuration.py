@@ -104,7 +104,10 @@ def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
 @pytest.mark.parametrize(
     ("wanted", "message"),
     [
-        ([(CUBE, "colour", "red")], "there is no configuration 'colour'; the known ones are ee_speed, friction,"),
+        (
+            [(CUBE, "colour", "red")],
+            "there is no configuration 'colour'; the known ones are displacement_limit, ee_speed,",
+        ),
         ([(CUBE, "mass", "heavy")], "'env:cube1' cannot be configured: 'mass' cannot be 'heavy': it is a number"),
         ([(CUBE, "ee_speed", "1")], "'env:cube1' has no ee_speed: that is of an agent"),
         ([(PANDA, "mass", "1")], "'env:panda' has no mass: that is of a loose object"),

@@ -160,6 +160,96 @@ def test_has_config_of_a_workspace_is_that_of_all_its_carriers() -> None:
     assert judged("has-config", trace, target="both_ws", **words).outcome is Outcome.VIOLATED
 
 
+def limited(trace: Trace, target: str, name: str, value: str) -> Trace:
+    """A trace in which an element has a configuration that says how to judge it."""
+    return replace(trace, settings={(target, name): value})
+
+
+BALL_OUTLINE = {"ball": (((0.0, 0.0, 0.0), 0.03),)}
+
+
+@pytest.mark.parametrize(
+    ("place", "margin"),
+    [
+        ((0.0, 0.0, 0.05), 0.05),
+        ((0.0, 0.06, 0.1), 0.01),
+        ((0.0, 0.08, 0.1), -0.01),
+        ((0.0, 0.0, 0.18), -0.01),
+        ((0.0, 0.0, 0.01), 0.01),
+    ],
+)
+def test_the_whole_object_is_inside_but_at_the_face_that_carries_it(
+    place: tuple[float, float, float], margin: float
+) -> None:
+    trace = replace(world(ball=still(2, place)), outlines=BALL_OUTLINE)
+    words = {"object": "ball", "workspace": "tray_ws"}
+    assert judged("located-at", limited(trace, "ball", "whole_object", "yes"), **words).robustness == pytest.approx(
+        margin
+    )
+    assert judged("located-at", trace, **words).outcome is Outcome.HOLDS
+
+
+def test_the_whole_object_turns_with_it() -> None:
+    upright = replace(world(ball=still(2, (0.0, 0.05, 0.1))), outlines={"ball": (((0.06, 0.0, 0.0), 0.0),)})
+    quarter = np.tile([2**-0.5, 0.0, 0.0, 2**-0.5], (2, 1))
+    orientations = upright.orientations.copy()
+    orientations[:, upright.column("ball")] = quarter
+    turned = replace(upright, orientations=orientations)
+    words = {"object": "ball", "workspace": "tray_ws"}
+    for trace, margin in ((upright, 0.05), (turned, -0.01)):
+        found = judged("located-at", limited(trace, "ball", "whole_object", "yes"), **words)
+        assert found.robustness == pytest.approx(margin)
+
+
+def test_sorted_into_exactly_one_is_not_into_two() -> None:
+    trace = world(ball=still(2, (0.0, 0.0, 0.1)))
+    words = {"objects": ("ball",), "workspaces": ("tray_ws", "both_ws")}
+    assert judged("sorted-into", trace, **words).outcome is Outcome.HOLDS
+    for element in ("ball", "tray"):
+        found = judged("sorted-into", limited(trace, element, "exactly_one", "yes"), **words)
+        assert (found.outcome, found.robustness) == (Outcome.VIOLATED, pytest.approx(-0.1))
+    apart = {"objects": ("ball",), "workspaces": ("tray_ws", "far_ws")}
+    assert judged("sorted-into", limited(trace, "ball", "exactly_one", "yes"), **apart).outcome is Outcome.HOLDS
+
+
+def test_does_not_collide_up_to_the_way_that_is_configured() -> None:
+    pushed = world(3, tray=[[0.0, 0.0, 0.0], [0.04, 0.0, 0.0], [0.08, 0.0, 0.0]])
+    for limit, outcome in (("0.09", Outcome.HOLDS), ("0.07", Outcome.VIOLATED)):
+        trace = limited(pushed, "tray", "displacement_limit", limit)
+        assert judged("does-not-collide", trace, agent="arm", target="tray_ws").outcome is outcome
+
+
+def test_does_not_collide_by_force_is_in_newtons() -> None:
+    pressed = replace(world(3), forces={("arm", "tray"): np.array([0.0, 12.0, 3.0])})
+    for limit, robustness in (("20", 8.0), ("10", -2.0)):
+        found = judged(
+            "does-not-collide", limited(pressed, "tray", "force_limit", limit), agent="arm", target="tray_ws"
+        )
+        assert (found.robustness, found.unit) == (pytest.approx(robustness), "N")
+    unwatched = limited(world(3), "tray", "force_limit", "10")
+    assert judged("does-not-collide", unwatched, agent="arm", target="tray").outcome is Outcome.UNKNOWN
+
+
+def test_an_agent_moves_safely_as_long_as_its_tool_is_slow() -> None:
+    slow = world(3, arm=[[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.03, 0.0, 0.0]])
+    assert judged("moves-safely", slow, agent="arm").robustness == pytest.approx(0.25 - 0.2)
+    fast = world(4, arm=heights([0.0, 0.0, 0.03, 0.03]))
+    found = judged("moves-safely", fast, agent="arm")
+    assert (found.robustness, found.unit) == (pytest.approx(0.25 - 0.3), "m/s")
+    assert found.at == pytest.approx(0.2)
+    assert judged("moves-safely", limited(fast, "arm", "max_speed", "0.5"), agent="arm").outcome is Outcome.HOLDS
+
+
+def test_speed_at_the_beginning_of_a_window_is_that_since_the_sample_before_it() -> None:
+    trace = world(4, arm=heights([0.0, 0.0, 0.03, 0.03]))
+    predicate = load_catalog().predicates["moves-safely"]
+    for time, robustness in ((0.1, 0.25), (0.2, -0.05)):
+        events = (EventStamp("e", time),)
+        found = judge(predicate, {"agent": "arm"}, Before("e"), replace(trace, events=events), REGIONS)
+        assert found.robustness == pytest.approx(robustness)
+    assert judged("moves-safely", world(1, arm=still(1)), agent="arm").outcome is Outcome.UNKNOWN
+
+
 @pytest.mark.parametrize("name", ["has-config", "can-reach"])
 def test_what_was_not_recorded_is_unknown(name: str) -> None:
     predicate = load_catalog().predicates[name]

@@ -18,11 +18,25 @@ def test_every_configuration_says_what_it_is_and_reads_its_own_values(setting: S
 
 
 def test_the_documented_names_are_known() -> None:
-    assert list(SETTINGS) == ["ee_speed", "friction", "height_scale", "mass", "position_range", "seed"]
+    assert list(SETTINGS) == [
+        "displacement_limit",
+        "ee_speed",
+        "exactly_one",
+        "force_limit",
+        "friction",
+        "height_scale",
+        "mass",
+        "max_speed",
+        "position_range",
+        "seed",
+        "whole_object",
+    ]
 
 
 def test_an_unknown_name_is_told_the_known_ones() -> None:
-    with pytest.raises(SettingError, match="no configuration 'colour'; the known ones are ee_speed, friction, height"):
+    with pytest.raises(
+        SettingError, match="no configuration 'colour'; the known ones are displacement_limit, ee_speed"
+    ):
         setting_of("colour")
 
 

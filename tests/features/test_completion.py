@@ -77,6 +77,7 @@ def test_predicates_are_offered_as_whole_phrases() -> None:
         "has config",
         "is held by",
         "is located at",
+        "moves safely",
     ]
 
 

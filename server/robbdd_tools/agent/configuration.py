@@ -18,12 +18,16 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Configured:
-    """Models of objects and agents as configured, where things lie (position ranges, m) and the seed, if any."""
+    """Models of objects and agents as configured, where things lie (position ranges, m) and the seed, if any.
+
+    ``judged`` are the configurations, by element and name, that change not the world but how it is judged.
+    """
 
     objects: dict[str, ObjectModel]
     agents: dict[str, RobotModel]
     ranges: dict[str, Numbers] = field(default_factory=dict[str, Numbers])
     seed: int | None = None
+    judged: dict[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
 
 
 def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, ...]]]) -> None:
@@ -48,7 +52,7 @@ def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, .
 def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, str], str]:
     """Return element and name → value of every configuration, as the simulated world has it."""
     cast, model = simulation.world.cast, simulation.model
-    settings: dict[tuple[str, str], Numbers] = {}
+    settings: dict[tuple[str, str], Numbers] = dict(cast.judged)
     for name, thing in cast.objects.items():
         body = model.body(name)
         geoms = range(int(body.geomadr[0]), int(body.geomadr[0] + body.geomnum[0]))
@@ -70,9 +74,12 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
 
 def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) -> None:
     thing, robot = found.objects.get(element), found.agents.get(element)
+    judged = {"agent": robot, "object": thing}.get(SETTINGS[config.name].judges)
     match config.name:
         case "seed":
             found.seed = int(value[0])
+        case name if judged is not None:
+            found.judged[element, name] = value
         case "ee_speed" if robot is not None:
             found.agents[element] = replace(robot, tool_speed=value[0])
         case "position_range" if robot is not None:

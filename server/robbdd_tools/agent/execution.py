@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.agent.configuration import read_back
 from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.errors import BehaviourError, SceneError, SimulationError
+from robbdd_tools.agent.outline import outline_of
 from robbdd_tools.agent.pick_place import PickPlace
 from robbdd_tools.agent.quantities import wanting
 from robbdd_tools.agent.reach import ReachSampler
@@ -77,6 +78,7 @@ class Execution:
         self.completed = 0
         self.regions: Regions = world.cast.regions
         self._settings = read_back(self.simulation, spec.scene)
+        self._outlines = {name: outline_of(model) for name, model in world.cast.objects.items()}
         self._settle()
         self._script = self._scenario()
         self.wall = perf_counter() - began
@@ -123,7 +125,14 @@ class Execution:
             if known and isinstance(selected, Window):
                 self._reaches.sample(agent, name, range(selected.first, selected.last + 1))
         self.wall += perf_counter() - began
-        return replace(trace, reaches=self._reaches.record(len(trace.times)), settings=self._settings)
+        size, forces = len(trace.times), self.simulation.forces
+        return replace(
+            trace,
+            reaches=self._reaches.record(size),
+            settings=self._settings,
+            forces={} if forces is None else forces.record_of(size),
+            outlines=self._outlines,
+        )
 
     def run_behaviour(self, index: int) -> bool:
         """Run on until behaviour number ``index`` is over; returns whether it went through."""

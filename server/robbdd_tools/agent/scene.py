@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.configuration import Configured, configure
@@ -27,7 +27,8 @@ class Cast:
 
     ``regions`` maps a workspace to the boxes that make it up, each with the object in whose frame it is given;
     a workspace that nothing carries is absent. ``ranges`` tells of some elements where things are laid out
-    (``position_range``); ``seed`` is the one that the scene asks for, if any.
+    (``position_range``); ``seed`` is the one that the scene asks for, if any. ``judged`` maps element and name to the
+    configurations that say how to judge it.
     """
 
     objects: Mapping[str, ObjectModel]
@@ -35,6 +36,7 @@ class Cast:
     regions: Mapping[str, tuple[tuple[str, Region], ...]]
     ranges: Mapping[str, Numbers]
     seed: int | None
+    judged: Mapping[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -70,7 +72,7 @@ def cast_scene(scene: SceneSpec) -> Cast:
         objects[PEDESTAL] = catalog.objects["table"]
     found = Configured(objects, agents)
     configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
-    return Cast(objects, agents, _regions(scene, objects), found.ranges, found.seed)
+    return Cast(objects, agents, _regions(scene, objects), found.ranges, found.seed, found.judged)
 
 
 def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from robbdd_tools.agent.engine import SUBSTEPS, TICK, mujoco
 from robbdd_tools.agent.errors import SimulationError
+from robbdd_tools.agent.forces import Forces
 from robbdd_tools.agent.grips import Grips
 from robbdd_tools.agent.recorder import Bodies, Recorder
 
@@ -82,6 +83,8 @@ class Simulation:
         self._tools: list[tuple[FloatArray, FloatArray]] = [
             (self.data.site_xpos[robot.tool], self.data.site_xmat[robot.tool]) for robot in self.robots.values()
         ]
+        watched = {element for element, name in world.cast.judged if name == "force_limit"}
+        self.forces = Forces(self.model, self.robots, world.cast.objects, watched) if watched else None
         self._go_home()
         things = [self.data.body(name) for name in world.cast.objects]
         unset = len(self.robots)
@@ -121,6 +124,8 @@ class Simulation:
         """Forget what was recorded and count time from now."""
         self.ticks = 0
         self.recorder.clear()
+        if self.forces is not None:
+            self.forces.clear()
         self.record()
 
     def tick(self) -> None:
@@ -139,6 +144,8 @@ class Simulation:
         # Positions in the engine's data are those of one step ago until they are computed anew.
         mujoco.mj_kinematics(self.model, self.data)
         self._grips.find(self.data)
+        if self.forces is not None:
+            self.forces.record()
         rows = self.recorder.append(self.time, self._qpos, self._grips.held)
         for row, (position, rotation) in zip(rows, self._tools, strict=True):
             row[:3] = position
@@ -177,10 +184,20 @@ class Simulation:
 
     def _step(self) -> None:
         began = perf_counter()
-        mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
+        if self.forces is None:
+            mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
+        else:
+            self._step_and_look(self.forces)
         self.stepping += perf_counter() - began
         if not isfinite(self._qvel @ self._qvel):
             raise SimulationError(f"the simulation became unstable at {self.time:.2f} s")
+
+    def _step_and_look(self, forces: Forces) -> None:
+        """Step one by one: a blow is over within a tick."""
+        gripped = {agent: [name for name in self._free if self.holds(agent, name)] for agent in self.robots}
+        for _ in range(SUBSTEPS):
+            mujoco.mj_step(self.model, self.data)
+            forces.look(self.data, gripped)
 
     def _go_home(self) -> None:
         for robot in self.robots.values():

@@ -54,6 +54,10 @@ class Region:
     half: Vector
 
 
+Outline = tuple[tuple[Vector, float], ...]
+"""Balls (centre and radius, m, in the object's frame) that touch every side of an object from within."""
+
+
 class Evidence(Protocol):
     """What an evaluator sees: the samples of one window, in order, and the scene they were taken in.
 
@@ -74,6 +78,14 @@ class Evidence(Protocol):
         """Orientation of an object or of an agent's tool, shape (n, 4)."""
         ...
 
+    def velocity(self, name: str) -> FloatArray:
+        """Mean velocity of that position since the sample before, m/s, shape (n, 3)."""
+        ...
+
+    def outline(self, name: str) -> Outline:
+        """How far an object reaches around its position."""
+        ...
+
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
         """The regions that make up a workspace, each with the object whose frame it is given in."""
         ...
@@ -91,6 +103,10 @@ class Evidence(Protocol):
         """Joint-limit distance (rad) of the agent's best clear grasp of the object, -π without any, shape (n,)."""
         ...
 
+    def force(self, agent: str, name: str) -> FloatArray:
+        """Largest force (N) since the sample before between the object and the agent or what it grips, shape (n,)."""
+        ...
+
     def setting(self, target: str, name: str) -> str:
         """A configuration value of an element as the world that was set up has it."""
         ...
@@ -102,6 +118,9 @@ Arguments = Mapping[str, str | tuple[str, ...]]
 Evaluator = Callable[[Evidence, Arguments], "FloatArray"]
 """Signed margin of the predicate at each sample, SI units, positive where it holds, shape (n,)."""
 
+UnitChoice = Callable[[Evidence, Arguments], str]
+"""SI unit of a predicate's margin where it depends on configuration."""
+
 
 @dataclass(frozen=True, slots=True)
 class Predicate:
@@ -109,7 +128,8 @@ class Predicate:
 
     ``phrase`` is the surface form, slots in ``<…>`` (a reference), ``$…`` (a bare name) or as words; ``aliases``
     are other surface forms that are read as the same, with the same slots; ``sentence`` the Gherkin form with
-    ``{slot}`` placeholders. ``unit`` is the SI unit of the margin (``""`` when the margin is ±1). ``evaluate`` is
+    ``{slot}`` placeholders. ``unit`` is the SI unit of the margin (``""`` when the margin is ±1), unless ``unit_for``
+    says otherwise for a variant that was configured. ``evaluate`` is
     ``None`` for what this installation can state but not judge yet: such a clause is *unknown*, never a pass.
     ``quantities`` are those that the evaluator needs beside poses and grips
     (``reach``): they cost time and are sampled only in the windows of clauses that ask.
@@ -125,6 +145,7 @@ class Predicate:
     evaluate: Evaluator | None = None
     quantities: tuple[str, ...] = ()
     aliases: tuple[str, ...] = ()
+    unit_for: UnitChoice | None = None
 
 
 @dataclass(frozen=True, slots=True)

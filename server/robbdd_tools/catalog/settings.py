@@ -22,6 +22,8 @@ class Setting:
     """One configuration: ``unit`` of its numbers, what it is of (``target``), the bounds of each number.
 
     ``words`` are names for common values; ``count`` is how many numbers a value has; ``whole`` allows no fractions.
+    ``judges`` is the kind of element (agent or object) of a configuration that changes not the world but how an
+    evaluator judges it.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Setting:
     count: int = 1
     whole: bool = False
     words: tuple[tuple[str, Numbers], ...] = ()
+    judges: str = ""
 
     def read(self, text: str) -> Numbers:
         """Return the value that a text states; raises ``SettingError``."""
@@ -61,6 +64,7 @@ class Setting:
 NORMAL: Numbers = (0.25, 0.60, -0.40, 0.40)
 DENSE: Numbers = (0.35, 0.60, -0.30, 0.30)
 """Ranges of the paper's experiment: ahead of the robot from, to; to its left from, to, m."""
+YES_NO: tuple[tuple[str, Numbers], ...] = (("yes", (1.0,)), ("no", (0.0,)))
 _EVERY = (
     Setting(
         name="position_range",
@@ -76,6 +80,55 @@ _EVERY = (
     Setting("ee_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool along its planned path"),
     Setting("mass", "kg", "a loose object", 0.001, 50.0, "mass of the whole object"),
     Setting("friction", "", "an object", 0.01, 2.0, "coefficient of sliding friction"),
+    Setting(
+        "max_speed",
+        "m/s",
+        "an agent",
+        0.01,
+        10.0,
+        "speed of the tool up to which the agent moves safely",
+        judges="agent",
+    ),
+    Setting(
+        "displacement_limit",
+        "m",
+        "an object or a workspace",
+        0.001,
+        10.0,
+        "way that it may be pushed before it counts as collided with",
+        judges="object",
+    ),
+    Setting(
+        "force_limit",
+        "N",
+        "an object or a workspace",
+        0.1,
+        10000.0,
+        "contact force up to which it does not count as collided with; takes the place of displacement_limit",
+        judges="object",
+    ),
+    Setting(
+        "whole_object",
+        "",
+        "an object",
+        0,
+        1,
+        "whether all of it, not its position alone, must lie within the sides and below the top of a workspace",
+        whole=True,
+        words=YES_NO,
+        judges="object",
+    ),
+    Setting(
+        "exactly_one",
+        "",
+        "an object or a workspace",
+        0,
+        1,
+        "whether it is sorted only when it lies in (or, as a workspace, its objects lie in) no second workspace",
+        whole=True,
+        words=YES_NO,
+        judges="object",
+    ),
     Setting("seed", "", "any element", 0, 2**32 - 1, "decides everything random in the scenario", whole=True),
 )
 SETTINGS: Mapping[str, Setting] = MappingProxyType(

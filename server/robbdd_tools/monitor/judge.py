@@ -12,7 +12,7 @@ from robbdd_tools.monitor.time import NoWindow, TimeConstraint, Window, window
 from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Outcome, Verdict, unknown
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.api import Arguments, FloatArray, Predicate, Region
+    from robbdd_tools.catalog.api import Arguments, FloatArray, Outline, Predicate, Region
     from robbdd_tools.monitor.trace import Trace
 
 T = TypeVar("T")
@@ -44,6 +44,25 @@ class WindowEvidence:
     def orientation(self, name: str) -> FloatArray:
         """Unit quaternions (w, x, y, z), shape (n, 4); raises ``KeyError``."""
         return self.trace.orientations[self._rows, self.trace.column(name)]
+
+    def velocity(self, name: str) -> FloatArray:
+        """Mean velocity since the sample before (at the first one: until the next), m/s, (n, 3); raises ``KeyError``.
+
+        Not a number in a trace of one sample.
+        """
+        path, times = self.trace.positions[:, self.trace.column(name)], self.trace.times
+        if len(times) < 2:
+            return np.full((1, 3), np.nan)
+        steps = np.diff(path, axis=0) / np.diff(times)[:, None]
+        return np.concatenate([steps[:1], steps])[self._rows]
+
+    def outline(self, name: str) -> Outline:
+        """How far an object reaches around its position; raises ``KeyError``."""
+        return self.trace.outlines[name]
+
+    def force(self, agent: str, name: str) -> FloatArray:
+        """Largest force since the sample before, N, shape (n,); raises ``KeyError``."""
+        return self._of_pair(self.trace.forces, agent, name)[self._rows]
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
         """Regions of a workspace; raises ``KeyError`` when the scene gives it none."""
@@ -90,9 +109,10 @@ def judge(
     evidence = WindowEvidence(trace, selected, regions)
     try:
         margins = predicate.evaluate(evidence, arguments)
+        unit = predicate.unit if predicate.unit_for is None else predicate.unit_for(evidence, arguments)
     except KeyError as missing:
         return unknown(f"the trace has no record of '{missing.args[0]}'")
-    return _verdict(margins, evidence.times, predicate.unit)
+    return _verdict(margins, evidence.times, unit)
 
 
 def _verdict(margins: FloatArray, times: FloatArray, unit: str) -> Verdict:

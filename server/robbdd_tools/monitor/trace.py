@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.catalog.api import FloatArray, Outline
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,8 @@ class Trace:
     where its gripping faces hold that body. ``finished`` tells that nothing will be appended; ``remark`` is the
     execution's own last word on what went wrong ("gripper lost env:cube1 at 3.42 s"). ``reaches`` maps agent and
     object to reach margins (n,) rad, not a number where none was sampled; ``settings`` maps an element and the name
-    of a configuration to its value.
+    of a configuration to its value. ``forces`` maps agent and object to the largest contact force (N) since the sample
+    before (n,), where that was watched; ``outlines`` tells how far objects reach around their position.
     """
 
     names: tuple[str, ...]
@@ -53,6 +54,8 @@ class Trace:
     remark: str = ""
     reaches: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
     settings: Mapping[tuple[str, str], str] = field(default_factory=dict[tuple[str, str], str])
+    forces: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
+    outlines: Mapping[str, Outline] = field(default_factory=dict[str, "Outline"])
 
     @property
     def end(self) -> float:

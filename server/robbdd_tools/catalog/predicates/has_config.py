@@ -48,7 +48,7 @@ HAS_CONFIG = Predicate(
     unit="",
     doc=(
         "The target is set up with this value: position_range (m), height_scale, ee_speed (m/s), mass (kg), friction "
-        "or seed."
+        "or seed; or judged by it: max_speed (m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
     ),
     evaluate=margin,
 )

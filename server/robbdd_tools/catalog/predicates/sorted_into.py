@@ -5,19 +5,32 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
-from robbdd_tools.catalog.geometry import inside_margin
+from robbdd_tools.catalog.geometry import inside_margin, is_configured
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Margin (m) of the object that is least inside any of the workspaces, shape (n,)."""
+    """Margin (m) of the object that is least inside any of the workspaces, shape (n,).
+
+    Where an object or a workspace has the configuration ``exactly_one``, being inside a second workspace counts
+    against it.
+    """
     import numpy as np
 
-    workspaces = arguments["workspaces"]
-    margins = [inside_margin(evidence, name, workspaces) for name in arguments["objects"]]
+    workspaces = tuple(arguments["workspaces"])
+    strict = any(is_configured(evidence, each, "exactly_one") for each in _elements(evidence, workspaces))
+    margins: list[FloatArray] = []
+    for name in arguments["objects"]:
+        inside = np.sort([inside_margin(evidence, name, (workspace,)) for workspace in workspaces], axis=0)
+        alone = len(inside) > 1 and (strict or is_configured(evidence, name, "exactly_one"))
+        margins.append(np.minimum(inside[-1], -inside[-2]) if alone else inside[-1])
     return np.min(margins, axis=0)
+
+
+def _elements(evidence: Evidence, workspaces: tuple[str, ...]) -> list[str]:
+    return [carrier for workspace in workspaces for carrier, _ in evidence.regions(workspace)]
 
 
 SORTED_INTO = Predicate(
@@ -30,6 +43,6 @@ SORTED_INTO = Predicate(
     ),
     sentence='"{objects}" are sorted into "{workspaces}"',
     unit="m",
-    doc="Every object of the set lies in some workspace of the set.",
+    doc="Every object of the set lies in some workspace of the set, with exactly_one in no second one.",
     evaluate=margin,
 )

@@ -1,0 +1,32 @@
+"""How far the objects of a scene reach around their position."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+from math import cos, pi, sin
+
+from robbdd_tools.catalog.api import ObjectModel, Outline, Shape, ShapeKind, Vector
+
+RIM = 16
+"""Points on each rim of a cylinder: all between them is less than 2 % of its radius further out."""
+
+
+def outline_of(model: ObjectModel) -> Outline:
+    """Return the corners of boxes, the rims of cylinders, the middles of spheres with their radius."""
+    return tuple(ball for shape in model.shapes for ball in _balls(shape))
+
+
+def _balls(shape: Shape) -> Iterator[tuple[Vector, float]]:
+    a, b, c = shape.size
+    x, y, z = shape.position
+    match shape.kind:
+        case ShapeKind.SPHERE:
+            yield shape.position, a
+        case ShapeKind.BOX:
+            for sx, sy, sz in product((-1, 1), repeat=3):
+                yield (x + sx * a, y + sy * b, z + sz * c), 0.0
+        case ShapeKind.CYLINDER:
+            for side, step in product((-1, 1), range(RIM)):
+                angle = 2 * pi * step / RIM
+                yield (x + a * cos(angle), y + a * sin(angle), z + side * b), 0.0
