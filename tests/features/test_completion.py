@@ -4,10 +4,14 @@ from pathlib import Path
 
 import pytest
 
-from kit import MODEL, fixture
+from kit import MODEL, SCENE, fixture
+from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import Completion, complete
+from robbdd_tools.features.layout import lay_out
+from robbdd_tools.features.snippets import declaration_snippets
 from robbdd_tools.names.project import Project
+from robbdd_tools.syntax.parse import parse_declaration
 
 
 def at(text: str) -> list[Completion]:
@@ -16,7 +20,7 @@ def at(text: str) -> list[Completion]:
 
 
 def labels(text: str) -> list[str]:
-    return [entry.label for entry in at(text)]
+    return [entry.label for entry in at(text) if entry.kind != "snippet"]
 
 
 def edited(old: str, new: str) -> str:
@@ -95,17 +99,113 @@ def test_a_template_is_completed_inside_a_variant() -> None:
 def test_values_are_the_elements_of_imported_scenes() -> None:
     found = labels(edited("obj set <parts>", "{ <$0> }"))
     assert "parts.bolt" in found
-    assert "washers.washer2" in found
     assert "parts" not in found
 
 
-def test_an_import_offers_the_models_beside_it(tmp_path: Path) -> None:
-    for name in ("b.scene", "a.bdd", "notes.txt", "main.bdd"):
+def test_values_are_those_of_their_type_in_the_scene_of_their_variant() -> None:
+    assert labels(edited("obj set <parts>", "{ <$0> }")) == [
+        "furniture.bench",
+        "furniture.tray",
+        "parts.bolt",
+        "parts.nut",
+    ]
+    assert labels(edited("obj set <parts>", "obj set <$0")) == ["furniture", "parts"]
+    assert labels(edited("scene: <bench_scene>", "scene: <gone>").replace("obj set <parts>", "obj set <$0")) == [
+        "furniture",
+        "parts",
+        "washers",
+    ]
+
+
+def test_cells_of_a_table_take_values_of_their_column() -> None:
+    rows = MODEL[MODEL.index("                var <fetch.part>") :].rpartition("        }")[0]
+    table = "| <fetch.robot> | <fetch.goal> |\n|---|---|\n| <arms.panda> | <places.bench_ws> |\n"
+    text = MODEL.replace(rows, table + "| <$0> |\n")
+    assert labels(text) == ["arms.panda", "arms.ur10"]
+    text = MODEL.replace(rows, table + "| <arms.panda> | <pl$0")
+    assert labels(text) == ["places.bench_ws", "places.tray_ws"]
+
+
+def test_an_import_offers_what_it_may_import_beside_it_and_in_folders(tmp_path: Path) -> None:
+    for name in ("b.scene", "a.bdd", "notes.txt", "main.bdd", "c.bddx"):
         (tmp_path / name).touch()
+    (tmp_path / "cells").mkdir()
+    (tmp_path / "cells" / "c.scene").touch()
     uri = path_to_uri(tmp_path / "main.bdd")
     project = Project()
     project.open(uri, 1, 'import "')
-    assert [entry.label for entry in complete(project.snapshot(), uri, 8)] == ["a.bdd", "b.scene"]
+    assert [entry.label for entry in complete(project.snapshot(), uri, 8)] == ["a.bdd", "b.scene", "cells/"]
+    project.open(uri, 2, 'import "cells/c.sc"')
+    (found,) = complete(project.snapshot(), uri, len('import "cells/c'))
+    assert (found.label, found.text) == ("c.scene", "c.scene")
+    assert (found.span, found.whole) == (Span(14, 15), Span(14, 18))
+
+
+@pytest.mark.parametrize("language", ["bdd", "scene", "scenex", "ktree", "bddx"])
+def test_every_declaration_has_a_snippet_that_parses(language: str) -> None:
+    case = fixture(f"//- main.{language}\n$0")
+    found = [entry for entry in complete(case.snapshot, case.uri, 0) if entry.kind == "snippet"]
+    keywords = {entry.label for entry in complete(case.snapshot, case.uri, 0) if entry.kind == "keyword"}
+    assert {entry.label.removesuffix(" …").split()[0] for entry in found} == {word.split()[0] for word in keywords}
+    for snippet in declaration_snippets(language):
+        assert parse_declaration(language, snippet.plain).faults == ()
+        assert lay_out(snippet.plain) == snippet.plain + "\n"
+
+
+def test_a_name_of_a_file_that_is_not_imported_brings_its_import() -> None:
+    other = "//- cells/more.scene\nns x = 'https://example.org/x/'\nscene (ns=x) other_scene { }\n"
+    text = "//- main.bdd\n" + edited("scene: <bench_scene>", "scene: <oth$0") + other
+    case = fixture(text)
+    (found,) = [entry for entry in complete(case.snapshot, case.uri, case.cursor) if entry.label == "other_scene"]
+    assert (found.text, found.detail) == ("other_scene>", "scene, imports 'cells/more.scene'")
+    (edit,) = found.edits
+    assert edit.text == '\nimport "cells/more.scene"'
+
+
+def test_a_name_on_disk_that_nobody_has_loaded_brings_its_import(tmp_path: Path) -> None:
+    (tmp_path / "lab.scene").write_text(SCENE, encoding="utf-8")
+    uri = path_to_uri(tmp_path / "main.bdd")
+    text = MODEL.replace('import "lab.scene"\n', "")
+    project = Project()
+    project.open(uri, 1, text)
+    at_scene = text.index("<bench_scene>") + 1
+    assert [entry.edits[0].text for entry in complete(project.snapshot(), uri, at_scene)] == ['import "lab.scene"\n']
+
+
+def test_completion_works_below_broken_lines_of_the_same_declaration() -> None:
+    text = edited("task: <task>", "tusk: <task>").replace("<robot> picks", "<$0> picks", 1)
+    assert labels(text) == ["goal", "part", "robot"]
+
+
+def test_the_rest_of_a_word_behind_the_cursor_can_be_replaced() -> None:
+    (found,) = [entry for entry in at(edited("before <pick-start>", "before <pi$0ck-start>")) if entry.label == "end"]
+    assert (found.whole.end - found.whole.start, found.span.end - found.span.start) == (10, 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "labels_expected"),
+    [
+        ("main.scene", SCENE + "comp (ns=env) more of ws <$0", ["places.bench_ws", "places.tray_ws"]),
+        ("main.scene", SCENE + "scene (ns=$0", ["env"]),
+        ("main.scenex", 'import "lab.scene"\nns x = "http://x/"\nscene inst (ns=x) s { scene: <$0', ["bench_scene"]),
+        ("main.ktree", "ns x = 'http://x/'\nktree (ns=x) arm { body base { frame $0", []),
+        (
+            "main.ktree",
+            "ns x = 'http://x/'\nktree (ns=x) arm { body base { frame f { } } }\nktree (ns=x) b { root: <$0",
+            ["arm.base.f"],
+        ),
+        (
+            "main.bddx",
+            "ns x = 'http://x/'\nobs provider (ns=x) p { simulation ground truth update-rate: 1 Hz }\n"
+            "observation (ns=x) o { provider: <$0",
+            ["p"],
+        ),
+    ],
+)
+def test_every_file_kind_is_completed(name: str, text: str, labels_expected: list[str]) -> None:
+    case = fixture(f"//- {name}\n{text}")
+    found = complete(case.snapshot, case.uri, case.cursor)
+    assert [entry.label for entry in found] == labels_expected
 
 
 @pytest.mark.parametrize("text", ["// befo$0", 'const set (ns=t) s { "be$0" }', "const set (ns=t) s { 'be$0"])

@@ -50,7 +50,12 @@ def test_hover_tells_kind_and_iri() -> None:
     case = fixture(edited("<parts>", "<par$0ts>"))
     found = hover(case.snapshot, case.uri, case.cursor)
     assert found is not None
-    assert found.markdown == "**object set** `parts`\n\n`<https://example.org/env/parts>`"
+    assert found.markdown.split("\n\n") == [
+        "**object set** `parts`",
+        "2 elements: `parts.bolt`, `parts.nut`",
+        "`<https://example.org/env/parts>`",
+        "used 2 times in 2 files",
+    ]
 
 
 def test_hover_explains_a_phrase() -> None:

@@ -4,32 +4,41 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.document import Span
 from robbdd_tools.features.cursor import Cursor, cursor_at
-from robbdd_tools.features.value_types import fits, kinds_in_text, slot_wanted, values_wanted
+from robbdd_tools.features.fixes import import_edit
+from robbdd_tools.features.import_paths import import_paths, typed_path
+from robbdd_tools.features.snippets import declaration_snippets
+from robbdd_tools.features.unimported import beside, loaded
+from robbdd_tools.features.value_types import fits, kinds_in_text, scene_wanted, slot_wanted, values_wanted
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.uses import ANYTHING
 from robbdd_tools.syntax.chunk import Expectation, Parsed, grammar_text, parse_chunk
-from robbdd_tools.syntax.parse import LANGUAGES
+from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.document import Span
+    from robbdd_tools.base.diagnostic import Edit
+    from robbdd_tools.names.analysis import Definition, FileAnalysis
     from robbdd_tools.names.project import Snapshot
 
-
+MOST_BROKEN_LINES = 50
+"""Lines that do not parse and are passed over on the way to a cursor."""
+_STARTS = frozenset({"import", "ns"})
 _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet", "AgentSet", "ConstantSet", "AnySet")}
 
 
 @dataclass(frozen=True, slots=True)
 class Completion:
-    """One proposal: ``kind`` is ``keyword``, ``file`` or the kind of a symbol; ``text`` replaces ``span``.
+    """One proposal: ``kind`` is ``keyword``, ``snippet``, ``file``, ``folder`` or the kind of a symbol.
 
-    Of two proposals the one with the smaller ``rank`` fits better.
+    ``text`` replaces ``span``, or with what stands behind the cursor ``whole``; that of a snippet has placeholders.
+    Of two proposals the one with the smaller ``rank`` fits better. ``edits`` go with it (an import). ``origin`` is
+    the document and the qualified name that a name stands for.
     """
 
     label: str
@@ -37,50 +46,70 @@ class Completion:
     detail: str
     text: str
     span: Span
+    whole: Span
     rank: int = 0
+    edits: tuple[Edit, ...] = ()
+    origin: tuple[str, str] | None = None
 
 
 def complete(snapshot: Snapshot, uri: str, offset: int) -> list[Completion]:
     """Return the proposals at a cursor, keywords first, each group in alphabetical order.
 
-    Variables that cannot stand in a slot of a phrase come last; values that their variable cannot take, not at all.
+    Variables that cannot stand in a slot of a phrase come last; values that their variable cannot take, or that are
+    not in the scene of their variant, not at all. Names of files that are not imported yet bring their import.
     """
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
     cursor = cursor_at(analysis, offset)
     if cursor.quoted is not None:
-        return list(_import_paths(uri, cursor))
+        return list(_import_paths(uri, analysis, offset))
     language = language_of(uri)
-    expected = _expected(language, cursor.before)
+    before, expected = _expected(language, cursor.before)
     if expected is None:
         return []
-    found = [Completion(phrase, "keyword", "", phrase, cursor.span) for phrase in _phrases(language, cursor, expected)]
-    found += _names(snapshot, uri, cursor, expected.rules, bracket="")
+    whole = Span(cursor.span.start, _word_end(analysis.document.text, offset))
+    phrases = _phrases(language, before, expected)
+    found = [Completion(phrase, "keyword", "", phrase, cursor.span, whole) for phrase in phrases]
+    if expected.literals >= _STARTS:
+        found += (
+            Completion(f"{snippet.label} …", "snippet", "whole declaration", snippet.body, cursor.span, whole)
+            for snippet in declaration_snippets(language)
+        )
+    names = _Names(snapshot, analysis, cursor, whole)
+    found += names.proposals(expected.rules, bracket="")
     if "<" in expected.literals:
-        inside = _expected(language, cursor.before + "<")
+        _, inside = _expected(language, before + "<")
         if inside is not None:
-            found += _names(snapshot, uri, cursor, inside.rules, bracket="<")
+            found += names.proposals(inside.rules, bracket="<")
     return found
 
 
-def _expected(language: str, before: str) -> Expectation | None:
-    """Return what may follow a text; ``None`` when the text itself is broken before its end."""
-    parsed = parse_chunk(language, before)
-    if isinstance(parsed, Parsed):
-        # Behind a whole declaration another one begins, of which some words may be typed already.
-        return _expected(language, before[parsed.trailing :] if parsed.trailing is not None else "")
-    return None if before[parsed.offset :].strip() else parsed.expected
+def _expected(language: str, before: str) -> tuple[str, Expectation | None]:
+    """Return what may follow a text, with the text that it follows: lines that do not parse are left blank."""
+    for _ in range(MOST_BROKEN_LINES):
+        parsed = parse_chunk(language, before)
+        if isinstance(parsed, Parsed):
+            # Behind a whole declaration another one begins, of which some words may be typed already.
+            return _expected(language, before[parsed.trailing :] if parsed.trailing is not None else "")
+        if not before[parsed.offset :].strip():
+            return before, parsed.expected
+        start = before.rfind("\n", 0, parsed.offset) + 1
+        end = before.find("\n", parsed.offset)
+        if end < 0 or not before[start:end].strip():
+            break
+        before = before[:start] + " " * (end - start) + before[end:]
+    return before, None
 
 
-def _phrases(language: str, cursor: Cursor, expected: Expectation) -> list[str]:
+def _phrases(language: str, before: str, expected: Expectation) -> list[str]:
     """Return the accepted keywords, each continued by the keywords that must follow it."""
     found: set[str] = set()
     for literal in expected.literals:
         if not literal[:1].isalpha():
             continue
         runs = _keyword_runs(language).get(literal, ())
-        fitting = [run for run in runs if _follows(language, cursor.before, run)]
+        fitting = [run for run in runs if _follows(language, before, run)]
         found.update(fitting or [literal])
     return sorted(found)
 
@@ -101,22 +130,54 @@ def _keyword_runs(language: str) -> dict[str, tuple[str, ...]]:
     return {word: tuple(found) for word, found in runs.items()}
 
 
-def _names(snapshot: Snapshot, uri: str, cursor: Cursor, rules: Iterable[str], bracket: str) -> Iterator[Completion]:
-    scope = snapshot.scope(uri)
-    wanted = values_wanted(snapshot, uri, cursor.before) if not _VALUE_RULES.isdisjoint(rules) else ANYTHING
-    roles = sorted(rule.removesuffix("Path") for rule in rules if rule.endswith("Path"))
-    closing = _needs_closing(scope.files[0].document.text, cursor)
-    for role in roles:
-        visible = scope.visible(ROLE_KINDS[role], cursor.scopes)
-        misfits = _misfits(cursor) if role == "Variable" else frozenset[str]()
+@dataclass(frozen=True, slots=True)
+class _Names:
+    """The names that may stand at a cursor."""
+
+    snapshot: Snapshot
+    file: FileAnalysis
+    cursor: Cursor
+    whole: Span
+
+    def proposals(self, rules: Iterable[str], bracket: str) -> Iterator[Completion]:
+        """Yield the names that fit some rules: those in scope, then those of files to import."""
+        uri = self.file.document.uri
+        roles = sorted(rule.removesuffix("Path") for rule in rules if rule.endswith("Path"))
+        wanted, members = ANYTHING, None
+        if not _VALUE_RULES.isdisjoint(rules):
+            wanted = values_wanted(self.snapshot, uri, self.cursor.before)
+            members = scene_wanted(self.snapshot, uri, self.cursor.before)
+        for role in roles:
+            known = set[str]()
+            for name, definition, rank in self._in_scope(role):
+                known.add(name)
+                if fits(self.snapshot, definition, wanted, members):
+                    yield self._proposal(name, definition.kind, (definition.uri, definition.symbol.path), bracket, rank)
+            if role != "Namespace" and members is None and wanted == ANYTHING:
+                yield from self._to_import(role, known, bracket)
+
+    def _in_scope(self, role: str) -> Iterator[tuple[str, Definition, int]]:
+        scope = self.snapshot.scope(self.file.document.uri)
+        visible = scope.visible(ROLE_KINDS[role], self.cursor.scopes)
+        misfits = _misfits(self.cursor) if role == "Variable" else frozenset[str]()
         for name in sorted(visible, key=lambda name: (name in misfits, name)):
-            file, declared = visible[name]
-            if wanted != ANYTHING and not fits(snapshot, scope.define(file, declared), wanted):
-                continue
-            inserted = f"{bracket}{name}>" if closing and role != "Namespace" else f"{bracket}{name}"
-            yield Completion(
-                name, str(declared.symbol.kind), str(declared.symbol.kind), inserted, cursor.span, int(name in misfits)
-            )
+            yield name, scope.define(*visible[name]), int(name in misfits)
+
+    def _to_import(self, role: str, known: set[str], bracket: str) -> Iterator[Completion]:
+        uri = self.file.document.uri
+        for path, index in [*loaded(self.snapshot, uri), *beside(self.snapshot, uri)]:
+            for name in sorted(index.names.kinds):
+                kind = next((kind for kind in index.names.kinds[name] if kind in ROLE_KINDS[role]), None)
+                if kind is not None and name not in known:
+                    known.add(name)
+                    found = self._proposal(name, kind, (index.document.uri, name), bracket, rank=2)
+                    detail = f"{found.detail}, imports '{path}'"
+                    yield replace(found, detail=detail, edits=(import_edit(self.file, path),))
+
+    def _proposal(self, name: str, kind: SymbolKind, origin: tuple[str, str], bracket: str, rank: int) -> Completion:
+        closing = kind is not SymbolKind.NAMESPACE and _needs_closing(self.file.document.text, self.cursor)
+        text = f"{bracket}{name}>" if closing else f"{bracket}{name}"
+        return Completion(name, kind, kind, text, self.cursor.span, self.whole, rank, origin=origin)
 
 
 def _misfits(cursor: Cursor) -> frozenset[str]:
@@ -134,14 +195,19 @@ def _needs_closing(text: str, cursor: Cursor) -> bool:
     return re.compile(r"[\w\-.]*\s*>").match(text, cursor.span.end) is None
 
 
-def _import_paths(uri: str, cursor: Cursor) -> Iterator[Completion]:
-    """Propose model files beside the importing one, inside the quotes of an import."""
-    own = uri_to_path(uri)
-    if own is None or not re.match(r"import\s*[\"'][^\"']*\Z", f"{cursor.before}{cursor.word}"):
+def _word_end(text: str, offset: int) -> int:
+    match = re.compile(r"[\w\-.]*").match(text, offset)
+    return offset if match is None else match.end()
+
+
+def _import_paths(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion]:
+    """Propose folders and model files inside the quotes of an import."""
+    text = file.document.text
+    typed = typed_path(text[text.rfind("\n", 0, offset) + 1 : offset])
+    if typed is None:
         return
-    try:
-        beside = sorted(path.name for path in own.parent.iterdir() if path.suffix[1:] in LANGUAGES and path != own)
-    except OSError:
-        return
-    for name in beside:
-        yield Completion(name, "file", "model", name, cursor.span)
+    start = offset - len(typed) + typed.rfind("/") + 1
+    rest = re.compile(r"[^\"'\n/]*").match(text, offset)
+    whole = Span(start, offset if rest is None else rest.end())
+    for name, is_folder in import_paths(uri, typed):
+        yield Completion(name, "folder" if is_folder else "file", "", name, Span(start, offset), whole)

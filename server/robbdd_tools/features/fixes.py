@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
-from urllib.parse import unquote
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix
 from robbdd_tools.base.document import Document, Span
-from robbdd_tools.base.files import path_to_uri, read_text, uri_to_path
+from robbdd_tools.features.unimported import Importable, beside, loaded
 from robbdd_tools.names.elements import Site
-from robbdd_tools.names.imports import IMPORTABLE
-from robbdd_tools.names.index import FileIndex, index_file, language_of
 from robbdd_tools.names.resolve import candidates
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.syntax import tree
@@ -24,9 +20,6 @@ if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Reference
-
-MOST_NEIGHBOURS = 200
-"""Model files beside one another that are searched for a name."""
 
 _KEYWORDS: Mapping[SymbolKind, str] = {
     SymbolKind.OBJECT_SET: "obj set",
@@ -53,18 +46,14 @@ def with_fixes(snapshot: Snapshot, file: FileAnalysis, found: Iterable[Diagnosti
 
 def imports_from_disk(snapshot: Snapshot, uri: str, diagnostic: Diagnostic) -> tuple[Fix, ...]:
     """Return the imports of files beside a file that nobody has loaded yet and that declare an unknown name."""
-    file, path = snapshot.file(uri), uri_to_path(uri)
+    file = snapshot.file(uri)
     used = None if file is None or diagnostic.code != "unknown-name" else _reference(file, diagnostic.span)
-    if file is None or path is None or used is None:
-        return ()
-    try:
-        beside = sorted(entry for entry in path.parent.iterdir() if language_of(entry.name))[:MOST_NEIGHBOURS]
-    except OSError:
-        return ()
-    unloaded = [path_to_uri(entry) for entry in beside if path_to_uri(entry) not in snapshot.sources]
-    texts = [(name, read_text(uri_to_path(name) or path)) for name in unloaded]
-    indices = [index_file(Document(name, 0, text)) for name, text in texts if isinstance(text, str)]
-    return tuple(_imports(file, used[1], indices))
+    return () if file is None or used is None else tuple(_imports(file, used[1], beside(snapshot, uri)))
+
+
+def import_edit(file: FileAnalysis, path: str) -> Edit:
+    """Return the edit that adds an import to a file."""
+    return _below(file, (tree.Import,), f'import "{path}"')
 
 
 def _fixes(
@@ -72,10 +61,8 @@ def _fixes(
 ) -> tuple[Fix, ...]:
     if code == "wrong-kind":
         return tuple(_other_role(snapshot, file, placed, reference))
-    known = {index.document.uri for index in snapshot.scope(file.document.uri).files}
-    others = (source for name, source in sorted(snapshot.sources.items()) if name not in known)
-    indices = [source for source in others if isinstance(source, FileIndex)]
-    return (*_imports(file, reference, indices), *_declarations(snapshot, file, placed, reference))
+    others = loaded(snapshot, file.document.uri)
+    return (*_imports(file, reference, others), *_declarations(snapshot, file, placed, reference))
 
 
 def _reference(file: FileAnalysis, span: Span) -> tuple[PlacedDeclaration, Reference] | None:
@@ -88,18 +75,12 @@ def _reference(file: FileAnalysis, span: Span) -> tuple[PlacedDeclaration, Refer
     return None
 
 
-def _imports(file: FileAnalysis, reference: Reference, indices: Iterable[FileIndex]) -> Iterator[Fix]:
-    """Yield an import of each file in the same folder that declares a name as it is used."""
-    uri, kinds = file.document.uri, ROLE_KINDS[reference.ref.role]
-    folder = uri.rpartition("/")[0]
-    for index in indices:
-        other = index.document.uri
-        if other.rpartition("/")[0] != folder or language_of(other) not in IMPORTABLE.get(language_of(uri), ()):
-            continue
+def _imports(file: FileAnalysis, reference: Reference, others: Iterable[Importable]) -> Iterator[Fix]:
+    """Yield an import of each file that declares a name as it is used."""
+    kinds = ROLE_KINDS[reference.ref.role]
+    for path, index in others:
         if any(kind in kinds for kind in index.names.kinds.get(reference.ref.path, ())):
-            name = unquote(PurePosixPath(other).name)
-            edit = _below(file, (tree.Import,), f'import "{name}"')
-            yield Fix(f"Import '{name}'", (edit,))
+            yield Fix(f"Import '{path}'", (import_edit(file, path),))
 
 
 def _declarations(

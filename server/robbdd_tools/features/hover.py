@@ -1,21 +1,20 @@
-"""Hover: what a name is, and its IRI."""
+"""Hover: what stands under the cursor, be it a name, a phrase of the catalog or a time constraint."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
-from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.definition import symbol_at
-from robbdd_tools.names.roles import ROLE_KINDS
-from robbdd_tools.names.types import variable_type
-from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.features.describe import describe
+from robbdd_tools.features.sentences import time_meaning, word_meaning, word_of
+from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
-from robbdd_tools.syntax.tree import PhraseUse
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.features.clause_results import JudgedClause
     from robbdd_tools.names.project import Snapshot
 
 
@@ -27,33 +26,25 @@ class Hover:
     span: Span
 
 
-def hover(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
-    """Describe the name under a cursor, else the phrase of the catalog around it."""
+def hover(snapshot: Snapshot, uri: str, offset: int, judged: Mapping[str, JudgedClause] | None = None) -> Hover | None:
+    """Describe the name under a cursor, else the phrase or time constraint around it.
+
+    ``judged`` are the last results of clauses by their IRIs.
+    """
     found = symbol_at(snapshot, uri, offset)
     if found is not None:
-        return Hover(_about(snapshot, found[1]), found[0])
-    return _phrase(snapshot, uri, offset)
-
-
-def _about(snapshot: Snapshot, definition: Definition) -> str:
-    lines = [f"**{definition.kind}** `{definition.symbol.path}`"]
-    if definition.kind in ROLE_KINDS["Variable"]:
-        found = variable_type(snapshot, definition)
-        lines[0] += f": {found}" if found.is_known else ""
-    if definition.iri is not None and definition.kind is not SymbolKind.NAMESPACE:
-        lines.append(f"`<{definition.iri}>`")
-    return "\n\n".join(lines)
-
-
-def _phrase(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
+        return Hover(describe(snapshot, found[1], judged), found[0])
     analysis = snapshot.file(uri)
-    catalog = load_catalog()
     for placed in analysis.declarations if analysis is not None else ():
         root = placed.declaration.tree
         if root is None or not placed.span.contains(offset):
             continue
         for node in walk(root):
-            if isinstance(node, PhraseUse) and node.span.shifted(placed.offset).contains(offset):
-                word = catalog.predicates.get(node.word) or catalog.behaviours[node.word]
-                return Hover(f"`{word.phrase}`\n\n{word.doc}", node.span.shifted(placed.offset))
+            span = node.span.shifted(placed.offset)
+            if not span.contains(offset):
+                continue
+            if isinstance(node, tree.PhraseUse):
+                return Hover(word_meaning(word_of(node)), span)
+            if isinstance(node, tree.During | tree.Before | tree.After):
+                return Hover(time_meaning(node), span)
     return None

@@ -8,7 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.names.elements import elements_of, site_of
+from robbdd_tools.names.elements import Element, elements_of, scene_members, site_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.types import variable_type
 from robbdd_tools.names.uses import ANYTHING, Kinds, slot_kinds
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _REFERENCE = r"<\s*([\w\-.]+)\s*>"
 _LINE = re.compile(rf"\bvar\s*{_REFERENCE}\s*:[^:|]*\Z")
+_SCENE = re.compile(rf"\bscene\s*:\s*{_REFERENCE}")
 _RULE = re.compile(r"\|(?:\s*-+\s*\|)+")
 _PIECE = re.compile(r"<(?P<slot>\w+)>|(?P<name>\$\w+)|(?P<sign>[^\s\w<$])|(?P<word>\w+)")
 _ELEMENT_KINDS: Mapping[SymbolKind, str] = {
@@ -30,6 +31,7 @@ _ELEMENT_KINDS: Mapping[SymbolKind, str] = {
     SymbolKind.AGENT: "agent",
     SymbolKind.AGENT_SET: "agent",
 }
+_MEMBER_KINDS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
 
 
 def values_wanted(snapshot: Snapshot, uri: str, before: str) -> Kinds:
@@ -42,13 +44,34 @@ def values_wanted(snapshot: Snapshot, uri: str, before: str) -> Kinds:
     return ANYTHING
 
 
-def fits(snapshot: Snapshot, definition: Definition, wanted: Kinds) -> bool:
-    """Tell whether a value or a set of values may be given where some kinds are wanted."""
-    if definition.kind is SymbolKind.CONSTANT_SET:
-        elements = elements_of(site_of(snapshot, definition))
-        return elements is None or any(element.kind in wanted for element in elements)
+def scene_wanted(snapshot: Snapshot, uri: str, before: str) -> frozenset[Element] | None:
+    """Return the members of the scene of the variant that a text ends in; ``None`` where they are not known."""
+    variant = before[before.rfind("Scenario") :]
+    match = _SCENE.search(variant)
+    scope = snapshot.scope(uri)
+    for file, declared in scope.find(match[1]) if match else ():
+        if declared.symbol.kind is SymbolKind.SCENE:
+            return scene_members(site_of(snapshot, scope.define(file, declared)))
+    return None
+
+
+def fits(snapshot: Snapshot, definition: Definition, wanted: Kinds, members: frozenset[Element] | None = None) -> bool:
+    """Tell whether a value or a set of values may be given where some kinds are wanted.
+
+    With the ``members`` of a scene, an element of a kind that the scene has must be one of them.
+    """
     kind = _ELEMENT_KINDS.get(definition.kind)
-    return kind is None or kind in wanted
+    if definition.kind in _MEMBER_KINDS:
+        elements = [Element(str(definition.kind), definition.symbol.path, (definition.uri, definition.symbol.path))]
+    else:
+        elements = list(elements_of(site_of(snapshot, definition)) or ())
+    if definition.kind is SymbolKind.CONSTANT_SET and elements and all(one.kind not in wanted for one in elements):
+        return False
+    if kind is not None and kind not in wanted:
+        return False
+    present = {member.kind for member in members or ()}
+    keys = {member.key for member in members or ()}
+    return all(one.key in keys for one in elements if one.kind in present)
 
 
 def slot_wanted(before: str) -> Kinds:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from lsprotocol import types
 
-from robbdd_tools.base.diagnostic import Diagnostic
+from robbdd_tools.base.diagnostic import Diagnostic, Edit
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.features.completion import Completion
 from robbdd_tools.names.index import FileIndex
@@ -18,7 +18,9 @@ SOURCE = "robbdd"
 _KINDS = types.CompletionItemKind
 _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     "keyword": _KINDS.Keyword,
+    "snippet": _KINDS.Snippet,
     "file": _KINDS.File,
+    "folder": _KINDS.Folder,
     SymbolKind.EVENT: _KINDS.Event,
     SymbolKind.VARIABLE: _KINDS.Variable,
     SymbolKind.SET_VARIABLE: _KINDS.Variable,
@@ -84,17 +86,46 @@ class Converter:
             tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code.startswith("unused-") else None,
         )
 
-    def completion(self, document: Document, completion: Completion) -> types.CompletionItem:
-        """Return a completion for the client; matching goes by what it replaces."""
-        edit = types.TextEdit(range=self.range(document, completion.span), new_text=completion.text)
+    def completion(
+        self, document: Document, completion: Completion, client: types.ClientCompletionItemOptions | None
+    ) -> types.CompletionItem | None:
+        """Return a completion as the client can take it; matching goes by what it replaces."""
+        snippets = client is not None and bool(client.snippet_support)
+        if completion.kind == "snippet" and not snippets:
+            return None
+        data: dict[str, str] | None = None
+        if completion.origin is not None:
+            data = {"uri": completion.origin[0], "path": completion.origin[1]}
+        elif completion.kind == "keyword":
+            data = {"words": completion.label}
+        range = self.range(document, completion.span)
+        edit: types.TextEdit | types.InsertReplaceEdit = types.TextEdit(range=range, new_text=completion.text)
+        if client is not None and client.insert_replace_support:
+            whole = self.range(document, completion.whole)
+            edit = types.InsertReplaceEdit(new_text=completion.text, insert=range, replace=whole)
+        is_snippet = completion.kind == "snippet"
         return types.CompletionItem(
             label=completion.label,
             kind=_COMPLETION_KINDS.get(completion.kind, _KINDS.Value),
             detail=completion.detail or None,
-            filter_text=completion.text,
+            filter_text=completion.label if is_snippet else completion.text,
             sort_text=f"{completion.rank} {completion.label}",
+            insert_text_format=types.InsertTextFormat.Snippet if is_snippet else None,
             text_edit=edit,
+            additional_text_edits=[self.edit(document, entry) for entry in completion.edits] or None,
+            data=data,
         )
+
+    def edit(self, document: Document, edit: Edit) -> types.TextEdit:
+        """Return an edit of a document."""
+        return types.TextEdit(range=self.range(document, edit.span), new_text=edit.text)
+
+    def workspace_edit(self, snapshot: Snapshot, edits: Iterable[Edit]) -> types.WorkspaceEdit:
+        """Return edits of any files of a snapshot."""
+        changes: dict[str, list[types.TextEdit]] = {}
+        for edit in edits:
+            changes.setdefault(edit.uri, []).append(self.edit(document_of(snapshot, edit.uri), edit))
+        return types.WorkspaceEdit(changes=changes)
 
     def _units(self, letter: str) -> int:
         match self.encoding:

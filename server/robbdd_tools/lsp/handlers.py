@@ -7,19 +7,14 @@ from typing import Any
 
 from lsprotocol import types
 
-from robbdd_tools.base.document import Span
-from robbdd_tools.features.clause_results import clause_hints
-from robbdd_tools.features.completion import complete
-from robbdd_tools.features.definition import definition
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.fixes import imports_from_disk
-from robbdd_tools.features.hover import hover
-from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.scenarios import RunnableScenario, runnable_scenarios
-from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.editing import register_editing
 from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
+from robbdd_tools.lsp.reading import register_reading
 from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.tokens import register_tokens
@@ -32,7 +27,8 @@ def create_server() -> RobbddServer:
     """Return a server with all its methods registered."""
     server = RobbddServer()
     _register_documents(server)
-    _register_reading(server)
+    register_reading(server)
+    register_editing(server)
     _register_actions(server)
     _register_commands(server)
     register_navigation(server)
@@ -68,77 +64,6 @@ def _register_documents(server: RobbddServer) -> None:
     @server.feature(types.SHUTDOWN)
     def shutdown(ls: RobbddServer, _: None) -> None:
         ls.stop()
-
-
-def _register_reading(server: RobbddServer) -> None:
-    options = types.CompletionOptions(trigger_characters=["<", ".", '"', " "])
-
-    @server.feature(types.TEXT_DOCUMENT_COMPLETION, options)
-    async def completion(ls: RobbddServer, params: types.CompletionParams) -> list[types.CompletionItem]:
-        def find(snapshot: Snapshot) -> list[types.CompletionItem]:
-            document = document_of(snapshot, params.text_document.uri)
-            offset = ls.convert.offset(document, params.position)
-            return [ls.convert.completion(document, entry) for entry in complete(snapshot, document.uri, offset)]
-
-        return await ls.analyse(find)
-
-    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
-    async def go_to_definition(ls: RobbddServer, params: types.DefinitionParams) -> types.Location | None:
-        def find(snapshot: Snapshot) -> types.Location | None:
-            document = document_of(snapshot, params.text_document.uri)
-            found = definition(snapshot, document.uri, ls.convert.offset(document, params.position))
-            return None if found is None else ls.convert.location(snapshot, *found)
-
-        return await ls.analyse(find)
-
-    @server.feature(types.TEXT_DOCUMENT_HOVER)
-    async def show_hover(ls: RobbddServer, params: types.HoverParams) -> types.Hover | None:
-        def find(snapshot: Snapshot) -> types.Hover | None:
-            document = document_of(snapshot, params.text_document.uri)
-            found = hover(snapshot, document.uri, ls.convert.offset(document, params.position))
-            if found is None:
-                return None
-            contents = types.MarkupContent(kind=types.MarkupKind.Markdown, value=found.markdown)
-            return types.Hover(contents=contents, range=ls.convert.range(document, found.span))
-
-        return await ls.analyse(find)
-
-    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
-    async def formatting(ls: RobbddServer, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
-        def find(snapshot: Snapshot) -> list[types.TextEdit]:
-            document = document_of(snapshot, params.text_document.uri)
-            laid_out = lay_out(document.text)
-            if laid_out == document.text:
-                return []
-            whole = ls.convert.range(document, Span(0, len(document.text)))
-            return [types.TextEdit(range=whole, new_text=laid_out)]
-
-        return await ls.analyse(find)
-
-    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
-    async def inlay_hint(ls: RobbddServer, params: types.InlayHintParams) -> list[types.InlayHint]:
-        def find(snapshot: Snapshot) -> list[types.InlayHint]:
-            document = document_of(snapshot, params.text_document.uri)
-            wanted = ls.convert.span(document, params.range)
-            return [
-                types.InlayHint(
-                    position=ls.convert.position(document, hint.span.end),
-                    label=hint.label,
-                    tooltip="\n".join(hint.lines),
-                    padding_left=True,
-                )
-                for hint in clause_hints(snapshot, document.uri, ls.judged)
-                if wanted.contains(hint.span.end)
-            ] + [
-                types.InlayHint(
-                    position=ls.convert.position(document, hint.span.end),
-                    label=hint.label,
-                    kind=types.InlayHintKind.Type,
-                )
-                for hint in type_hints(snapshot, document.uri, wanted)
-            ]
-
-        return await ls.analyse(find)
 
 
 def _register_actions(server: RobbddServer) -> None:
@@ -211,16 +136,12 @@ def _quick_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionP
             continue
         fixes = (*diagnostic.fixes, *imports_from_disk(snapshot, uri, diagnostic))
         for position, fix in enumerate(fixes):
-            changes: dict[str, list[types.TextEdit]] = {}
-            for edit in fix.edits:
-                range = ls.convert.range(document_of(snapshot, edit.uri), edit.span)
-                changes.setdefault(edit.uri, []).append(types.TextEdit(range=range, new_text=edit.text))
             found.append(
                 types.CodeAction(
                     title=fix.title,
                     kind=types.CodeActionKind.QuickFix,
                     diagnostics=[ls.convert.diagnostic(snapshot, diagnostic)],
-                    edit=types.WorkspaceEdit(changes=changes),
+                    edit=ls.convert.workspace_edit(snapshot, fix.edits),
                     is_preferred=position == 0,
                 )
             )

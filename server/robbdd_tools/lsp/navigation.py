@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
+from robbdd_tools.features.definition import definition
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.outline import Item, outline, project_names
 from robbdd_tools.features.references import highlights, references
@@ -38,6 +39,15 @@ def register_navigation(server: RobbddServer) -> None:
 
 
 def _register_uses(server: RobbddServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    async def go_to_definition(ls: RobbddServer, params: types.DefinitionParams) -> types.Location | None:
+        def find(snapshot: Snapshot) -> types.Location | None:
+            document = document_of(snapshot, params.text_document.uri)
+            found = definition(snapshot, document.uri, ls.convert.offset(document, params.position))
+            return None if found is None else ls.convert.location(snapshot, *found)
+
+        return await ls.analyse(find)
+
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     async def find_references(ls: RobbddServer, params: types.ReferenceParams) -> list[types.Location]:
         def find(snapshot: Snapshot) -> list[types.Location]:
@@ -71,11 +81,7 @@ def _register_uses(server: RobbddServer) -> None:
         def find(snapshot: Snapshot) -> types.WorkspaceEdit:
             document = document_of(snapshot, params.text_document.uri)
             offset = ls.convert.offset(document, params.position)
-            changes: dict[str, list[types.TextEdit]] = {}
-            for edit in rename(snapshot, document.uri, offset, params.new_name):
-                place = ls.convert.location(snapshot, edit.uri, edit.span)
-                changes.setdefault(edit.uri, []).append(types.TextEdit(range=place.range, new_text=edit.text))
-            return types.WorkspaceEdit(changes=changes)
+            return ls.convert.workspace_edit(snapshot, rename(snapshot, document.uri, offset, params.new_name))
 
         try:
             return await ls.analyse(find)

@@ -1,0 +1,67 @@
+"""How many scenarios a variation makes, counted without expanding it."""
+
+from __future__ import annotations
+
+from math import comb, perm, prod
+from typing import TYPE_CHECKING
+
+from robbdd_tools.names.elements import elements_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.checks.variants import Scenario
+    from robbdd_tools.names.elements import Site
+    from robbdd_tools.names.types import Written
+
+MOST_SCENARIOS = 10_000
+"""Scenarios of one variant that are taken as meant; a night of simulation runs about as many."""
+UNCOUNTED = 10**12
+"""What a count stops at."""
+
+
+def factors_of(scenario: Scenario) -> tuple[int, ...] | None:
+    """Return how many values each line of a product offers, or the number of a table's rows.
+
+    Their product is the number of scenarios; ``None`` while a set is unknown.
+    """
+    variation = scenario.variant.variation
+    if isinstance(variation, tree.Table):
+        return (len(variation.rows),)
+    counts = [choices(scenario.site, written) for column in scenario.columns for written in column.written]
+    known = tuple(count for count in counts if count is not None)
+    return known if len(known) == len(counts) else None
+
+
+def scenario_count(scenario: Scenario) -> int | None:
+    """Return the number of scenarios that a variant stands for; ``None`` while a set is unknown."""
+    factors = factors_of(scenario)
+    return None if factors is None else prod(factors)
+
+
+def choices(site: Site, written: Written) -> int | None:
+    """Return how many values a line offers; ``None`` while the set is unknown."""
+    match written:
+        case tree.ValueList():
+            return len(written.values)
+        case tree.SetList():
+            return len(written.sets)
+        case tree.Link():
+            elements = elements_of(site.follow(written.reference))
+            return None if elements is None else len(elements)
+        case tree.Selection():
+            elements = elements_of(site.follow(written.source))
+            return None if elements is None else _selections(written, len(elements))
+        case _:
+            return 1
+
+
+def _selections(selection: tree.Selection, size: int) -> int | None:
+    length = selection.count.value
+    if not isinstance(length, int) or length < 1 or not size:
+        return None
+    if selection.repeated:
+        # Beyond the limit the exact number is of no use and slow to compute.
+        return UNCOUNTED if size > 1 and length > MOST_SCENARIOS else comb(size + length - 1, length)
+    if length > MOST_SCENARIOS:
+        return 0
+    return min(UNCOUNTED, perm(size, length) if selection.kind == "permutations" else comb(size, length))

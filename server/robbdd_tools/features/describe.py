@@ -1,0 +1,163 @@
+"""What is known of a name, in Markdown: shown by hover, and beside a completion when it is resolved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.counting import factors_of, scenario_count
+from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.features.references import uses
+from robbdd_tools.features.sentences import clause_sentence, time_meaning, word_meaning, word_of
+from robbdd_tools.names.elements import elements_of, scene_members, site_of
+from robbdd_tools.names.roles import ROLE_KINDS
+from robbdd_tools.names.types import variable_type
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.features.clause_results import JudgedClause
+    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.elements import Element, Site
+    from robbdd_tools.names.project import Snapshot
+
+MOST_LISTED = 8
+"""Members or results that are listed one by one."""
+
+
+def describe(snapshot: Snapshot, definition: Definition, judged: Mapping[str, JudgedClause] | None = None) -> str:
+    """Describe a name: kind, type, what its author wrote above it, IRI, contents, sentence, results, uses."""
+    site = site_of(snapshot, definition)
+    parts = [_title(snapshot, definition), *_comment(site, definition)]
+    if site is not None:
+        parts += _contents(site, definition)
+    parts += _results(snapshot, definition, judged or {})
+    if definition.iri is not None and definition.kind is not SymbolKind.NAMESPACE:
+        parts.append(f"`<{definition.iri}>`")
+    parts.append(_used(snapshot, definition))
+    return "\n\n".join(parts)
+
+
+def describe_path(snapshot: Snapshot, uri: str, path: str) -> str | None:
+    """Describe a qualified name that a file of the project declares."""
+    analysis = snapshot.file(uri)
+    definition = None if analysis is None else analysis.definitions.get(path)
+    return None if definition is None else describe(snapshot, definition)
+
+
+def describe_words(words: str) -> str | None:
+    """Describe the words of the catalog whose phrases have some keywords in them."""
+    catalog = load_catalog()
+    known = (*catalog.predicates.values(), *catalog.behaviours.values())
+    found = [word_meaning(word) for word in known if f" {words} " in f" {word.phrase} "]
+    return "\n\n---\n\n".join(found) or None
+
+
+def variants_of(snapshot: Snapshot, template: Definition) -> Iterator[Scenario]:
+    """Yield the variants of a template, in its own file and in those that import it."""
+    for uri in (template.uri, *snapshot.importers(template.uri)):
+        file = snapshot.file(uri)
+        for definition in file.definitions.values() if file is not None else ():
+            if definition.kind is not SymbolKind.STORY:
+                continue
+            site = site_of(snapshot, definition)
+            for scenario in scenarios(site) if site is not None else ():
+                target = scenario.site.target(scenario.variant.template)
+                if target is not None and (target.uri, target.symbol.path) == (template.uri, template.symbol.path):
+                    yield scenario
+
+
+def _title(snapshot: Snapshot, definition: Definition) -> str:
+    title = f"**{definition.kind}** `{definition.symbol.path}`"
+    if definition.kind in ROLE_KINDS["Variable"]:
+        found = variable_type(snapshot, definition)
+        title += f": {found}" if found.is_known else ""
+    return title
+
+
+def _comment(site: Site | None, definition: Definition) -> Iterator[str]:
+    """Yield the comment that stands directly above a declaration."""
+    if site is None:
+        return
+    document = site.file.document
+    line = document.position(definition.extent.start).line - 1
+    found: list[str] = []
+    while line >= 0 and document.line_text(line).lstrip().startswith("//"):
+        found.insert(0, document.line_text(line).lstrip().removeprefix("//").strip())
+        line -= 1
+    if found:
+        yield "\n".join(found)
+
+
+def _contents(site: Site, definition: Definition) -> Iterator[str]:
+    match definition.kind:
+        case SymbolKind.FLUENT | SymbolKind.BEHAVIOUR:
+            yield from _clause(site, definition)
+        case SymbolKind.VARIANT:
+            for scenario in scenarios(site):
+                if site.span(scenario.variant.name) == definition.span:
+                    yield _count(scenario)
+        case SymbolKind.TEMPLATE:
+            for scenario in variants_of(site.snapshot, definition):
+                yield f"`{scenario.variant.name.text}`: {_count(scenario)}"
+        case SymbolKind.OBJECT_SET | SymbolKind.WORKSPACE_SET | SymbolKind.AGENT_SET | SymbolKind.CONSTANT_SET:
+            yield from _members(elements_of(site))
+        case SymbolKind.SCENE:
+            yield from _members(tuple(sorted(scene_members(site) or (), key=lambda member: member.key)))
+        case SymbolKind.OBJECT:
+            model = load_catalog().object_for(definition.symbol.name)
+            yield from [f"Simulated as *{model.name}*: {model.doc}"] if model is not None else []
+        case SymbolKind.AGENT:
+            robot = load_catalog().robot_for(definition.symbol.name)
+            yield from [f"Simulated as *{robot.name}*: {robot.doc}"] if robot is not None else []
+        case _:
+            pass
+
+
+def _clause(site: Site, definition: Definition) -> Iterator[str]:
+    for node in walk(site.tree) if site.tree is not None else ():
+        if isinstance(node, tree.Fluent | tree.BehaviourUse) and site.span(node.name) == definition.span:
+            yield f"> {clause_sentence(node)}"
+            phrase = node.predicate if isinstance(node, tree.Fluent) else node.action
+            if isinstance(phrase, tree.PhraseUse):
+                yield word_meaning(word_of(phrase))
+            if isinstance(node, tree.Fluent):
+                yield time_meaning(node.time)
+            return
+
+
+def _count(scenario: Scenario) -> str:
+    total, factors = scenario_count(scenario), factors_of(scenario)
+    if total is None or factors is None:
+        return "as many scenarios as its sets have elements, of which some are unknown"
+    product = f" ({' × '.join(str(factor) for factor in factors)})" if len(factors) > 1 else ""
+    return f"{total:,} scenario{'' if total == 1 else 's'}{product}"
+
+
+def _members(members: tuple[Element, ...] | None) -> Iterator[str]:
+    if members:
+        names = [f"`{member.name}`" for member in members[:MOST_LISTED]]
+        more = f" and {len(members) - MOST_LISTED} more" if len(members) > MOST_LISTED else ""
+        yield f"{len(members)} element{'' if len(members) == 1 else 's'}: {', '.join(names)}{more}"
+
+
+def _results(snapshot: Snapshot, definition: Definition, judged: Mapping[str, JudgedClause]) -> Iterator[str]:
+    clause = judged.get(definition.iri or "")
+    if clause is None or not clause.results or definition.kind is not SymbolKind.FLUENT:
+        return
+    file = snapshot.file(definition.uri)
+    text = "" if file is None else file.document.text[definition.extent.start : definition.extent.end]
+    worst = sorted(clause.results, key=lambda result: result.rank)[:MOST_LISTED]
+    age = "Last results" if text == clause.text else "Last results, of the text before it was edited"
+    yield f"{age}:\n\n" + "\n".join(f"- {result.detail}" for result in worst)
+
+
+def _used(snapshot: Snapshot, definition: Definition) -> str:
+    places = {(use.uri, use.span) for use in uses(snapshot, definition) if use.target == definition}
+    files = {uri for uri, _ in places}
+    if not places:
+        return "not used"
+    times = "once" if len(places) == 1 else f"{len(places)} times"
+    return f"used {times}" + (f" in {len(files)} files" if len(files) > 1 else "")

@@ -1,0 +1,74 @@
+"""Clauses and phrases in words: the sentence of the Gherkin that a clause becomes, its variables in ``<…>``."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Behaviour, Predicate
+
+
+def clause_sentence(clause: tree.Fluent | tree.BehaviourUse) -> str:
+    """Return the sentence of a clause or behaviour before its variables have values."""
+    if isinstance(clause, tree.BehaviourUse):
+        return _phrase_sentence(clause.action)
+    predicate = clause.predicate
+    words = _phrase_sentence(predicate) if isinstance(predicate, tree.PhraseUse) else _text_sentence(predicate)
+    return f"{words} {time_words(clause.time)}"
+
+
+def time_words(time: tree.TimeConstraint) -> str:
+    """Return a time constraint as it is written."""
+    if isinstance(time, tree.During):
+        return f"from {time.start.path} until {time.end.path}"
+    word = "before" if isinstance(time, tree.Before) else "after"
+    horizon = "" if time.horizon is None else f"{time.horizon.value} seconds "
+    return f"{horizon}{word} {time.event.path}"
+
+
+def time_meaning(time: tree.TimeConstraint) -> str:
+    """Say at which samples of a trace a clause with this time constraint is judged."""
+    if isinstance(time, tree.During):
+        return f"Judged from `{time.start.path}` until `{time.end.path}`, both included: it must hold throughout."
+    side = "at or before" if isinstance(time, tree.Before) else "at or after"
+    which = "last" if isinstance(time, tree.Before) else "first"
+    if time.horizon is None:
+        return f"Judged at the {which} sample {side} `{time.event.path}`."
+    ends = "that end at" if isinstance(time, tree.Before) else "that begin at"
+    return f"Judged throughout the {time.horizon.value} s {ends} `{time.event.path}`."
+
+
+def word_of(use: tree.PhraseUse) -> Predicate | Behaviour:
+    """Return the catalog's word behind a phrase."""
+    catalog = load_catalog()
+    return catalog.predicates.get(use.word) or catalog.behaviours[use.word]
+
+
+def word_meaning(word: Predicate | Behaviour) -> str:
+    """Describe a word of the catalog: its phrase, what it means, how its margin is measured."""
+    lines = [f"`{word.phrase}`", word.doc]
+    unit = getattr(word, "unit", None)
+    if unit is not None:
+        judged = f"a margin in {unit}" if unit else "a margin of +1 or −1"
+        lines.append(f"Judged with {judged}, positive where it holds." if getattr(word, "evaluate", None) else UNJUDGED)
+    events = getattr(word, "events", ())
+    if events:
+        lines.append("Events: " + ", ".join(f"`{event}`" for event in events))
+    return "\n\n".join(lines)
+
+
+UNJUDGED = "This installation cannot judge it: such a clause is unknown."
+
+
+def _phrase_sentence(use: tree.PhraseUse) -> str:
+    values = {name: f"<{value.path}>" if isinstance(value, tree.Ref) else value.text for name, value in use.arguments}
+    return re.sub(r'"?\{(\w+)[^}]*\}"?', lambda match: values.get(match[1], match[0]), word_of(use).sentence)
+
+
+def _text_sentence(predicate: tree.TextPredicate) -> str:
+    values = {argument.name.text: f"<{argument.value.path}>" for argument in predicate.arguments}
+    return re.sub(r"\{(\w+)\}", lambda match: values.get(match[1], match[0]), predicate.template.value)

@@ -1,0 +1,188 @@
+"""Whole declarations to fill in, made from the grammar: what a declaration must have, a placeholder for each word."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from itertools import dropwhile, takewhile
+
+from robbdd_tools.features.layout import lay_out
+from robbdd_tools.syntax.chunk import grammar_name, grammar_text
+from robbdd_tools.syntax.grammar import (
+    Assignment,
+    Choice,
+    Expression,
+    Literal,
+    Optional,
+    Pattern,
+    Sequence,
+    Use,
+    read_grammar,
+)
+from robbdd_tools.syntax.phrases import PREDICATE_RULE
+
+_CHOSEN: Mapping[str, str] = {
+    "Expression": "Fluent",
+    "Predicate": f"{PREDICATE_RULE}located_at",
+    "TimeConstraint": "Before",
+    "Value": "ElementRef",
+    "Variation": "Product",
+    "Assignment": "ValuesAssignment",
+    "SetExpression": "ValueList",
+    "ImplementationSource": "CatalogEntry",
+    "ProviderSource": "GroundTruth",
+    "ModelSource": "CatalogEntry",
+    "VectorOrNumber": "Number",
+    "Variable": "PlainVariable",
+}
+"""The alternative to show where the grammar's first one is not the usual one."""
+_SHOWN = frozenset({"namespace", "duration", "task", "given", "then", "root"})
+"""The parts that may be left out but are shown."""
+_LABELS = frozenset({"Given", "When", "Then", "Scenarios", "variation"})
+_SAMPLES: Mapping[str, str] = {
+    "NameText": "name",
+    "TextLiteral": '"text"',
+    "NumberLiteral": "1",
+    "TableRule": "|---|",
+    "ModuleNameText": "module",
+}
+_OWN_LINES = frozenset({"Action", "VariationPart"})
+_INLINE = frozenset({"xyz", "xyzw", "module", "noise", "latency", "update", "update-rate", "type"})
+_JOINED = (("holds", "("), ("ns", "="))
+_BREAK = "\n"
+_MARK = re.compile(r"X(\d+)X")
+
+
+@dataclass(frozen=True, slots=True)
+class Snippet:
+    """A declaration: ``label`` are its first keywords; ``body`` has placeholders ``${1:name}``, ``${2|one,other|}``."""
+
+    label: str
+    body: str
+
+    @property
+    def plain(self) -> str:
+        """The body with what the placeholders say, for clients without snippets."""
+        return re.sub(r"\$\{\d+(?::([^}]*)|\|([^,|]*)[^}]*)\}", lambda match: match[1] or match[2] or "", self.body)
+
+
+@cache
+def declaration_snippets(language: str) -> tuple[Snippet, ...]:
+    """Return a snippet for each kind of declaration of a file kind, in the order of the grammar."""
+    rules = read_grammar(grammar_text(language))
+    root = rules[f"{grammar_name(language).capitalize()}Declaration"]
+    options = root.options if isinstance(root, Choice) else (root,)
+    return tuple(_Writer(rules).snippet(option) for option in options if isinstance(option, Use))
+
+
+class _Writer:
+    """Writes one declaration with marks for its placeholders, which the layout takes for names."""
+
+    def __init__(self, rules: Mapping[str, Expression]) -> None:
+        self._rules = rules
+        self._placeholders: list[str] = []
+
+    def snippet(self, rule: Use) -> Snippet:
+        words = list(dropwhile(lambda word: word == _BREAK, self._words(rule, depth=0)))
+        keywords = words[: next(number for number, word in enumerate(words) if not re.fullmatch(r"[^\W\d]+", word))]
+        laid_out = lay_out(_broken_into_lines(words)).rstrip("\n")
+        return Snippet(" ".join(keywords), _MARK.sub(lambda match: self._placeholders[int(match[1])], laid_out))
+
+    def _words(self, part: Expression, depth: int, name: str = "") -> Iterator[str]:
+        match part:
+            case Literal():
+                yield part.text
+            case Pattern():
+                yield self._placeholder(name)
+            case Use():
+                yield from self._rule(part.rule, depth, name)
+            case Sequence():
+                for position, inner in enumerate(part.parts):
+                    if not _is_word(part.parts[position - 1 : position]) and _begins_line(part.parts[position:]):
+                        yield _BREAK
+                    yield from self._words(inner, depth, name)
+            case Choice():
+                yield from self._choice(part, depth, name)
+            case Optional():
+                if not _SHOWN.isdisjoint(_attributes(part.part)):
+                    yield from self._words(part.part, depth, name)
+            case Assignment():
+                if part.operator == "*=" and depth > 1 and part.attribute != "values":
+                    return
+                if part.operator in ("*=", "+=") and part.separator is None:
+                    yield _BREAK
+                if part.operator != "?=":
+                    yield from self._words(part.value, depth, part.attribute)
+
+    def _rule(self, rule: str, depth: int, name: str) -> Iterator[str]:
+        if rule in _SAMPLES:
+            yield self._placeholder(name, _SAMPLES[rule])
+        elif rule.endswith("Path"):
+            yield self._placeholder(_in_words(rule.removesuffix("Path")))
+        elif rule in _CHOSEN:
+            yield from self._rule(_CHOSEN[rule], depth, name)
+        else:
+            if rule in _OWN_LINES:
+                yield _BREAK
+            inner = name if rule in ("Name", "Text", "Number") else rule
+            yield from self._words(self._rules[rule], depth + (rule not in ("Name", "Text", "Number")), inner)
+
+    def _choice(self, part: Choice, depth: int, name: str) -> Iterator[str]:
+        literals = [option.text for option in part.options if isinstance(option, Literal)]
+        if len(literals) == len(part.options):
+            self._placeholders.append(f"${{{len(self._placeholders) + 1}|{','.join(literals)}|}}")
+            yield f"X{len(self._placeholders) - 1}X"
+        else:
+            yield from self._words(part.options[0], depth, name)
+
+    def _placeholder(self, name: str, sample: str = "name") -> str:
+        text = name if sample == "name" and name not in ("", "text") else sample
+        quote = '"' if sample.startswith('"') else ""
+        if quote:
+            text = name if name != "raw" else "text"
+        self._placeholders.append(f"${{{len(self._placeholders) + 1}:{text}}}")
+        return f"{quote}X{len(self._placeholders) - 1}X{quote}"
+
+
+def _attributes(part: Expression) -> set[str]:
+    match part:
+        case Assignment():
+            return {part.attribute}
+        case Sequence():
+            return {attribute for inner in part.parts for attribute in _attributes(inner)}
+        case _:
+            return set()
+
+
+def _in_words(role: str) -> str:
+    return re.sub(r"(?<=\w)([A-Z])", r"-\1", role).lower()
+
+
+def _begins_line(parts: tuple[Expression, ...]) -> bool:
+    """Tell whether a labelled part (``base name:``), or a line of a story, begins with some parts of a rule."""
+    first = parts[0].part if isinstance(parts[0], Optional) else parts[0]
+    if isinstance(first, Sequence):
+        return _begins_line(first.parts)
+    words = [part.text for part in takewhile(lambda part: _is_word((part,)), parts) if isinstance(part, Literal)]
+    following = parts[len(words)] if words and len(words) < len(parts) else None
+    is_label = following == Literal(":") and words[0] not in _INLINE
+    return is_label or words[:1] in (["As"], ["I"], ["So"])
+
+
+def _is_word(parts: tuple[Expression, ...]) -> bool:
+    return bool(parts) and isinstance(parts[0], Literal) and parts[0].text[0].isalpha()
+
+
+def _broken_into_lines(words: list[str]) -> str:
+    """Join words, with line breaks below each opening brace and each section's label and above each closing brace."""
+    text = ""
+    for number, word in enumerate(words):
+        before = words[number - 1] if number else ""
+        if word == _BREAK or before == "{" or word == "}" or (before == ":" and words[number - 2] in _LABELS):
+            text = text.rstrip() + "\n"
+        elif not (before in ("(", "<", "=", "", _BREAK) or word in (")", ">", ":", ",")):
+            text += "" if (before, word) in _JOINED else " "
+        text += "" if word == _BREAK else word
+    return text.replace('="', '= "')

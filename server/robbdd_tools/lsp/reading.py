@@ -1,0 +1,97 @@
+"""The protocol's methods that help to read and write a text: completion, hover, hints."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+from lsprotocol import types
+
+from robbdd_tools.features.clause_results import clause_hints
+from robbdd_tools.features.completion import complete
+from robbdd_tools.features.describe import describe_path, describe_words
+from robbdd_tools.features.hover import hover
+from robbdd_tools.features.type_hints import type_hints
+from robbdd_tools.lsp.convert import document_of
+from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.names.project import Snapshot
+
+
+def register_reading(server: RobbddServer) -> None:
+    """Add the methods to a server."""
+    _register_completion(server)
+    _register_hover(server)
+    _register_hints(server)
+
+
+def _register_completion(server: RobbddServer) -> None:
+    options = types.CompletionOptions(trigger_characters=["<", ".", '"', "/", " "], resolve_provider=True)
+
+    @server.feature(types.TEXT_DOCUMENT_COMPLETION, options)
+    async def completion(ls: RobbddServer, params: types.CompletionParams) -> list[types.CompletionItem]:
+        def find(snapshot: Snapshot) -> list[types.CompletionItem]:
+            document = document_of(snapshot, params.text_document.uri)
+            offset = ls.convert.offset(document, params.position)
+            client = ls.client_capabilities.text_document
+            abilities = client.completion.completion_item if client and client.completion else None
+            return [
+                item
+                for entry in complete(snapshot, document.uri, offset)
+                if (item := ls.convert.completion(document, entry, abilities)) is not None
+            ]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.COMPLETION_ITEM_RESOLVE)
+    async def resolve(ls: RobbddServer, item: types.CompletionItem) -> types.CompletionItem:
+        data = cast("dict[str, Any]", item.data or {})
+
+        def find(snapshot: Snapshot) -> str | None:
+            if "path" in data:
+                return describe_path(snapshot, str(data.get("uri")), str(data["path"]))
+            return describe_words(item.label) if "words" in data else None
+
+        found = await ls.analyse(find)
+        if found is not None:
+            item.documentation = types.MarkupContent(kind=types.MarkupKind.Markdown, value=found)
+        return item
+
+
+def _register_hover(server: RobbddServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_HOVER)
+    async def show_hover(ls: RobbddServer, params: types.HoverParams) -> types.Hover | None:
+        def find(snapshot: Snapshot) -> types.Hover | None:
+            document = document_of(snapshot, params.text_document.uri)
+            found = hover(snapshot, document.uri, ls.convert.offset(document, params.position), ls.judged)
+            if found is None:
+                return None
+            contents = types.MarkupContent(kind=types.MarkupKind.Markdown, value=found.markdown)
+            return types.Hover(contents=contents, range=ls.convert.range(document, found.span))
+
+        return await ls.analyse(find)
+
+
+def _register_hints(server: RobbddServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
+    async def inlay_hint(ls: RobbddServer, params: types.InlayHintParams) -> list[types.InlayHint]:
+        def find(snapshot: Snapshot) -> list[types.InlayHint]:
+            document = document_of(snapshot, params.text_document.uri)
+            wanted = ls.convert.span(document, params.range)
+            return [
+                types.InlayHint(
+                    position=ls.convert.position(document, hint.span.end),
+                    label=hint.label,
+                    tooltip="\n".join(hint.lines),
+                    padding_left=True,
+                )
+                for hint in clause_hints(snapshot, document.uri, ls.judged)
+                if wanted.contains(hint.span.end)
+            ] + [
+                types.InlayHint(
+                    position=ls.convert.position(document, hint.span.end),
+                    label=hint.label,
+                    kind=types.InlayHintKind.Type,
+                )
+                for hint in type_hints(snapshot, document.uri, wanted)
+            ]
+
+        return await ls.analyse(find)

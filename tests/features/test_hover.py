@@ -1,0 +1,114 @@
+"""Hover tells what a name is, what it generates, what is known of its results."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit import MODEL, SCENE, fixture
+from robbdd_tools.features.clause_results import ClauseResult, JudgedClause
+from robbdd_tools.features.describe import describe_path, describe_words
+from robbdd_tools.features.hover import hover
+
+
+def shown(text: str, judged: dict[str, JudgedClause] | None = None) -> str:
+    case = fixture(text)
+    found = hover(case.snapshot, case.uri, case.cursor, judged)
+    return "" if found is None else found.markdown
+
+
+def at(word: str, text: str = MODEL) -> str:
+    assert word.replace("$0", "") in text
+    return shown(text.replace(word.replace("$0", ""), word, 1))
+
+
+def test_a_clause_tells_its_sentence_its_meaning_and_when_it_is_judged() -> None:
+    found = at("in-$0tray: holds")
+    assert "> <part> is located at <goal> 0.5 seconds after place-end" in found
+    assert "inside the workspace" in found
+    assert "a margin in m" in found
+    assert "Judged throughout the 0.5 s that begin at `place-end`." in found
+
+
+def test_a_behaviour_tells_its_sentence_and_its_events() -> None:
+    found = at("Behaviour (ns=t) car$0ry")
+    assert "> <robot> picks <part> and places" in found
+    assert "Events: " in found
+
+
+def test_a_variant_and_its_template_tell_how_many_scenarios_there_are() -> None:
+    assert "4 scenarios (2 × 1 × 2)" in at("Scenario bench-$0to-tray")
+    assert "`bench-to-tray`: 4 scenarios (2 × 1 × 2)" in at("template: <fe$0tch>")
+    rows = MODEL[MODEL.index("                var <fetch.part>") :].rpartition("        }")[0]
+    table = "| <fetch.part> |\n|---|\n| <parts.bolt> |\n"
+    assert "1 scenario" in at("Scenario bench-$0to-tray", MODEL.replace(rows, table))
+    assert "some are unknown" in at("Scenario bench-$0to-tray", MODEL.replace("obj set <parts>", "obj set <gone>"))
+
+
+def test_a_variable_tells_its_type_and_where_it_is_used() -> None:
+    assert at("var pa$0rt").split("\n\n")[0] == "**variable** `fetch.part`: object"
+    assert at("var pa$0rt").endswith("used 4 times")
+
+
+def test_the_comment_above_a_declaration_is_shown() -> None:
+    text = MODEL.replace("Event (ns=t) start", "// When the operator\n// lets go.\nEvent (ns=t) start")
+    assert "When the operator\nlets go." in at("duration: from <st$0art>", text)
+    assert "not used" in at("Event (ns=t) spa$0re", MODEL + "Event (ns=t) spare\n")
+
+
+def test_elements_tell_what_simulates_them() -> None:
+    assert "Simulated as *franka-panda*" in at("<arms.pan$0da>")
+    scene = f"//- main.scene\n{SCENE}"
+    assert "Simulated as *bin*" in shown(scene.replace("object tray", "object tr$0ay"))
+    assert "8 elements: `arms.panda`" in at("scene: <bench_$0scene>")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "meaning"),
+    [
+        ("before <pick-start>)", "be$0fore <pick-start>)", "Judged at the last sample at or before `pick-start`."),
+        ("before <pick-start>)", "2 sec$0onds before <pick-start>)", "Judged throughout the 2 s that end at"),
+        ("before <pick-start>)", "fr$0om <pick-start> until <end>)", "from `pick-start` until `end`, both included"),
+    ],
+)
+def test_a_time_constraint_tells_when_it_is_judged(old: str, new: str, meaning: str) -> None:
+    assert meaning in shown(MODEL.replace(old, new, 1))
+
+
+def test_the_last_results_of_a_clause_are_shown_worst_first() -> None:
+    text = "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)"
+    results = (
+        ClauseResult("holds", "✔ 12 mm", "part = nut: holds by 12 mm", 2.0),
+        ClauseResult("violated", "✗ -3 mm", "part = bolt: violated by 3 mm", 0.0),
+    )
+    judged = {"https://example.org/t/in-tray": JudgedClause(text, results)}
+    found = shown(MODEL.replace("in-tray: holds", "in-$0tray: holds"), judged)
+    assert "Last results:\n\n- part = bolt: violated by 3 mm\n- part = nut: holds by 12 mm" in found
+    edited = shown(MODEL.replace("in-tray: holds", "in-$0tray:  holds"), judged)
+    assert "of the text before it was edited" in edited
+
+
+@pytest.mark.parametrize(
+    ("text", "title"),
+    [
+        ("//- main.ktree\nns x = 'http://x/'\nktree (ns=x) arm { body ba$0se { frame f { } } }", "**body** `arm.base`"),
+        (
+            "//- main.scenex\nimport 'lab.scene'\nns x = 'http://x/'\nscene inst (ns=x) s { scene: <bench_sc$0ene> }",
+            "**scene** `bench_scene`",
+        ),
+        (
+            "//- main.bddx\nns x = 'http://x/'\nbhv impl (ns=x) pi$0ck { catalog 'pick' }",
+            "**behaviour implementation**",
+        ),
+        ("//- main.bdd\nns t = 'http://x/'\nTask (ns=t) ta$0sk\nScenario Template (ns=t) x {{{", "**task** `task`"),
+    ],
+)
+def test_every_file_kind_and_broken_text_are_explained(text: str, title: str) -> None:
+    assert shown(text).startswith(title)
+
+
+def test_completions_are_explained_by_path_and_by_words() -> None:
+    case = fixture(MODEL)
+    assert (describe_path(case.snapshot, "file:///fixture/lab.scene", "parts.bolt") or "").startswith("**object**")
+    assert describe_path(case.snapshot, case.uri, "gone") is None
+    assert "inside the workspace" in (describe_words("is located at") or "")
+    assert describe_words("Scenario") is None
