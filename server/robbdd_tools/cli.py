@@ -13,7 +13,8 @@ from pathlib import Path
 
 from robbdd_tools import __version__
 from robbdd_tools.commands import FAILED, INTERRUPTED, OK
-from robbdd_tools.commands.arguments import allow_policy, allow_selection, policy, wanted
+from robbdd_tools.commands.arguments import allow_selection, wanted
+from robbdd_tools.commands.run_arguments import allow_run, allow_store, run_options
 
 FORMATS = ("ttl", "json-ld", "json-ld-expanded", "nt", "xml")
 
@@ -70,18 +71,15 @@ def _parser() -> argparse.ArgumentParser:
     steps.add_argument("-o", "--output", metavar="STEPS.py", type=Path, help="add what is missing to this file")
     steps.set_defaults(command=_steps)
 
-    run = commands.add_parser("run", help="execute the scenarios of a model in simulation and judge every clause")
-    run.add_argument("path", metavar="FILE", type=Path)
-    run.add_argument(
-        "--scenario", metavar="NAME", action="append", help="only this scenario variant or execution; may be repeated"
-    )
-    run.add_argument("--seed", type=int, default=None, help="decides everything random (default: 1)")
-    run.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
-    run.add_argument("-o", "--output", metavar="DIR", type=Path, help="keep features, manifest and log here")
-    run.add_argument("--record", metavar="DIR", type=Path, help="write a picture of each violated clause's moment here")
-    allow_policy(run)
-    allow_selection(run)
+    run = commands.add_parser("run", help="execute the scenarios of models in simulation and judge every clause")
+    run.add_argument("path", metavar="FILE|DIR", type=Path, help="a model, or a folder of which all models are run")
+    allow_run(run)
     run.set_defaults(command=_run)
+
+    runs = commands.add_parser("runs", help="list the stored runs of a project")
+    runs.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path())
+    allow_store(runs)
+    runs.set_defaults(command=_runs)
 
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
     view.add_argument("path", metavar="FILE", type=Path)
@@ -155,10 +153,15 @@ def _steps(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from robbdd_tools.commands.run import Outputs, run
+    from robbdd_tools.commands.run import run
 
-    outputs = Outputs(options.json, options.output, options.record)
-    return run(options.path, wanted(options), options.scenario, policy(options), outputs, options.seed)
+    return run(run_options(options))
+
+
+def _runs(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.runs import list_runs
+
+    return list_runs(options.path, options.store)
 
 
 def _import(options: argparse.Namespace) -> int:

@@ -15,9 +15,9 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.read import read_model
 from robbdd_tools.names.project import Project
-from robbdd_tools.run.launch import Agent
 from robbdd_tools.run.prepare import RunRequest, prepare
 from robbdd_tools.run.protocol import ScenarioFinished
+from robbdd_tools.run.scheduler import Policy, Scheduler
 
 MODEL = EXAMPLES / "pickplace" / "pickplace.bdd"
 
@@ -41,15 +41,15 @@ def _finished() -> Iterator[ScenarioFinished]:
     model = read_model(build_graph(project.snapshot(), uri).graph)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        prepare(RunRequest(model, MODEL.name), folder)
-        for message in Agent(folder).messages():
+        manifest = prepare(RunRequest(model, MODEL.name), folder)
+        for message in Scheduler(folder, manifest, Policy(jobs=1)).messages():
             if isinstance(message, ScenarioFinished):
                 yield message
 
 
 def _first_verdict() -> float:
     start = time.perf_counter()
-    command = [sys.executable, "-m", "robbdd_tools.cli", "run", str(MODEL)]
+    command = [sys.executable, "-m", "robbdd_tools.cli", "run", str(MODEL), "--no-store"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8") as process:
         assert process.stdout is not None
         process.stdout.readline()

@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -129,7 +128,7 @@ def test_a_report_that_cannot_be_written_is_refused_before_the_run(folder: Path)
 @pytest.mark.physics
 def test_the_demo_holds_clause_by_clause(tmp_path: Path) -> None:
     report = tmp_path / "out.json"
-    done = robbdd("run", PICKPLACE, "--json", report)
+    done = robbdd("run", PICKPLACE, "--json", report, "--no-store")
     assert done.returncode == 0, done.stdout
     assert "✔ cube0 is located at left_ws after evt-place-end" in done.stdout
     assert "4 scenarios: 4 hold, 0 violated, 0 unknown  (seed 1;" in done.stdout
@@ -154,12 +153,11 @@ def test_a_clause_that_physics_contradicts_is_violated(tmp_path: Path) -> None:
 def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     report = tmp_path / "out.json"
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
-    command = [*ROBBDD, "run", str(PICKPLACE), "--json", str(report)]
+    command = [*ROBBDD, "run", str(PICKPLACE), "--json", str(report), "--jobs", "1", "--no-store"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", env=environment)
     assert process.stdout is not None
     while "part-to-bin -- 1" not in process.stdout.readline():
         assert process.poll() is None
-        time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
     assert process.wait(30) == 130

@@ -96,8 +96,10 @@ def test_each_execution_has_its_scenarios_its_seed_and_its_features(tmp_path: Pa
         [entry for entry in written.scenarios if entry.execution is not None and entry.execution.name == name]
         for name in ("t:once", "t:again")
     )
-    assert [entry.name for entry in first] == [entry.name for entry in second]
-    assert len(first) * 2 == len(written.scenarios)
+    assert [entry.name for entry in second] == [
+        f"{entry.name} (repetition {number})" for entry in first for number in (1, 2, 3)
+    ]
+    assert len(first) * 4 == len(written.scenarios)
     assert {Path(entry.feature).parent.name for entry in first} == {"once"}
     alone = prepare(RunRequest(plain, "main.bdd", 7), tmp_path / "alone")
     assert [entry.seed for entry in first] == [entry.seed for entry in alone.scenarios]

@@ -158,8 +158,13 @@ def test_a_hang_is_timed_out_and_the_rest_goes_on(tmp_path: Path, fifo: Path) ->
 def test_a_run_is_cancelled_within_half_a_second_even_when_agents_hang(tmp_path: Path, fifo: Path) -> None:
     hang = [HOLDS, ("given", "a hang")]
     manifest = prepared(tmp_path / "run", [HOLDS], hang, hang, [HOLDS])
-    scheduler = Scheduler(tmp_path / "run", manifest, Policy(2))
-    results = RunResults(manifest)
+    results, first_is_done = RunResults(manifest), threading.Event()
+
+    def watch(message: RunMessage) -> None:
+        if isinstance(message, ScenarioFinished):
+            first_is_done.set()
+
+    scheduler = Scheduler(tmp_path / "run", manifest, Policy(2), watch)
 
     def follow() -> None:
         for message in scheduler.messages():
@@ -168,6 +173,7 @@ def test_a_run_is_cancelled_within_half_a_second_even_when_agents_hang(tmp_path:
     thread = threading.Thread(target=follow)
     thread.start()
     fifo.read_bytes()
+    first_is_done.wait()
     pids = list(scheduler.busy)
     began = monotonic()
     scheduler.cancel()

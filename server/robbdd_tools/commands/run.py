@@ -1,90 +1,117 @@
-"""``robbdd run``: execute the scenarios of a model and print every clause's verdict with its margin."""
+"""``robbdd run``: execute scenarios and print every clause's verdict with its margin."""
 
 from __future__ import annotations
 
 import json
-import signal
 import sys
 import tempfile
-import threading
-from collections.abc import Generator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.base.files import path_to_uri
+from robbdd_tools import __version__
 from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
-from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.execute import execute
 from robbdd_tools.commands.pictures import NoPictures, render_moments
-from robbdd_tools.commands.progress import Display
-from robbdd_tools.commands.selection import selection
+from robbdd_tools.commands.requests import Choice, digest, load_models, requests
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.prepare import RunRequest, prepare
-from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import Policy, Scheduler
+from robbdd_tools.run.prepare import prepare_all
+from robbdd_tools.run.store import NoSuchRun, RunRecord, RunStore, StoredRun, shown_path, store_beside
 
 if TYPE_CHECKING:
-    from types import FrameType
-
-    from robbdd_tools.gherkin.select import Selected, Wanted
-    from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri
+    from robbdd_tools.run.prepare import RunRequest
+    from robbdd_tools.run.protocol import ScenarioSpec
+    from robbdd_tools.run.results import RunResults
+    from robbdd_tools.run.scheduler import Policy
 
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """Where a run leaves what: its results as JSON, its folder, pictures of violated clauses."""
+    """Where a run leaves what: its results as JSON and JUnit XML, its folder, pictures of violated clauses, its store.
+
+    Without ``folder`` it is kept in ``store`` (that of the model's project when ``None``), unless ``keep`` is false.
+    """
 
     report: Path | None = None
+    junit: Path | None = None
     folder: Path | None = None
     record: Path | None = None
+    store: Path | None = None
+    keep: bool = True
 
 
-def run(
-    path: Path,
-    wanted: Wanted,
-    names: Sequence[str] | None,
-    policy: Policy,
-    outputs: Outputs,
-    seed: int | None = None,
-) -> int:
-    """Run a model; returns the exit code.
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """What to run (a model, or a folder of them) and how; ``rerun_failed`` is about the last stored run of it."""
 
-    ``names`` selects executions and scenario variants by name, ``wanted`` the scenarios of these; ``seed`` is the one
-    that goes before those of executions.
-    """
-    report = outputs.report
-    if report is not None and not report.absolute().parent.is_dir():
-        print(f"robbdd: cannot write {report}: there is no folder {report.parent}", file=sys.stderr)
+    path: Path
+    choice: Choice
+    policy: Policy
+    outputs: Outputs
+    rerun_failed: bool = False
+
+
+def run(options: RunOptions) -> int:
+    """Run models; returns the exit code."""
+    outputs = options.outputs
+    for report in (outputs.report, outputs.junit):
+        if report is not None and not report.absolute().parent.is_dir():
+            return _failed(f"cannot write {report}: there is no folder {report.parent}")
+    models = load_models(options.path)
+    if models is None:
         return FAILED
-    model = _model(path)
-    if model is None:
-        return FAILED
-    chosen = _chosen(model, names)
-    if isinstance(chosen, str):
-        print(f"robbdd: {chosen}", file=sys.stderr)
-        return FAILED
-    variants, executions = chosen
-    selected = _selected(model, variants, wanted)
-    if selected is None:
-        return FAILED
-    if seed is not None:
-        executions = tuple(replace(execution, seed=None) for execution in executions)
-    request = RunRequest(model, str(path), wanted.seed, variants, selected.scenarios, executions)
+    choice = options.choice
+    store = store_beside(options.path) if outputs.store is None else RunStore(outputs.store)
+    if options.rerun_failed:
+        try:
+            last = _last_results(store, options.path)
+        except NoSuchRun as error:
+            return _failed(str(error))
+        failed = {_key(entry) for entry in last["scenarios"] if entry["verdict"] != Outcome.HOLDS}
+        if not failed:
+            print("nothing failed in the last run")
+            return OK
+        choice = _failed_ones(choice, last, failed)
+    found = requests(models, choice)
+    if isinstance(found, str):
+        return _failed(found)
+    record = RunRecord(shown_path(options.path), digest(models), choice.wanted.seed, __version__)
     try:
-        with _folder(outputs.folder) as folder:
-            results, interrupted = _execute(request, Path(folder), policy)
-            if outputs.record is not None:
-                _record(Path(folder), outputs.record)
-        if report is not None:
-            text = json.dumps(results.as_json(), indent=1, ensure_ascii=False)
-            report.write_text(text + "\n", encoding="utf-8")
+        with _place(store, outputs) as place:
+            return _run(options, found, record, place)
     except OSError as error:
-        print(f"robbdd: {error.filename or outputs.folder or report}: {error.strerror or error}", file=sys.stderr)
-        return FAILED
+        return _failed(f"{error.filename or outputs.folder or outputs.report}: {error.strerror or error}")
+
+
+def _run(options: RunOptions, found: list[RunRequest], record: RunRecord, place: StoredRun) -> int:
+    outputs = options.outputs
+    manifest = prepare_all(found, str(options.path), record.seed, place.folder)
+    if not manifest.scenarios:
+        return _failed("no scenario fits the selection")
+    place.write_record(record)
+    results, simulator, interrupted = execute(place.folder, manifest, options.policy)
+    place.write_record(replace(record, simulator=simulator))
+    place.write_results(results.as_json())
+    if outputs.record is not None:
+        _record(place.folder, outputs.record)
+    _report(results, outputs)
+    if place.number:
+        print(f"kept as run {place.number}", file=sys.stderr)
     if interrupted:
         return INTERRUPTED
     return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS
+
+
+def _report(results: RunResults, outputs: Outputs) -> None:
+    from robbdd_tools.run.junit import junit
+
+    if outputs.report is not None:
+        text = json.dumps(results.as_json(), indent=1, ensure_ascii=False)
+        outputs.report.write_text(text + "\n", encoding="utf-8")
+    if outputs.junit is not None:
+        outputs.junit.write_text(junit(results), encoding="utf-8")
 
 
 def _record(folder: Path, target: Path) -> None:
@@ -97,83 +124,65 @@ def _record(folder: Path, target: Path) -> None:
         print(f"{count} picture{'' if count == 1 else 's'} of violated clauses in {target}", file=sys.stderr)
 
 
-def _model(path: Path) -> AcceptanceModel | None:
-    from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.read import read_model
-
-    snapshot = sound_model(path)
-    if snapshot is None:
-        return None
-    model = read_model(build_graph(snapshot, path_to_uri(path)).graph)
-    if not any(story.variants for story in model.stories):
-        print(f"{path}:1:1: error: the model has no scenario to run [no-scenario]", file=sys.stderr)
-        return None
-    return model
-
-
-def _chosen(
-    model: AcceptanceModel, names: Sequence[str] | None
-) -> tuple[frozenset[Iri] | None, tuple[Execution, ...]] | str:
-    """Return the variants (all when ``None``) and executions of some names; a sentence for a name that is neither's.
-
-    A model with executions has those variants only that these execute.
-    """
-    executions = model.executions
-    variants = [variant.iri for story in model.stories for variant in story.variants]
-    if executions:
-        variants = [iri for iri in variants if any(execution.variant == iri for execution in executions)]
-    known = {_name(model, iri) for iri in (*variants, *(execution.iri for execution in executions))}
-    missing = [name for name in names or () if name not in known]
-    if missing:
-        return f"there is no scenario '{missing[0]}'; the model has {', '.join(sorted(known))}"
-    if names:
-        named = [one for one in executions if {_name(model, one.iri), _name(model, one.variant)} & set(names)]
-        executions = tuple(named)
-        variants = [execution.variant for execution in named] or [iri for iri in variants if _name(model, iri) in names]
-    return (frozenset(variants) if names or executions else None), executions
-
-
-def _name(model: AcceptanceModel, iri: Iri) -> str:
-    return model.curie(iri).rsplit(":", 1)[-1]
-
-
-def _selected(model: AcceptanceModel, variants: frozenset[Iri] | None, wanted: Wanted) -> Selected | None:
-    every = (variant for story in model.stories for variant in story.variants)
-    return selection(model, [one for one in every if variants is None or one.iri in variants], wanted)
-
-
-def _folder(output: Path | None) -> AbstractContextManager[str | Path]:
-    return tempfile.TemporaryDirectory(prefix="robbdd-") if output is None else nullcontext(output)
-
-
 @contextmanager
-def _ctrl_c_cancels(scheduler: Scheduler) -> Generator[threading.Event]:
-    """Let Ctrl-C cancel a run instead of breaking off whatever is being done; yields whether it was pressed."""
-    pressed = threading.Event()
+def _place(store: RunStore, outputs: Outputs) -> Generator[StoredRun]:
+    """Yield the folder of a run: the wanted one, a new one in the store, else one that is gone afterwards."""
+    if outputs.folder is not None:
+        outputs.folder.mkdir(parents=True, exist_ok=True)
+        yield StoredRun(0, outputs.folder)
+        return
+    if outputs.keep:
+        try:
+            place = store.begin()
+        except OSError as error:
+            reason = error.strerror or str(error)
+            print(f"robbdd: this run is not kept: {store.folder} cannot be written: {reason}", file=sys.stderr)
+        else:
+            yield place
+            return
+    with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
+        yield StoredRun(0, Path(folder))
 
-    def cancel(_signal: int, _frame: FrameType | None) -> None:
-        pressed.set()
-        scheduler.cancel()
 
-    before = signal.signal(signal.SIGINT, cancel)
+def _last_results(store: RunStore, path: Path) -> Mapping[str, Any]:
+    """Return the results of the last run of a model; raises ``NoSuchRun``."""
+    last = next((run for run in reversed(store.runs()) if _is_of(run, path)), None)
+    if last is None:
+        raise NoSuchRun(f"there is no stored run of {path} in {store.folder}")
+    return last.results()
+
+
+def _failed_ones(choice: Choice, last: Mapping[str, Any], failed: set[tuple[object, ...]]) -> Choice:
+    """Choose what did not hold in a run, with its seed."""
+    seed = last["seed"] if choice.seed is None else choice.seed
+    repeated = max(entry["repetition"] for entry in last["scenarios"])
+    return replace(
+        choice,
+        wanted=replace(choice.wanted, seed=seed),
+        repeat=choice.repeat or (repeated if repeated > 1 else None),
+        only=_is_among(failed),
+    )
+
+
+def _is_of(run: StoredRun, path: Path) -> bool:
     try:
-        yield pressed
-    finally:
-        signal.signal(signal.SIGINT, before)
+        return run.record().path == shown_path(path) and bool(run.results())
+    except NoSuchRun:
+        return False
 
 
-def _execute(request: RunRequest, folder: Path, policy: Policy) -> tuple[RunResults, bool]:
-    """Run a prepared folder; Ctrl-C ends it and keeps what is finished."""
-    results = RunResults(prepare(request, folder))
-    with Display(results) as display:
-        scheduler = Scheduler(folder, results.manifest, policy, display.watch)
-        with _ctrl_c_cancels(scheduler) as interrupted:
-            for message in scheduler.messages():
-                results.apply(message)
-                display.show(message)
-        if not results.complete:
-            reason = "the run was interrupted" if interrupted.is_set() else scheduler.ending
-            results.close(reason)
-            display.broken(reason)
-        display.summary()
-    return results, interrupted.is_set()
+def _key(entry: Mapping[str, Any]) -> tuple[object, ...]:
+    return entry["variant"], entry["variation"], entry["execution"], entry["repetition"]
+
+
+def _is_among(failed: set[tuple[object, ...]]) -> Callable[[ScenarioSpec], bool]:
+    def chosen(spec: ScenarioSpec) -> bool:
+        execution = None if spec.execution is None else spec.execution.name
+        return (spec.variant, spec.variation, execution, spec.repetition) in failed
+
+    return chosen
+
+
+def _failed(message: str) -> int:
+    print(f"robbdd: {message}", file=sys.stderr)
+    return FAILED

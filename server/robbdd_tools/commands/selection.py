@@ -22,8 +22,13 @@ def selection(model: AcceptanceModel, variants: Sequence[Variant], wanted: Wante
     if selected.is_empty():
         print("robbdd: no scenario fits the selection", file=sys.stderr)
         return None
+    describe(model, selected)
+    return selected
+
+
+def describe(model: AcceptanceModel, selected: Selected) -> None:
+    """Tell how much of the combinations of values a covering array covers."""
     for iri, cover in selected.covers.items():
         number = len(cover.indices)
         covered = f"{cover.covered} of {cover.possible} combinations"
         print(f"{model.curie(iri)}: {number} scenario{'' if number == 1 else 's'} with {covered}", file=sys.stderr)
-    return selected

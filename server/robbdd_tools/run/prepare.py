@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cache
 from pathlib import Path
@@ -40,7 +40,8 @@ class RunRequest:
 
     ``scenarios`` selects among those of a variant. A model with executions is run as they say, each of them the
     scenarios of its variant, with a seed of its own where it has one; ``executions`` are those to run (all when
-    ``None``).
+    ``None``). ``repeat`` is how often each scenario is executed (as executions say, else once, when ``None``); ``only``
+    selects among what would be executed.
     """
 
     model: AcceptanceModel
@@ -49,6 +50,8 @@ class RunRequest:
     variants: Collection[Iri] | None = None
     scenarios: Callable[[Variant], Iterable[Numbered]] = every_scenario
     executions: tuple[Execution, ...] | None = None
+    repeat: int | None = None
+    only: Callable[[ScenarioSpec], bool] | None = None
 
     def wants(self, variant: Iri) -> bool:
         """Tell whether a variant is to be run."""
@@ -66,9 +69,18 @@ class RunRequest:
 
 def prepare(request: RunRequest, folder: Path) -> Manifest:
     """Write everything that the agent needs into ``folder`` (made if missing); raises ``OSError``."""
-    plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
-    specs = tuple(lay_out(plan, request.name, request.seed, folder, request.chosen_executions()))
-    return Manifest(request.name, request.seed, specs)
+    return prepare_all([request], request.name, request.seed, folder)
+
+
+def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Path) -> Manifest:
+    """Write everything that the agent needs to run several models, called ``name`` together; raises ``OSError``."""
+    parts: list[_Part] = []
+    for number, request in enumerate(requests, start=1):
+        below = FEATURES if len(requests) == 1 else f"{FEATURES}/{number}-{Path(request.name).stem}"
+        plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
+        executions = request.chosen_executions()
+        parts += _parts(plan, request.name, request.seed, executions, below, request.repeat, request.only)
+    return Manifest(name, seed, tuple(_written(parts, name, seed, folder)))
 
 
 def lay_out(
@@ -76,23 +88,24 @@ def lay_out(
 ) -> Iterator[ScenarioSpec]:
     """Write features, hooks, steps and manifest into ``folder`` (made if missing), scenario by scenario.
 
-    ``name`` is that of the model in reports. Each of the ``executions`` has a folder of features of its own.
-    Raises ``OSError`` and ``TemplateProblem``.
+    ``name`` is that of the model in reports. Each of the ``executions`` has a folder of features of its own; nothing
+    is repeated. Raises ``OSError`` and ``TemplateProblem``.
     """
+    return _written(list(_parts(plan, name, seed, executions, FEATURES, 1)), name, seed, folder)
+
+
+def _written(parts: Sequence[_Part], name: str, seed: int, folder: Path) -> Iterator[ScenarioSpec]:
     features = folder / FEATURES
     (features / "steps").mkdir(parents=True, exist_ok=True)
     (features / "environment.py").write_text(_ENVIRONMENT, encoding="utf-8", newline="\n")
     (features / "steps" / "catalog_steps.py").write_text(_STEPS, encoding="utf-8", newline="\n")
-    parts = list(_parts(plan, seed, executions))
     with (folder / MANIFEST).open("w", encoding="utf-8", newline="\n") as manifest:
         known = [asdict(part.writer.execution) for part in parts if part.writer.execution is not None]
         head = {"model": name, "seed": seed, "executions": known}
         manifest.write(json.dumps(head, ensure_ascii=False)[:-1] + ', "scenarios": [')
         separator = "\n"
         for part in parts:
-            for written in written_scenarios(part.plan, folder / part.folder):
-                feature = f"{part.folder}/{written.file.name}"
-                spec = part.writer.spec(feature, written.story.iri, written.scenario)
+            for spec in part.specs(folder):
                 manifest.write(separator + json.dumps(spec, default=_fields, ensure_ascii=False))
                 separator = ",\n"
                 yield spec
@@ -106,11 +119,29 @@ class _Part:
     plan: FeaturePlan
     writer: SpecWriter
     folder: str
+    repeat: int
+    only: Callable[[ScenarioSpec], bool] | None
+
+    def specs(self, folder: Path) -> Iterator[ScenarioSpec]:
+        """Write the features below the run's folder and yield what is to be executed."""
+        for written in written_scenarios(self.plan, folder / self.folder):
+            feature = f"{self.folder}/{written.file.name}"
+            for spec in self.writer.specs(feature, written.story.iri, written.scenario, self.repeat):
+                if self.only is None or self.only(spec):
+                    yield spec
 
 
-def _parts(plan: FeaturePlan, seed: int, executions: tuple[Execution, ...]) -> Iterator[_Part]:
+def _parts(
+    plan: FeaturePlan,
+    model: str,
+    seed: int,
+    executions: tuple[Execution, ...],
+    folder: str,
+    repeat: int | None,
+    chosen: Callable[[ScenarioSpec], bool] | None = None,
+) -> Iterator[_Part]:
     if not executions:
-        yield _Part(plan, SpecWriter(plan.model, seed), FEATURES)
+        yield _Part(plan, SpecWriter(plan.model, seed, name=model), folder, repeat or 1, chosen)
     names: set[str] = {"steps"}
     for execution in executions:
         own = replace(plan, stories=_stories(plan.stories, lambda iri, execution=execution: iri == execution.variant))
@@ -118,7 +149,8 @@ def _parts(plan: FeaturePlan, seed: int, executions: tuple[Execution, ...]) -> I
         name = next(name for n in range(len(executions) + 2) if (name := f"{stem}-{n}" if n else stem) not in names)
         names.add(name)
         own_seed = seed if execution.seed is None else execution.seed
-        yield _Part(own, SpecWriter(plan.model, own_seed, execution), f"{FEATURES}/{name}")
+        writer = SpecWriter(plan.model, own_seed, execution, model)
+        yield _Part(own, writer, f"{folder}/{name}", repeat or execution.repeat, chosen)
 
 
 def _stories(stories: Iterable[Story], wanted: Callable[[Iri], bool]) -> tuple[Story, ...]:

@@ -78,7 +78,8 @@ class ScenarioSpec:
 
     ``events`` maps an event's CURIE to what emits it: ``scenario-start``, ``scenario-end`` or the name of an
     event of the behaviour (``pick-start`` …); ``seed`` decides everything random in it. ``execution`` is how a
-    ``.bddx`` wants it executed, ``None`` for a scenario that is run as it is.
+    ``.bddx`` wants it executed, ``None`` for a scenario that is run as it is. Repetitions, counted from 1, share the
+    feature's scenario and differ in their seeds. ``model`` is the file's name in reports.
     """
 
     feature: str
@@ -93,6 +94,8 @@ class ScenarioSpec:
     events: Mapping[str, str]
     clauses: tuple[ClauseSpec, ...]
     execution: ExecutionSpec | None = None
+    repetition: int = 1
+    model: str = ""
 
 
 @dataclass(frozen=True, slots=True)

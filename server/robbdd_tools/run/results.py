@@ -86,6 +86,10 @@ class RunResults:
                 "name": spec.name,
                 "values": dict(spec.values),
                 "seed": spec.seed,
+                "model": spec.model,
+                "execution": None if spec.execution is None else spec.execution.name,
+                "repetition": spec.repetition,
+                "duration": None if scenario.finished is None else scenario.finished.simulated,
                 "verdict": str(scenario.verdict),
                 "clauses": [_clause(clause, scenario.judged.get(clause.line)) for clause in spec.clauses],
             }

@@ -43,8 +43,9 @@ class _Shared:
 class SpecWriter:
     """Makes the specifications of the scenarios of one model, executed as ``execution`` wants, if there is one."""
 
-    def __init__(self, model: AcceptanceModel, seed: int, execution: Execution | None = None) -> None:
+    def __init__(self, model: AcceptanceModel, seed: int, execution: Execution | None = None, name: str = "") -> None:
         self._model = model
+        self._name = name
         self._seed = seed
         self._curies: dict[str, str] = {}
         self._variants: dict[Iri, _Shared] = {}
@@ -67,8 +68,18 @@ class SpecWriter:
         mapped = tuple((text, self._curie(target)) for text, target in observation.mapped)
         return replace(observation, targets=tuple(map(self._curie, observation.targets)), mapped=mapped)
 
-    def spec(self, feature: str, story: Iri, scenario: ScenarioText) -> ScenarioSpec:
-        """Return the specification of a scenario of a feature (a path relative to the run's folder)."""
+    def specs(self, feature: str, story: Iri, scenario: ScenarioText, repeat: int = 1) -> Iterator[ScenarioSpec]:
+        """Yield the repetitions of a scenario of a feature, which is a path relative to the run's folder."""
+        first = self._spec(feature, story, scenario)
+        if repeat == 1:
+            yield first
+            return
+        for repetition in range(1, repeat + 1):
+            name = f"{first.name} (repetition {repetition})"
+            seed = scenario_seed(self._seed, first.variant, first.variation, repetition)
+            yield replace(first, name=name, seed=seed, repetition=repetition)
+
+    def _spec(self, feature: str, story: Iri, scenario: ScenarioText) -> ScenarioSpec:
         variant = scenario.variant
         shared = self._variants.get(variant.iri)
         if shared is None:
@@ -82,7 +93,7 @@ class SpecWriter:
             variant=variant.iri,
             variation=scenario.number,
             values={curie(variable): self._plain(cell) for variable, cell in scenario.values.items()},
-            seed=_seed(self._seed, variant.iri, scenario.number),
+            seed=scenario_seed(self._seed, variant.iri, scenario.number),
             scene=self._scene(shared, variant.scene, scenario.values),
             events=shared.events,
             clauses=tuple(
@@ -92,6 +103,7 @@ class SpecWriter:
                 if line
             ),
             execution=self.execution,
+            model=self._name,
         )
 
     def _curie(self, iri: str) -> str:
@@ -174,10 +186,14 @@ def _value(term: Iri | str, values: Values) -> Cell:
     return values.get(term, term) if isinstance(term, Iri) else term
 
 
-def _seed(seed: int, variant: str, number: int) -> int:
-    """Each scenario has its own stream of random numbers, whatever else is run."""
-    digest = hashlib.sha256(f"{seed} {variant} {number}".encode()).digest()
-    return int.from_bytes(digest[:4], "big")
+def scenario_seed(seed: int, variant: str, number: int, repetition: int = 1) -> int:
+    """Return a scenario's seed: the first 32 bits of the SHA-256 of the run's seed, the variant's IRI and its number.
+
+    From the second repetition on, its number follows. So each execution has its own stream of random numbers, whatever
+    else is run.
+    """
+    words = f"{seed} {variant} {number}" + (f" {repetition}" if repetition > 1 else "")
+    return int.from_bytes(hashlib.sha256(words.encode()).digest()[:4], "big")
 
 
 def _events(variant: Variant) -> dict[Iri, str]:

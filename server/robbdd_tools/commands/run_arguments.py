@@ -1,0 +1,80 @@
+"""Arguments of ``robbdd run`` and of the commands about its runs. Loads nothing until they are used."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.commands.arguments import allow_selection, positive, wanted
+
+if TYPE_CHECKING:
+    from robbdd_tools.commands.run import RunOptions
+    from robbdd_tools.run.scheduler import Policy
+
+
+def allow_run(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of a run."""
+    parser.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario or execution; repeats")
+    parser.add_argument("--seed", type=int, default=None, help="decides everything random (default: 1)")
+    text = "execute each scenario N times, with other random numbers each time"
+    parser.add_argument("--repeat", metavar="N", type=positive, help=text)
+    parser.add_argument("--rerun-failed", action="store_true", help="only what did not hold in the last stored run")
+    allow_policy(parser)
+    allow_selection(parser)
+    outputs = parser.add_argument_group("outputs")
+    outputs.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
+    outputs.add_argument("--junit", metavar="OUT.xml", type=Path, help="write the results as JUnit XML")
+    text = "write a picture of each violated clause's moment here"
+    outputs.add_argument("--record", metavar="DIR", type=Path, help=text)
+    text = "keep features, manifest, logs and results here instead of in the store"
+    outputs.add_argument("-o", "--output", metavar="DIR", type=Path, help=text)
+    outputs.add_argument("--no-store", action="store_true", help="keep nothing of the run")
+    allow_store(outputs)
+
+
+def allow_store(parser: argparse._ActionsContainer) -> None:  # pyright: ignore[reportPrivateUsage]  # parser or group
+    """Add the argument that names another store."""
+    text = "where runs are kept (default: .robbdd/runs in the project's root)"
+    parser.add_argument("--store", metavar="DIR", type=Path, help=text)
+
+
+def allow_policy(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that say how a run goes."""
+    text = "agent processes at a time (default: as many as there are cores)"
+    parser.add_argument("--jobs", metavar="N", type=positive, help=text)
+    text = "wall time that a scenario may take (default: 300; 0: any)"
+    parser.add_argument("--timeout", metavar="SECONDS", type=_seconds, help=text)
+    parser.add_argument("--stop-on-failure", action="store_true", help="leave out what comes after the first failure")
+
+
+def run_options(options: argparse.Namespace) -> RunOptions:
+    """Return what the parsed arguments ask for."""
+    from robbdd_tools.commands.requests import Choice
+    from robbdd_tools.commands.run import Outputs, RunOptions
+
+    choice = Choice(wanted(options), options.scenario or (), options.seed, options.repeat)
+    outputs = Outputs(
+        options.json, options.junit, options.output, options.record, options.store, keep=not options.no_store
+    )
+    return RunOptions(options.path, choice, policy(options), outputs, options.rerun_failed)
+
+
+def policy(options: argparse.Namespace) -> Policy:
+    """Return how the parsed arguments want a run to go."""
+    from robbdd_tools.run.scheduler import Policy
+
+    found = Policy(stop_on_failure=options.stop_on_failure)
+    found = found if options.jobs is None else replace(found, jobs=options.jobs)
+    return found if options.timeout is None else replace(found, timeout=options.timeout)
+
+
+def _seconds(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = -1.0
+    if not 0 <= seconds < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds")
+    return seconds

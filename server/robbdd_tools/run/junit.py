@@ -1,0 +1,77 @@
+"""Results as JUnit XML, which CI systems read: a suite per user story, a test case per execution."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from itertools import groupby
+from xml.etree import ElementTree
+
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.protocol import ClauseJudged
+from robbdd_tools.run.report import plain_sentence, values_words, verdict_words
+from robbdd_tools.run.results import RunResults, ScenarioResult
+
+UNWRITABLE = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What XML 1.0 has no way to write."""
+
+
+def junit(results: RunResults) -> str:
+    """Return the document. A violated clause is a failure, an unknown one an error; ``time`` is wall time, s."""
+    root = ElementTree.Element("testsuites")
+    for story, scenarios in groupby(results.scenarios, key=lambda scenario: scenario.spec.story):
+        _suite(root, story, list(scenarios))
+    ElementTree.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _suite(root: ElementTree.Element, story: str, scenarios: list[ScenarioResult]) -> None:
+    outcomes = [scenario.verdict for scenario in scenarios]
+    suite = ElementTree.SubElement(root, "testsuite", name=_text(story.replace("#", "/").rsplit("/", 1)[-1]))
+    suite.set("tests", str(len(scenarios)))
+    suite.set("failures", str(outcomes.count(Outcome.VIOLATED)))
+    suite.set("errors", str(outcomes.count(Outcome.UNKNOWN)))
+    suite.set("skipped", "0")
+    suite.set("time", f"{sum(map(_wall, scenarios)):.3f}")
+    for scenario in scenarios:
+        _case(suite, scenario)
+
+
+def _case(suite: ElementTree.Element, scenario: ScenarioResult) -> None:
+    spec = scenario.spec
+    group = spec.variant.replace("#", "/").rsplit("/", 1)[-1]
+    group = group if spec.execution is None else f"{group}.{spec.execution.name.rpartition(':')[2]}"
+    name = f"{spec.name} [{values_words(spec)}]" if spec.values else spec.name
+    case = ElementTree.SubElement(suite, "testcase", name=_text(name), classname=_text(group))
+    case.set("time", f"{_wall(scenario):.3f}")
+    failed = list(_failed(scenario))
+    outcome = scenario.verdict
+    if outcome is not Outcome.HOLDS:
+        tag = "failure" if outcome is Outcome.VIOLATED else "error"
+        worst = next((words for verdict, words in failed if verdict is outcome), "no clause was judged")
+        element = ElementTree.SubElement(case, tag, message=_text(worst), type=str(outcome))
+        element.text = _text("\n".join(words for _, words in failed))
+    output = ElementTree.SubElement(case, "system-out")
+    output.text = _text("\n".join((f"seed {spec.seed}", *(words for _, words in _clauses(scenario)))))
+
+
+def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
+    return ((outcome, words) for outcome, words in _clauses(scenario) if outcome is not Outcome.HOLDS)
+
+
+def _clauses(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
+    """Yield each clause's outcome and its words: sentence, margin, instant, reason."""
+    for clause in scenario.spec.clauses:
+        judged = scenario.judged.get(clause.line) or ClauseJudged(
+            0, clause.line, Outcome.UNKNOWN, None, "", None, "the clause was never judged"
+        )
+        role = clause.role.capitalize()
+        yield Outcome(judged.verdict), f"{verdict_words(judged)}  [{role} {plain_sentence(clause.sentence)}]"
+
+
+def _wall(scenario: ScenarioResult) -> float:
+    return 0.0 if scenario.finished is None else scenario.finished.wall
+
+
+def _text(text: str) -> str:
+    return UNWRITABLE.sub("�", text)

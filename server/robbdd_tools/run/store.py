@@ -1,0 +1,157 @@
+"""Keeps runs in numbered folders beside the models: ``.robbdd/runs/<n>/``.
+
+A stored run is the run's own folder (features, manifest, logs, moments, traces) with the results and ``run.json``,
+which says what was run. Nothing in it depends on the wall clock.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, cast
+
+from robbdd_tools.run.protocol import Manifest, read_manifest
+
+MARKS = ("pyproject.toml", "robbdd.toml", ".git")
+"""What the root of a project has one of."""
+FOLDER = Path(".robbdd") / "runs"
+RESULTS = "results.json"
+RECORD = "run.json"
+KEPT = 20
+"""Runs that a store holds; a new one replaces the oldest."""
+LATEST = "latest"
+
+
+class NoSuchRun(Exception):
+    """There is no such run, or it cannot be read; the message says which there are, or why."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunRecord:
+    """What was run: the model's path, relative to the project's root where it lies below it, and a digest of its graph.
+
+    ``version`` is that of this package, ``simulator`` that of the engine.
+    """
+
+    path: str
+    digest: str
+    seed: int
+    version: str
+    simulator: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredRun:
+    """A run's folder; ``number`` is its place in its store, 0 for a folder elsewhere."""
+
+    number: int
+    folder: Path
+
+    def record(self) -> RunRecord:
+        """Return what was run; raises ``NoSuchRun``."""
+        fields = self._json(RECORD)
+        try:
+            return RunRecord(**fields)
+        except TypeError:
+            raise NoSuchRun(f"{self.folder / RECORD} is not the record of a run") from None
+
+    def results(self) -> Mapping[str, Any]:
+        """Return the document of ``docs/schemas/run.schema.json``; raises ``NoSuchRun``."""
+        return self._json(RESULTS)
+
+    def manifest(self) -> Manifest:
+        """Return what the agent was told; raises ``NoSuchRun``."""
+        try:
+            return read_manifest(self.folder)
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise NoSuchRun(f"{self.folder} holds no run: {error}") from error
+
+    def write_record(self, record: RunRecord) -> None:
+        """Write what is run; raises ``OSError``."""
+        _write(self.folder / RECORD, asdict(record))
+
+    def write_results(self, results: Mapping[str, Any]) -> None:
+        """Write what came out; raises ``OSError``."""
+        _write(self.folder / RESULTS, results)
+
+    def _json(self, name: str) -> dict[str, Any]:
+        path = self.folder / name
+        try:
+            found: object = json.loads(path.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            raise NoSuchRun(f"{self.folder} holds no finished run: there is no {name}") from None
+        except (OSError, ValueError) as error:
+            raise NoSuchRun(f"{path} cannot be read: {error}") from error
+        if not isinstance(found, dict):
+            raise NoSuchRun(f"{path} is not an object")
+        return cast(dict[str, Any], found)
+
+
+class RunStore:
+    """The numbered runs in one folder, which need not exist."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def runs(self) -> list[StoredRun]:
+        """Return the runs, the oldest first."""
+        try:
+            found = [entry for entry in self.folder.iterdir() if entry.name.isdecimal() and entry.is_dir()]
+        except OSError:
+            return []
+        return sorted((StoredRun(int(entry.name), entry) for entry in found), key=lambda run: run.number)
+
+    def begin(self) -> StoredRun:
+        """Make the folder of a new run and remove the oldest ones beyond ``KEPT``; raises ``OSError``."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        ignore = self.folder / ".gitignore"
+        if not ignore.exists():
+            ignore.write_text("*\n", encoding="utf-8")
+        runs = self.runs()
+        number = runs[-1].number if runs else 0
+        while True:
+            number += 1
+            run = StoredRun(number, self.folder / str(number))
+            try:
+                run.folder.mkdir()
+            except FileExistsError:
+                continue
+            for old in self.runs()[:-KEPT]:
+                shutil.rmtree(old.folder, ignore_errors=True)
+            return run
+
+    def find(self, word: str) -> StoredRun:
+        """Return a run by its number, ``latest``, or its folder; raises ``NoSuchRun``."""
+        runs = self.runs()
+        if word == LATEST and runs:
+            return runs[-1]
+        found = [run for run in runs if str(run.number) == word]
+        if found:
+            return found[0]
+        if (Path(word) / RECORD).is_file():
+            return StoredRun(0, Path(word))
+        known = f"it has {', '.join(str(run.number) for run in runs)}" if runs else "it has none"
+        raise NoSuchRun(f"there is no run '{word}' in {self.folder}; {known}")
+
+
+def project_root(path: Path) -> Path:
+    """Return the nearest folder above a model that is a project's root, else the model's own folder."""
+    here = path.absolute() if path.is_dir() else path.absolute().parent
+    return next((folder for folder in (here, *here.parents) if any((folder / mark).exists() for mark in MARKS)), here)
+
+
+def store_beside(path: Path) -> RunStore:
+    """Return the store of a model's project."""
+    return RunStore(project_root(path) / FOLDER)
+
+
+def shown_path(path: Path) -> str:
+    """Return a model's path as records have it: relative to its project's root."""
+    return path.absolute().relative_to(project_root(path)).as_posix()
+
+
+def _write(path: Path, document: object) -> None:
+    path.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8", newline="\n")
