@@ -20,7 +20,8 @@ import { openServerSetting } from "./settings";
 import { surroundings } from "./surroundings";
 
 export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
-const FILES = "**/*.{bdd,scene,scenex,bddx,ktree}";
+/** Models, and what may hold a project's own rules about them. */
+const FILES = "**/{*.bdd,*.scene,*.scenex,*.bddx,*.ktree,*.ttl,robbdd.toml,pyproject.toml}";
 const STOP_TIMEOUT = 3000;
 
 /** Logs its errors and leaves it to us to speak to the user: two messages for one failure are one too many. */

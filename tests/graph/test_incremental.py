@@ -51,8 +51,11 @@ def _pairs() -> list[dict[str, str]]:
     if corpus := os.environ.get("ROBBDD_CORPUS"):
         folders.append(Path(corpus, "current"))
     for folder in folders:
-        scenes = {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.scene"))}
-        pairs += [{path.name: path.read_text(encoding="utf-8"), **scenes} for path in sorted(folder.glob("*.bdd"))]
+        texts = {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.*"))}
+        for name, text in texts.items():
+            if name.endswith((".bdd", ".bddx")):
+                imported = {other: texts[other] for other in re.findall(r'^import "([^"]*)"', text, re.MULTILINE)}
+                pairs.append({name: text, **imported, **{other: texts[other] for other in texts if ".scene" in other}})
     return pairs
 
 

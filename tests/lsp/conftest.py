@@ -38,6 +38,7 @@ async def client(
         run_messages.append(message.message)
 
     lsp_client.feature(types.WORKSPACE_INLAY_HINT_REFRESH)(ignore)
+    lsp_client.feature(types.CLIENT_REGISTER_CAPABILITY)(ignore)
     lsp_client.feature("robbdd/runMessage")(keep)
     shutil.copytree(EXAMPLES / "pickplace", tmp_path / "pickplace")
     parameters = types.InitializeParams(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
@@ -11,6 +12,8 @@ from robbdd_tools.checks.superseded import without_superseded
 from robbdd_tools.features.fixes import with_fixes
 
 if TYPE_CHECKING:
+    from robbdd_tools.graph.incremental import Validation
+    from robbdd_tools.graph.user_shapes import EditorShapes
     from robbdd_tools.names.project import Snapshot
 
 
@@ -25,10 +28,18 @@ def fast_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     return sorted([*with_fixes(snapshot, analysis, analysis.diagnostics), *run_checks(snapshot, uri)], key=sort_key)
 
 
-def shape_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
+def shape_diagnostics(
+    snapshot: Snapshot,
+    uri: str,
+    shapes: EditorShapes | None = None,
+    validation: Validation | None = None,
+    is_superseded: Callable[[], bool] = lambda: False,
+) -> list[Diagnostic]:
     """Return the SHACL findings on the graph of a file merged with its imports, each in the file it belongs to.
 
-    What the fast rules report at the same place is left out.
+    What the fast rules report at the same place is left out. ``shapes`` come on top of the project's. A
+    ``validation`` that knows an earlier revision looks only at what has changed since, and raises ``Superseded`` when
+    it is no longer wanted.
     """
     from robbdd_tools.graph.build import build_graph
     from robbdd_tools.graph.user_shapes import project_shapes
@@ -36,7 +47,11 @@ def shape_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
 
     if snapshot.file(uri) is None:
         return []
-    found = validate(build_graph(snapshot, uri), project=project_shapes(uri))
+    project = project_shapes(uri, shapes)
+    if validation is None:
+        found = validate(build_graph(snapshot, uri), project=project)
+    else:
+        found = validation.run(snapshot, uri, project, is_superseded)
     files = dict.fromkeys(diagnostic.uri for diagnostic in found)
     told = [diagnostic for name in files for diagnostic in fast_diagnostics(snapshot, name)]
     return without_superseded(found, told)

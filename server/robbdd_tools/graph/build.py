@@ -114,6 +114,7 @@ def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
         frame.begin()
         add_story(frame, known, story, position)
     for position, (root, frame) in enumerate(placed):
+        frame.begin()
         add_execution(frame, root, position)
 
 

@@ -82,7 +82,7 @@ class Validation:
             built = build_graph(snapshot, uri)
             writer = FindingWriter(built, derive(built.graph))
             found += project_findings(writer, ProjectShapes(rest, project.faults))
-        return merged(found)
+        return merged([*found, *project.remarks])
 
     def _local_files(self, project: ProjectShapes) -> tuple[ShapeFile, ...]:
         """Return the project's shape files that need no whole graph; with others than before nothing kept counts."""

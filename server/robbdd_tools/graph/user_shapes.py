@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -43,18 +43,45 @@ class ShapeFile:
 
 @dataclass(frozen=True, slots=True)
 class ProjectShapes:
-    """The shapes of the project that a model belongs to, and what is wrong with its configuration."""
+    """The shapes of the project that a model belongs to, and what is wrong with its configuration.
+
+    ``faults`` stand in the configuration, ``remarks`` on the model where no file holds the configuration.
+    """
 
     files: tuple[ShapeFile, ...] = ()
     faults: tuple[Diagnostic, ...] = ()
+    remarks: tuple[Diagnostic, ...] = ()
 
 
-def project_shapes(uri: str) -> ProjectShapes:
-    """Return the shapes that the nearest configuration above a model names.
+@dataclass(frozen=True, slots=True)
+class EditorShapes:
+    """File patterns that an editor's setting ``robbdd.shapes`` names; they count from its folder."""
+
+    folder: str = ""
+    patterns: tuple[str, ...] = ()
+
+
+def project_shapes(uri: str, editor: EditorShapes | None = None) -> ProjectShapes:
+    """Return the shapes that the nearest configuration above a model names, and those that an editor adds.
 
     It is ``shapes = ["shapes/*.ttl"]`` in ``robbdd.toml``, or under ``[tool.robbdd]`` in ``pyproject.toml``; patterns
     count from its folder.
     """
+    configured = _nearest(uri)
+    if editor is None or not editor.patterns:
+        return configured
+    paths, problems = _matches(Path(editor.folder), editor.patterns)
+    known = {file.uri for file in configured.files}
+    added = tuple(file for file in map(shape_file, paths) if file.uri not in known)
+    message = "the setting 'robbdd.shapes' of the editor: {}"
+    faults = tuple(
+        Diagnostic(uri, Span(0, 0), Severity.WARNING, "shapes-unchecked", message.format(problem))
+        for problem in problems
+    )
+    return ProjectShapes(configured.files + added, configured.faults, faults)
+
+
+def _nearest(uri: str) -> ProjectShapes:
     path = uri_to_path(uri)
     for folder in path.parents if path is not None else ():
         for name in ("robbdd.toml", "pyproject.toml"):
@@ -88,20 +115,27 @@ def _configured(file: Path) -> ProjectShapes | None:
     return _matched(file, text, cast("list[str]", patterns))
 
 
-def _matched(config: Path, text: str, patterns: list[str]) -> ProjectShapes:
+def _matched(config: Path, text: str, patterns: Sequence[str]) -> ProjectShapes:
+    paths, problems = _matches(config.parent, patterns)
+    faults = tuple(_fault(config, _key_offset(text), "config", problem) for problem in problems)
+    return ProjectShapes(tuple(shape_file(path) for path in paths), faults)
+
+
+def _matches(folder: Path, patterns: Sequence[str]) -> tuple[list[Path], list[str]]:
+    """Return the files that some patterns name, each once, and what is wrong with the patterns."""
     paths: dict[Path, None] = {}
-    faults: list[Diagnostic] = []
+    problems: list[str] = []
     for pattern in patterns:
         try:
-            matched = sorted(path for path in config.parent.glob(pattern) if path.is_file())
+            matched = sorted(path for path in folder.glob(pattern) if path.is_file())
         # pathlib raises NotImplementedError for a pattern that is an absolute path.
         except (ValueError, NotImplementedError, OSError) as error:
-            faults.append(_fault(config, _key_offset(text), "config", f"'{pattern}' is no file pattern: {error}"))
+            problems.append(f"'{pattern}' is no file pattern: {error}")
             continue
         if not matched:
-            faults.append(_fault(config, _key_offset(text), "config", f"no file matches the shapes '{pattern}'"))
+            problems.append(f"no file matches the shapes '{pattern}'")
         paths |= dict.fromkeys(matched)
-    return ProjectShapes(tuple(shape_file(path) for path in paths), tuple(faults))
+    return list(paths), problems
 
 
 def shape_file(path: Path) -> ShapeFile:

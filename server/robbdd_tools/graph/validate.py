@@ -49,6 +49,7 @@ def project_findings(writer: FindingWriter, project: ProjectShapes) -> Iterator[
             faults += culprits
             usable = [file for file in usable if file.uri not in {fault.uri for fault in culprits}]
     yield from unchecked(writer.built.uri, tuple(faults))
+    yield from project.remarks
 
 
 def together(files: Iterable[ShapeFile]) -> Graph:

@@ -17,6 +17,7 @@ from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.reading import register_reading
 from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
 from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.lsp.settings import follow_settings, register_settings
 from robbdd_tools.lsp.tokens import register_tokens
 from robbdd_tools.names.project import Snapshot
 
@@ -31,6 +32,7 @@ def create_server() -> RobbddServer:
     register_editing(server)
     _register_actions(server)
     _register_commands(server)
+    register_settings(server)
     register_navigation(server)
     register_tokens(server)
     register_preview(server)
@@ -41,6 +43,7 @@ def _register_documents(server: RobbddServer) -> None:
     @server.feature(types.INITIALIZED)
     async def initialized(ls: RobbddServer, _: types.InitializedParams) -> None:
         ls.convert = Converter(ls.workspace.position_encoding or types.PositionEncodingKind.Utf16)
+        ls.spawn(follow_settings(ls))
 
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     async def did_open(ls: RobbddServer, params: types.DidOpenTextDocumentParams) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from itertools import count
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from lsprotocol import types
@@ -16,6 +17,7 @@ from robbdd_tools.features.clause_results import JudgedClause, clause_diagnostic
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.settings import Settings
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.worker import Answer, Request
 from robbdd_tools.names.project import Project, Snapshot
@@ -38,6 +40,7 @@ class RobbddServer(LanguageServer):
         super().__init__("robbdd-lsp", __version__)  # pyright: ignore[reportUnknownMemberType]
         self.project = Project()
         self.convert = Converter()
+        self.settings = Settings()
         self.judged: dict[str, JudgedClause] = {}
         self.run: ActiveRun | None = None
         self._shapes: dict[str, tuple[Diagnostic, ...]] = {}
@@ -45,7 +48,8 @@ class RobbddServer(LanguageServer):
         self._requested_texts: dict[str, dict[str, str]] = {}
         self._analysis = ThreadPoolExecutor(1, thread_name_prefix="analysis")
         self._background = Background()
-        self._validator = ShapeValidator(self._shapes_found)
+        self.validator = ShapeValidator(self._shapes_found)
+        self._requests = count(1)
         self._opened: dict[str, None] = {}
         self.when_closed: list[Callable[[str], None]] = []
         """Called with the URI of each document that the client closes."""
@@ -73,7 +77,7 @@ class RobbddServer(LanguageServer):
         """Go back to the file on disk and take its diagnostics from the editor."""
         self._opened.pop(uri, None)
         self._shapes.pop(uri, None)
-        self._validator.forget(uri)
+        self.validator.forget(uri)
         for forget in self.when_closed:
             forget(uri)
         await self._in_thread(lambda: self.project.close(uri))
@@ -88,6 +92,10 @@ class RobbddServer(LanguageServer):
                 self.project.refresh(uri)
 
         await self._in_thread(forget)
+        await self.settings_changed()
+
+    async def settings_changed(self) -> None:
+        """Publish all open documents again, as what is asked of them may have changed."""
         for uri in list(self._opened):
             await self.publish(uri)
 
@@ -103,12 +111,12 @@ class RobbddServer(LanguageServer):
             request, self._requested_texts[uri] = await self.analyse(
                 lambda snapshot, uri=uri: self._order(snapshot, uri)
             )
-            self._validator.request(request)
+            self.validator.request(request)
 
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
         """Return the request to validate a file, with the texts that its answer will be about."""
         texts = {index.document.uri: index.document.text for index in snapshot.scope(uri).files}
-        return Request(snapshot.revision, uri, self.project.texts()), texts
+        return Request(next(self._requests), uri, self.project.texts(), self.settings.shapes(uri)), texts
 
     async def publish_results(self, uris: Sequence[str]) -> None:
         """Show new results of clauses: diagnostics again, and the client asks for its hints anew."""
@@ -124,7 +132,7 @@ class RobbddServer(LanguageServer):
         """End what runs beside the server."""
         if self.run is not None:
             self.run.cancel()
-        self._validator.stop()
+        self.validator.stop()
         self._background.stop()
         self._analysis.shutdown(wait=False, cancel_futures=True)
 

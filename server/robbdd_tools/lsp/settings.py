@@ -1,0 +1,95 @@
+"""The client's settings for us: asked for where the client can be asked, else what it sends."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, cast
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.graph.user_shapes import EditorShapes
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.server import RobbddServer
+
+SECTION = "robbdd"
+
+
+class Settings:
+    """``robbdd.shapes`` by workspace folder (URI); ``""`` for documents outside of all folders."""
+
+    def __init__(self) -> None:
+        self._shapes: dict[str, tuple[str, ...]] = {}
+
+    @property
+    def patterns(self) -> dict[str, tuple[str, ...]]:
+        """The patterns of each folder that names any."""
+        return {folder: patterns for folder, patterns in self._shapes.items() if patterns}
+
+    def set(self, folder: str, section: object) -> str | None:
+        """Take the section ``robbdd`` for a folder; returns what is wrong with it, if anything."""
+        stated = cast("dict[str, Any]", section).get("shapes") if isinstance(section, dict) else None
+        patterns = cast("list[object]", stated or []) if isinstance(stated or [], list) else [None]
+        texts = tuple(pattern for pattern in patterns if isinstance(pattern, str))
+        if len(texts) != len(patterns):
+            return "The setting 'robbdd.shapes' is a list of file patterns, such as [\"shapes/*.ttl\"]."
+        self._shapes[folder] = texts
+        return None
+
+    def shapes(self, uri: str) -> EditorShapes:
+        """Return the shapes that the editor adds for a document; their patterns count from its workspace folder."""
+        inside = [folder for folder in self._shapes if folder and uri.startswith(f"{folder.rstrip('/')}/")]
+        folder = max(inside, key=len, default="")
+        path = uri_to_path(folder) if folder else None
+        if path is None:
+            document = uri_to_path(uri)
+            path = None if document is None else document.parent
+        patterns = self._shapes.get(folder, ())
+        return EditorShapes() if path is None else EditorShapes(str(path), patterns)
+
+
+def register_settings(server: RobbddServer) -> None:
+    """Follow the client's settings."""
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
+    async def changed(ls: RobbddServer, params: types.DidChangeConfigurationParams) -> None:
+        sent = cast("object", params.settings)
+        await _read(ls, cast("dict[str, object]", sent).get(SECTION) if isinstance(sent, dict) else None)
+
+
+async def follow_settings(ls: RobbddServer) -> None:
+    """Read the settings for the first time, and ask to be told of changes."""
+    workspace = ls.client_capabilities.workspace
+    changes = workspace.did_change_configuration if workspace else None
+    if changes is not None and changes.dynamic_registration:
+        options = types.DidChangeConfigurationRegistrationOptions(section=SECTION)
+        entry = types.Registration(
+            id="robbdd-settings", method=types.WORKSPACE_DID_CHANGE_CONFIGURATION, register_options=options
+        )
+        # A client that refuses says nothing of changes; its settings are read all the same.
+        with suppress(JsonRpcException):
+            await ls.client_register_capability_async(types.RegistrationParams(registrations=[entry]))
+    await _read(ls, None)
+
+
+async def _read(ls: RobbddServer, sent: object) -> None:
+    """Ask the client for its settings in each folder; one that cannot be asked has ``sent`` them, or sends them."""
+    before = ls.settings.patterns
+    folders = ["", *ls.workspace.folders]
+    workspace = ls.client_capabilities.workspace
+    if workspace is not None and workspace.configuration:
+        items = [types.ConfigurationItem(scope_uri=folder or None, section=SECTION) for folder in folders]
+        sections = await ls.workspace_configuration_async(types.ConfigurationParams(items=items))
+    else:
+        sections = [sent] * len(folders)
+    problems = dict.fromkeys(
+        problem
+        for folder, section in zip(folders, sections, strict=False)
+        if (problem := ls.settings.set(folder, section))
+    )
+    for problem in problems:
+        ls.window_show_message(types.ShowMessageParams(type=types.MessageType.Warning, message=problem))
+    if ls.settings.patterns != before:
+        await ls.settings_changed()
