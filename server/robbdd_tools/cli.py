@@ -100,6 +100,12 @@ def _parser() -> argparse.ArgumentParser:
     query.add_argument("--name", metavar="NAME", help="a query that comes along; without any query they are listed")
     query.add_argument("--format", choices=("table", "csv", "json"), default="table")
     query.set_defaults(command=_query)
+    new = commands.add_parser("new", help="begin a project from a template")
+    new.add_argument(
+        "path", metavar="DIR", nargs="?", type=Path, help="its folder; without it the templates are listed"
+    )
+    new.add_argument("--template", metavar="NAME", default="pickplace", help="default: pickplace")
+    new.set_defaults(command=_new)
     _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
 
@@ -162,6 +168,12 @@ def _runs(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.runs import list_runs
 
     return list_runs(options.path, options.store)
+
+
+def _new(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.new import list_templates, new_project
+
+    return list_templates() if options.path is None else new_project(options.path, options.template)
 
 
 def _import(options: argparse.Namespace) -> int:

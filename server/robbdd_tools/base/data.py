@@ -1,4 +1,4 @@
-"""Finds the data files (grammars, metamodels) in a checkout and in an installed wheel alike."""
+"""Finds the data files (grammars, metamodels, examples) in a checkout and in an installed wheel alike."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def data_file(folder: str, name: str) -> Path:
 
 
 def data_folder(folder: str, name: str) -> Path:
-    """Return the path of the folder ``name`` in the data folder ``grammar`` or ``metamodels``.
+    """Return the path of the folder ``name`` in a data folder, or of a data folder itself when ``folder`` is empty.
 
     Raises ``FileNotFoundError`` when the installation lacks it.
     """
