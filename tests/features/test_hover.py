@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kit import MODEL, SCENE, fixture
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.clause_results import ClauseResult, JudgedClause
 from robbdd_tools.features.describe import describe_path, describe_words
 from robbdd_tools.features.hover import hover
@@ -24,7 +25,7 @@ def at(word: str, text: str = MODEL) -> str:
 def test_a_clause_tells_its_sentence_its_meaning_and_when_it_is_judged() -> None:
     found = at("in-$0tray: holds")
     assert "> <part> is located at <goal> 0.5 seconds after place-end" in found
-    assert "inside the workspace" in found
+    assert load_catalog().predicates["located-at"].doc in found
     assert "a margin in m" in found
     assert "Judged throughout the 0.5 s that begin at `place-end`." in found
 
@@ -110,5 +111,5 @@ def test_completions_are_explained_by_path_and_by_words() -> None:
     case = fixture(MODEL)
     assert (describe_path(case.snapshot, "file:///fixture/lab.scene", "parts.bolt") or "").startswith("**object**")
     assert describe_path(case.snapshot, case.uri, "gone") is None
-    assert "inside the workspace" in (describe_words("is located at") or "")
+    assert load_catalog().predicates["located-at"].doc in (describe_words("is located at") or "")
     assert describe_words("Scenario") is None

@@ -30,6 +30,20 @@ _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     SymbolKind.TASK: _KINDS.Constant,
 }
 
+_SYMBOL_KINDS: Mapping[str, types.SymbolKind] = {
+    SymbolKind.NAMESPACE: types.SymbolKind.Namespace,
+    SymbolKind.EVENT: types.SymbolKind.Event,
+    SymbolKind.TASK: types.SymbolKind.Constant,
+    SymbolKind.TEMPLATE: types.SymbolKind.Class,
+    SymbolKind.VARIABLE: types.SymbolKind.Variable,
+    SymbolKind.SET_VARIABLE: types.SymbolKind.Variable,
+    SymbolKind.FLUENT: types.SymbolKind.Boolean,
+    SymbolKind.BEHAVIOUR: types.SymbolKind.Method,
+    SymbolKind.STORY: types.SymbolKind.Package,
+    SymbolKind.VARIANT: types.SymbolKind.Function,
+    SymbolKind.SCENE: types.SymbolKind.Module,
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Converter:
@@ -141,3 +155,8 @@ def document_of(snapshot: Snapshot, uri: str) -> Document:
     """Return the document of a file; an empty one for a file without text, so that places in it are its start."""
     source = snapshot.sources.get(uri)
     return source.document if isinstance(source, FileIndex) else Document(uri, 0, "")
+
+
+def symbol_kind(kind: str) -> types.SymbolKind:
+    """Return the protocol's kind of symbol that is nearest to one of ours."""
+    return _SYMBOL_KINDS.get(kind, types.SymbolKind.Object)

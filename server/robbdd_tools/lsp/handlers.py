@@ -19,6 +19,7 @@ from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.settings import follow_settings, register_settings
 from robbdd_tools.lsp.tokens import register_tokens
+from robbdd_tools.lsp.ways import register_ways
 from robbdd_tools.names.project import Snapshot
 
 RUN, GHERKIN, CANCEL = "robbdd.run", "robbdd.gherkin", "robbdd.cancel"
@@ -35,6 +36,7 @@ def create_server() -> RobbddServer:
     register_settings(server)
     register_navigation(server)
     register_tokens(server)
+    register_ways(server)
     register_preview(server)
     return server
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
@@ -12,24 +10,9 @@ from robbdd_tools.features.folding import folds
 from robbdd_tools.features.outline import Item, outline, project_names
 from robbdd_tools.features.references import highlights, references
 from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
-from robbdd_tools.lsp.convert import document_of
+from robbdd_tools.lsp.convert import document_of, symbol_kind
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
-from robbdd_tools.syntax.declaration import SymbolKind
-
-_KINDS: Mapping[str, types.SymbolKind] = {
-    SymbolKind.NAMESPACE: types.SymbolKind.Namespace,
-    SymbolKind.EVENT: types.SymbolKind.Event,
-    SymbolKind.TASK: types.SymbolKind.Constant,
-    SymbolKind.TEMPLATE: types.SymbolKind.Class,
-    SymbolKind.VARIABLE: types.SymbolKind.Variable,
-    SymbolKind.SET_VARIABLE: types.SymbolKind.Variable,
-    SymbolKind.FLUENT: types.SymbolKind.Boolean,
-    SymbolKind.BEHAVIOUR: types.SymbolKind.Method,
-    SymbolKind.STORY: types.SymbolKind.Package,
-    SymbolKind.VARIANT: types.SymbolKind.Function,
-    SymbolKind.SCENE: types.SymbolKind.Module,
-}
 
 
 def register_navigation(server: RobbddServer) -> None:
@@ -104,7 +87,7 @@ def _register_structure(server: RobbddServer) -> None:
             return [
                 types.WorkspaceSymbol(
                     name=found.symbol.path,
-                    kind=_kind(found.kind),
+                    kind=symbol_kind(found.kind),
                     location=ls.convert.location(snapshot, found.uri, found.span),
                 )
                 for found in project_names(snapshot, params.query)
@@ -123,12 +106,8 @@ def _symbol(ls: RobbddServer, snapshot: Snapshot, uri: str, item: Item) -> types
     return types.DocumentSymbol(
         name=item.name,
         detail=item.kind,
-        kind=_kind(item.kind),
+        kind=symbol_kind(item.kind),
         range=ls.convert.range(document, item.extent),
         selection_range=ls.convert.range(document, item.span),
         children=[_symbol(ls, snapshot, uri, part) for part in item.children],
     )
-
-
-def _kind(kind: str) -> types.SymbolKind:
-    return _KINDS.get(kind, types.SymbolKind.Object)

@@ -1,0 +1,149 @@
+"""The protocol's methods that lead on from a place: type definition, implementation, call hierarchy and others."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+from lsprotocol import types
+
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.features.call_hierarchy import Call, callable_at, calls_from, calls_to
+from robbdd_tools.features.definition import definition
+from robbdd_tools.features.document_links import document_links
+from robbdd_tools.features.implementation import implementation
+from robbdd_tools.features.selection import selections
+from robbdd_tools.features.type_definition import type_definition
+from robbdd_tools.lsp.convert import document_of, symbol_kind
+from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.names.analysis import Definition
+from robbdd_tools.names.project import Snapshot
+
+
+def register_ways(server: RobbddServer) -> None:
+    """Add the methods to a server."""
+    _register_targets(server)
+    _register_calls(server)
+    _register_ranges(server)
+
+
+def _register_targets(server: RobbddServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_DECLARATION)
+    async def declared(ls: RobbddServer, params: types.DeclarationParams) -> types.Location | None:
+        def find(snapshot: Snapshot) -> types.Location | None:
+            document = document_of(snapshot, params.text_document.uri)
+            found = definition(snapshot, document.uri, ls.convert.offset(document, params.position))
+            return None if found is None else ls.convert.location(snapshot, *found)
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_TYPE_DEFINITION)
+    async def typed(ls: RobbddServer, params: types.TypeDefinitionParams) -> list[types.Location]:
+        def find(snapshot: Snapshot) -> list[types.Location]:
+            document = document_of(snapshot, params.text_document.uri)
+            found = type_definition(snapshot, document.uri, ls.convert.offset(document, params.position))
+            return [ls.convert.location(snapshot, uri, span) for uri, span in found]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
+    async def implemented(ls: RobbddServer, params: types.ImplementationParams) -> list[types.Location]:
+        def find(snapshot: Snapshot) -> list[types.Location]:
+            document = document_of(snapshot, params.text_document.uri)
+            found = implementation(snapshot, document.uri, ls.convert.offset(document, params.position))
+            return [ls.convert.location(snapshot, uri, span) for uri, span in found]
+
+        return await ls.analyse(find)
+
+
+def _register_calls(server: RobbddServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
+    async def prepare(ls: RobbddServer, params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem]:
+        def find(snapshot: Snapshot) -> list[types.CallHierarchyItem]:
+            document = document_of(snapshot, params.text_document.uri)
+            found = callable_at(snapshot, document.uri, ls.convert.offset(document, params.position))
+            return [] if found is None else [_item(ls, snapshot, found)]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
+    async def outgoing(
+        ls: RobbddServer, params: types.CallHierarchyOutgoingCallsParams
+    ) -> list[types.CallHierarchyOutgoingCall]:
+        def find(snapshot: Snapshot) -> list[types.CallHierarchyOutgoingCall]:
+            user = _definition(snapshot, params.item)
+            return [
+                types.CallHierarchyOutgoingCall(
+                    to=_item(ls, snapshot, call.other), from_ranges=_places(ls, snapshot, params.item.uri, call)
+                )
+                for call in (calls_from(snapshot, user) if user is not None else ())
+            ]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
+    async def incoming(
+        ls: RobbddServer, params: types.CallHierarchyIncomingCallsParams
+    ) -> list[types.CallHierarchyIncomingCall]:
+        def find(snapshot: Snapshot) -> list[types.CallHierarchyIncomingCall]:
+            used = _definition(snapshot, params.item)
+            return [
+                types.CallHierarchyIncomingCall(
+                    from_=_item(ls, snapshot, call.other), from_ranges=_places(ls, snapshot, call.other.uri, call)
+                )
+                for call in (calls_to(snapshot, used) if used is not None else ())
+            ]
+
+        return await ls.analyse(find)
+
+
+def _register_ranges(server: RobbddServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
+    async def select(ls: RobbddServer, params: types.SelectionRangeParams) -> list[types.SelectionRange]:
+        def find(snapshot: Snapshot) -> list[types.SelectionRange]:
+            document = document_of(snapshot, params.text_document.uri)
+            offsets = [ls.convert.offset(document, position) for position in params.positions]
+            return [_nested(ls, document, selections(snapshot, document.uri, offset)) for offset in offsets]
+
+        return await ls.analyse(find)
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
+    async def link(ls: RobbddServer, params: types.DocumentLinkParams) -> list[types.DocumentLink]:
+        def find(snapshot: Snapshot) -> list[types.DocumentLink]:
+            document = document_of(snapshot, params.text_document.uri)
+            return [
+                types.DocumentLink(range=ls.convert.range(document, found.span), target=found.target)
+                for found in document_links(snapshot, document.uri)
+            ]
+
+        return await ls.analyse(find)
+
+
+def _nested(ls: RobbddServer, document: Document, spans: list[Span]) -> types.SelectionRange:
+    whole = types.SelectionRange(range=ls.convert.range(document, Span(0, len(document.text))))
+    for span in reversed(spans[:-1]):
+        whole = types.SelectionRange(range=ls.convert.range(document, span), parent=whole)
+    return whole
+
+
+def _item(ls: RobbddServer, snapshot: Snapshot, found: Definition) -> types.CallHierarchyItem:
+    document = document_of(snapshot, found.uri)
+    return types.CallHierarchyItem(
+        name=found.symbol.name,
+        detail=found.kind,
+        kind=symbol_kind(found.kind),
+        uri=found.uri,
+        range=ls.convert.range(document, found.extent),
+        selection_range=ls.convert.range(document, found.span),
+        data={"path": found.symbol.path},
+    )
+
+
+def _definition(snapshot: Snapshot, item: types.CallHierarchyItem) -> Definition | None:
+    file = snapshot.file(item.uri)
+    data = cast("dict[str, Any]", item.data or {})
+    return None if file is None else file.definitions.get(str(data.get("path")))
+
+
+def _places(ls: RobbddServer, snapshot: Snapshot, uri: str, call: Call) -> list[types.Range]:
+    document = document_of(snapshot, uri)
+    return [ls.convert.range(document, span) for span in call.spans]

@@ -1,0 +1,52 @@
+"""Ways from one place to others, over the wire."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from lsp_kit import CLIENTS, Editor
+
+
+@CLIENTS
+async def test_the_call_hierarchy_goes_from_the_story_to_the_behaviour(editor: Editor) -> None:
+    editor.open()
+    where = types.CallHierarchyPrepareParams(**editor.at("(ns=crit) tidy", after=True))
+    items = await editor.client.text_document_prepare_call_hierarchy_async(where)
+    names: list[str] = []
+    while items:
+        names.append(items[0].name)
+        calls = await editor.client.call_hierarchy_outgoing_calls_async(
+            types.CallHierarchyOutgoingCallsParams(item=items[0])
+        )
+        items = [call.to for call in calls or ()]
+    assert names == ["tidy-bench", "part-to-bin", "pick-place", "carry"]
+
+
+@CLIENTS
+async def test_types_implementations_links_and_selections_are_answered(editor: Editor) -> None:
+    editor.open()
+    client = editor.client
+    at_clause = editor.at("at-goal", after=True)
+    found = await client.text_document_implementation_async(types.ImplementationParams(**at_clause))
+    assert isinstance(found, list | tuple)
+    assert [location.uri.rsplit("/", 1)[-1] for location in found if isinstance(location, types.Location)] == [
+        "located_at.py"
+    ]
+    at_variant = editor.at("Scenario part-to", after=True)
+    kinds = await client.text_document_type_definition_async(types.TypeDefinitionParams(**at_variant))
+    assert isinstance(kinds, list | tuple)
+    assert [place.range.start for place in kinds if isinstance(place, types.Location)] == [
+        editor.position("pick-place {")
+    ]
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    links = await client.text_document_document_link_async(types.DocumentLinkParams(text_document=document))
+    assert [str(link.target).rsplit("/", 1)[-1] for link in links or ()] == ["bench.scene"]
+    grown = await client.text_document_selection_range_async(
+        types.SelectionRangeParams(text_document=document, positions=[editor.position("evt-place-end>")])
+    )
+    assert grown is not None
+    assert grown[0].parent is not None
+    declared = await client.text_document_declaration_async(
+        types.DeclarationParams(**editor.at("template: <pick", after=True))
+    )
+    assert isinstance(declared, types.Location)
