@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.sentences import AnyOf, Clause, Filler, Fluent, Junction, Unmatched, fluents_of
 from robbdd_tools.catalog.api import Kind
-from robbdd_tools.monitor.judge import judge
+from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import After, Before, During, NoWindow, TimeConstraint, window
+from robbdd_tools.monitor.vacuity import Range, joined
 from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation, unknown
 
 if TYPE_CHECKING:
@@ -33,6 +34,21 @@ def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[s
             return conjunction(verdicts) if operator == "and" else disjunction(verdicts)
         case Unmatched(text):
             return unknown(f"no step definition for '{text}'")
+
+
+def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:
+    """Return how far the margin of each fluent of a clause varied over a whole trace, as far as that is known."""
+    found: list[Range] = []
+    for fluent in fluents_of(clause):
+        slots = fluent.predicate.slots
+        try:
+            each = [
+                margin_range(fluent.predicate, words, trace, regions) for words in _instances(slots, fluent.arguments)
+            ]
+        except Exception:  # the same failure has made the clause unknown, with its words
+            return ()
+        found += [joined(known)] if (known := [one for one in each if one is not None]) else []
+    return tuple(found)
 
 
 def is_closed(clause: Clause, trace: Trace, events: AbstractSet[str]) -> bool:

@@ -7,14 +7,21 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from robbdd_tools.agent.clauses import decide, is_closed
+from robbdd_tools.agent.clauses import decide, is_closed, ranges
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Call, Execution, Timing
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.sentences import Clause, Doing, fluents_of, read_clause, read_doing, read_event
 from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
-from robbdd_tools.run.protocol import ClauseJudged, ClauseStarted, LogLine, ScenarioFinished, ScenarioStarted
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    ClauseStarted,
+    LogLine,
+    MarginRanges,
+    ScenarioFinished,
+    ScenarioStarted,
+)
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.channel import Channel
@@ -100,10 +107,19 @@ class ScenarioRun:
         for line, sentence in list(self._open.items()):
             self._report(line, unknown(self._broken or f"no step definition for '{sentence}'"))
         execution = self._execution
+        if execution is not None:
+            self._tell_ranges(execution)
         simulated = execution.simulated if execution is not None else 0.0
         stepping = execution.stepping if execution is not None else 0.0
         wall = perf_counter() - self._began
         self._channel.send(ScenarioFinished(self._index, round(simulated, 6), wall, stepping))
+
+    def _tell_ranges(self, execution: Execution) -> None:
+        """Tell how far the margins varied in all that happened, for clauses that could not have failed."""
+        for line, clause in self._clauses.items():
+            found = ranges(clause, execution.measured(clause, execution.trace), execution.regions)
+            if found:
+                self._channel.send(MarginRanges(self._index, line, found))
 
     def _judged(self, line: int, verdict: Callable[[Execution], Verdict]) -> Verdict:
         if line in self._open:
@@ -135,6 +151,8 @@ class ScenarioRun:
                 verdict.unit,
                 verdict.at,
                 verdict.reason,
+                verdict.worst_at,
+                verdict.vacuous,
             )
         )
 

@@ -132,7 +132,8 @@ class Predicate:
     says otherwise for a variant that was configured. ``evaluate`` is
     ``None`` for what this installation can state but not judge yet: such a clause is *unknown*, never a pass.
     ``quantities`` are those that the evaluator needs beside poses and grips
-    (``reach``): they cost time and are sampled only in the windows of clauses that ask.
+    (``reach``): they cost time and are sampled only in the windows of clauses that ask. ``set_up`` tells that it is
+    made true before the scenario starts, not observed.
     """
 
     name: str
@@ -146,6 +147,7 @@ class Predicate:
     quantities: tuple[str, ...] = ()
     aliases: tuple[str, ...] = ()
     unit_for: UnitChoice | None = None
+    set_up: bool = False
 
 
 @dataclass(frozen=True, slots=True)

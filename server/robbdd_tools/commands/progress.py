@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -83,6 +84,8 @@ class Display:
     def summary(self) -> None:
         """Print how many scenarios have which verdict."""
         self._progress.stop()
+        for name, reason in self._vacuous():
+            self._console.print(Text(f"{name} could not have failed: {reason}", STYLES[Outcome.UNKNOWN]))
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
         counts = [f"{self._results.count(outcome)} {_word(outcome)}" for outcome in Outcome]
         simulated = sum(scenario.finished.simulated for scenario in finished if scenario.finished)
@@ -96,6 +99,13 @@ class Display:
     def _counts(self) -> str:
         failed = f"[{STYLES[Outcome.VIOLATED]}]{self._failed} failed[/]" if self._failed else "0 failed"
         return f"[{STYLES[Outcome.HOLDS]}]{self._held} hold[/], {failed}"
+
+    def _vacuous(self) -> Iterator[tuple[str, str]]:
+        """Yield name and reason of every clause that could not have failed, in the order of the model."""
+        clauses = (clause for scenario in self._results.scenarios for clause in scenario.spec.clauses)
+        names = {clause.iri: clause.name for clause in clauses}
+        reasons = self._results.vacuous()
+        return ((name, reasons[iri]) for iri, name in names.items() if iri in reasons)
 
     def _scenario(self, scenario: ScenarioResult) -> None:
         spec = scenario.spec

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from robbdd_tools.monitor.time import NoWindow, TimeConstraint, Window, window
+from robbdd_tools.monitor.vacuity import Range
 from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Outcome, Verdict, unknown
 
 if TYPE_CHECKING:
@@ -113,6 +114,22 @@ def judge(
     except KeyError as missing:
         return unknown(f"the trace has no record of '{missing.args[0]}'")
     return _verdict(margins, evidence.times, unit)
+
+
+def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> Range | None:
+    """Return the range of a predicate's margin over all samples of a trace.
+
+    ``None`` without evaluator or record, with fewer than two samples, for a quantity that is measured within windows
+    only, and for what is set up rather than observed: there nothing tells whether it could have been otherwise.
+    """
+    if predicate.evaluate is None or predicate.quantities or predicate.set_up or len(trace.times) < 2:
+        return None
+    try:
+        margins = predicate.evaluate(WindowEvidence(trace, Window(0, len(trace.times) - 1), regions), arguments)
+    except KeyError:
+        return None
+    finite = margins[np.isfinite(margins)]
+    return (float(finite.min()), float(finite.max())) if finite.size > 1 else None
 
 
 def _verdict(margins: FloatArray, times: FloatArray, unit: str) -> Verdict:

@@ -148,6 +148,17 @@ class ClauseJudged:
     unit: str
     at: float | None
     reason: str
+    worst_at: float | None = None
+    vacuous: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class MarginRanges:
+    """How far the margin of each fluent of the clause on ``line`` varied over the whole execution: least, largest."""
+
+    index: int
+    line: int
+    ranges: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +186,16 @@ class RunFinished:
     ok: bool
 
 
-RunMessage = RunStarted | ScenarioStarted | ClauseStarted | ClauseJudged | ScenarioFinished | LogLine | RunFinished
+RunMessage = (
+    RunStarted
+    | ScenarioStarted
+    | ClauseStarted
+    | ClauseJudged
+    | MarginRanges
+    | ScenarioFinished
+    | LogLine
+    | RunFinished
+)
 _TYPES: dict[str, type[RunMessage]] = {
     kind.__name__: kind
     for kind in (
@@ -183,6 +203,7 @@ _TYPES: dict[str, type[RunMessage]] = {
         ScenarioStarted,
         ClauseStarted,
         ClauseJudged,
+        MarginRanges,
         ScenarioFinished,
         LogLine,
         RunFinished,

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import ClauseJudged, ClauseSpec, Manifest, RunFinished, RunMessage, ScenarioSpec
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    ClauseSpec,
+    Manifest,
+    MarginRanges,
+    RunFinished,
+    RunMessage,
+    ScenarioSpec,
+)
 from robbdd_tools.run.protocol import ScenarioFinished as Finished
+from robbdd_tools.run.vacuity import Vacuity
 
 
 @dataclass(slots=True)
@@ -35,6 +44,7 @@ class RunResults:
     manifest: Manifest
     scenarios: list[ScenarioResult] = field(init=False)
     complete: bool = False
+    _vacuity: Vacuity = field(default_factory=Vacuity)
 
     def __post_init__(self) -> None:
         self.scenarios = [ScenarioResult(spec) for spec in self.manifest.scenarios]
@@ -44,6 +54,9 @@ class RunResults:
         match message:
             case ClauseJudged():
                 self.scenarios[message.index].judged[message.line] = message
+                self._vacuity.judged(self._clause(message.index, message.line), message)
+            case MarginRanges(index, line, ranges):
+                self._vacuity.varied(self._clause(index, line), ranges)
             case Finished():
                 self.scenarios[message.index].finished = message
             case RunFinished(ok):
@@ -63,6 +76,13 @@ class RunResults:
             self.apply(message)
         return closing
 
+    def vacuous(self) -> Mapping[str, str]:
+        """Return, by clause IRI, why a clause could not have failed in this run."""
+        return self._vacuity.reasons()
+
+    def _clause(self, index: int, line: int) -> ClauseSpec:
+        return next(clause for clause in self.scenarios[index].spec.clauses if clause.line == line)
+
     def count(self, outcome: Outcome) -> int:
         """Return how many scenarios have a verdict."""
         return sum(scenario.verdict is outcome for scenario in self.scenarios)
@@ -77,6 +97,7 @@ class RunResults:
         }
 
     def _scenarios(self) -> Iterable[dict[str, Any]]:
+        vacuous = self.vacuous()
         for scenario in self.scenarios:
             spec = scenario.spec
             yield {
@@ -91,11 +112,14 @@ class RunResults:
                 "repetition": spec.repetition,
                 "duration": None if scenario.finished is None else scenario.finished.simulated,
                 "verdict": str(scenario.verdict),
-                "clauses": [_clause(clause, scenario.judged.get(clause.line)) for clause in spec.clauses],
+                "clauses": [
+                    _clause(clause, scenario.judged.get(clause.line), vacuous.get(clause.iri, ""))
+                    for clause in spec.clauses
+                ],
             }
 
 
-def _clause(clause: ClauseSpec, judged: ClauseJudged | None) -> dict[str, Any]:
+def _clause(clause: ClauseSpec, judged: ClauseJudged | None, vacuous: str) -> dict[str, Any]:
     return {
         "iri": clause.iri,
         "name": clause.name,
@@ -106,4 +130,6 @@ def _clause(clause: ClauseSpec, judged: ClauseJudged | None) -> dict[str, Any]:
         "unit": "" if judged is None else judged.unit,
         "at": None if judged is None else judged.at,
         "reason": "the clause was never judged" if judged is None else judged.reason,
+        "worst_at": None if judged is None else judged.worst_at,
+        "vacuous": vacuous,
     }

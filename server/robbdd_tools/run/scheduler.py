@@ -24,6 +24,7 @@ from robbdd_tools.run.protocol import (
     ClauseStarted,
     LogLine,
     Manifest,
+    MarginRanges,
     RunFinished,
     RunMessage,
     RunStarted,
@@ -207,7 +208,7 @@ class Scheduler:
                 self._wasted = 0
                 worker.started, worker.deadline = True, monotonic() + self._limit(index)
                 yield from self._pass_on(worker, message)
-            case ClauseStarted():
+            case ClauseStarted() | MarginRanges():
                 yield from self._pass_on(worker, message)
             case ClauseJudged():
                 worker.judged.add(message.line)

@@ -51,4 +51,5 @@ HAS_CONFIG = Predicate(
         "or seed; or judged by it: max_speed (m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
     ),
     evaluate=margin,
+    set_up=True,
 )

@@ -1,0 +1,47 @@
+"""Which clauses of a run could not have failed, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robbdd_tools.monitor.vacuity import Range, is_constant, joined
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.protocol import ClauseJudged, ClauseSpec
+
+
+@dataclass(slots=True)
+class Vacuity:
+    """Collects, clause by clause, what says that it could not have failed."""
+
+    _said: dict[str, str] = field(default_factory=dict[str, str])
+    _ranges: dict[str, list[Range]] = field(default_factory=dict[str, list[Range]])
+    _executions: dict[str, int] = field(default_factory=dict[str, int])
+
+    def judged(self, clause: ClauseSpec, judged: ClauseJudged) -> None:
+        """Take what a single verdict says."""
+        if judged.vacuous:
+            self._said.setdefault(clause.iri, judged.vacuous)
+
+    def varied(self, clause: ClauseSpec, ranges: Sequence[Sequence[float]]) -> None:
+        """Take how far the margin of each fluent of a clause varied in one execution."""
+        known = self._ranges.get(clause.iri, [])
+        found: list[Range] = [(low, high) for low, high in ranges]
+        # A set of another size has other fluents: then all are taken together.
+        if known and len(known) != len(found):
+            known, found = [joined(known)], [joined(found)]
+        self._ranges[clause.iri] = [joined(list(pair)) for pair in zip(known or found, found, strict=True)]
+        self._executions[clause.iri] = self._executions.get(clause.iri, 0) + 1
+
+    def reasons(self) -> Mapping[str, str]:
+        """Return, by clause IRI, why a clause could not have failed."""
+        constant = {iri: self._never_varied(iri) for iri, found in self._ranges.items() if all(map(is_constant, found))}
+        return {**constant, **self._said}
+
+    def _never_varied(self, iri: str) -> str:
+        margins = " and ".join(f"{low:.4g}" for low, _ in self._ranges[iri])
+        count = self._executions[iri]
+        times = "the execution" if count == 1 else f"all {count} executions"
+        return f"its predicate had the same margin ({margins}) throughout {times}"
