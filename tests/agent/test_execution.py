@@ -91,6 +91,13 @@ def test_settled_things_stay_where_they_are() -> None:
     assert all(length < 1e-3 for length in travelled.values()), travelled
 
 
+def test_a_servo_whose_target_nobody_moves_holds_still() -> None:
+    """After the last behaviour nothing commands the arm any more."""
+    trace = to_the_end(execution([pick_place(CUBE)]))
+    tool = trace.positions[:, trace.column(PANDA)]
+    assert np.linalg.norm(tool[-1] - tool[-20]) < 1e-4
+
+
 def test_bins_are_loose_and_can_be_pushed() -> None:
     run = execution()
     data, model = run.simulation.data, run.simulation.model

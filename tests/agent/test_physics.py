@@ -12,11 +12,16 @@ from agent.worlds import BALL, BIN, BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, execut
 from robbdd_tools.agent.engine import TICK, mujoco
 from robbdd_tools.agent.execution import Execution, Timing
 from robbdd_tools.agent.placement import TABLE_TOP
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.monitor.judge import judge
+from robbdd_tools.monitor.time import After
 from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.monitor.verdict import Outcome
 
 pytestmark = pytest.mark.physics
-MORE = ("env:cube2", "env:box1", "env:box2", "env:ball2", "env:cube3")
-CROWD = replace(SCENE, objects=(*SCENE.objects, *MORE), places={"env:cube3": BIN_WS, "env:ball2": OTHER_WS})
+MORE = ("env:cube2", "env:box1", "env:box2", "env:ball2", "env:cube3", "env:cylinder1", "env:bottle1")
+FURNITURE = ("env:shelf", "env:tray")
+CROWD = replace(SCENE, objects=(*SCENE.objects, *MORE, *FURNITURE), places={"env:cube3": BIN_WS, "env:ball2": OTHER_WS})
 SEEDS = range(4)
 DRIFT = 1e-4
 """m/s"""
@@ -47,7 +52,7 @@ def test_things_at_rest_stay_at_rest(seed: int, asleep: bool) -> None:
         run.simulation.model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     trace = to_the_end(run)
     moved = np.linalg.norm(trace.positions[-1] - trace.positions[0], axis=1) / trace.end
-    assert dict(zip(trace.names, moved.tolist(), strict=True)).keys() >= set(MORE)
+    assert dict(zip(trace.names, moved.tolist(), strict=True)).keys() >= {*MORE, *FURNITURE}
     assert moved.max() < DRIFT, trace.names[int(moved.argmax())]
 
 
@@ -64,10 +69,10 @@ def test_a_thing_that_was_set_down_is_at_rest_and_not_inside_anything() -> None:
     assert penetration(run) < PENETRATION
 
 
-@pytest.mark.parametrize("thing", [BALL, CUBE])
+@pytest.mark.parametrize("thing", [BALL, CUBE, "env:cylinder1", "env:bottle1"])
 def test_a_falling_thing_gains_no_energy(thing: str) -> None:
     """Kinetic plus potential energy of a thing dropped from 0.25 m, at the end of every step."""
-    simulation = execution().simulation
+    simulation = execution(scene=replace(SCENE, objects=(thing, "env:bench"), workspaces={}, contains={})).simulation
     model, data = simulation.model, simulation.data
     body = model.body(thing)
     place, speed = int(model.jnt_qposadr[body.jntadr[0]]), int(body.dofadr[0])
@@ -83,6 +88,25 @@ def test_a_falling_thing_gains_no_energy(thing: str) -> None:
     drop = 9.81 * float(body.mass[0]) * 0.2
     assert max(energies) < energies[0] + 0.001 * drop
     assert energies[-1] < energies[0] - 0.9 * drop
+
+
+@pytest.mark.parametrize("agent", ["env:panda", "env:kinova1", "env:ur10"])
+@pytest.mark.parametrize("goal", ["env:shelf_lower_ws", "env:shelf_upper_ws", "env:tray_ws"])
+def test_a_thing_is_placed_on_a_board_and_on_a_tray(agent: str, goal: str) -> None:
+    """A workspace that names a board is the space above that board alone."""
+    carriers = {f"env:shelf_{board}_ws": ("env:shelf",) for board in ("lower", "upper")} | {
+        "env:tray_ws": ("env:tray",)
+    }
+    thing = "env:cylinder1"
+    scene = replace(SCENE, objects=(thing, "env:bench", *FURNITURE), agents=(agent,), workspaces=carriers, contains={})
+    run = execution([pick_place(thing, goal, agent)], scene, seed=2)
+    trace = to_the_end(run)
+    assert not trace.remark
+    predicate, placed = load_catalog().predicates["located-at"], After("t:end")
+    words = {"object": thing}
+    inside = {ws: judge(predicate, {**words, "workspace": ws}, placed, trace, run.regions) for ws in carriers}
+    assert [ws for ws, verdict in inside.items() if verdict.outcome is Outcome.HOLDS] == [goal]
+    assert penetration(run) < PENETRATION
 
 
 def test_the_order_in_which_objects_are_declared_does_not_matter() -> None:

@@ -85,7 +85,7 @@ def test_a_second_robot_faces_the_first_across_the_table() -> None:
     ("scene", "message"),
     [
         (replace(SCENE, objects=("env:gizmo",)), "no model for object 'env:gizmo': .* one of ball, bench, bin, "),
-        (replace(SCENE, agents=("env:hal",)), "no model for agent 'env:hal': .* one of franka, panda"),
+        (replace(SCENE, agents=("env:hal",)), "no model for agent 'env:hal': .* one of franka, gen3, kinova, panda"),
         (replace(SCENE, agents=("t:panda1", "t:panda2", "t:panda3")), "room for two agents"),
         (replace(SCENE, places={CUBE: "env:void_ws"}), "'env:cube1' is to be at 'env:void_ws', but nothing"),
         (replace(SCENE, workspaces={BIN_WS: ("env:bin9",)}), "carried by 'env:bin9', which is not in the scene"),

@@ -107,6 +107,9 @@ def _scaled(model: ObjectModel, factor: float) -> ObjectModel:
     def taller(vector: Vector) -> Vector:
         return (vector[0], vector[1], factor * vector[2])
 
+    def stretched(region: Region) -> Region:
+        return replace(region, center=taller(region.center), half=taller(region.half))
+
     region = model.region
     return replace(
         model,
@@ -114,7 +117,8 @@ def _scaled(model: ObjectModel, factor: float) -> ObjectModel:
             replace(shape, size=taller(shape.size), position=taller(shape.position)) for shape in model.shapes
         ),
         rest_height=factor * model.rest_height,
-        region=None if region is None else Region(taller(region.center), taller(region.half)),
+        region=None if region is None else stretched(region),
+        parts=tuple(map(stretched, model.parts)),
     )
 
 

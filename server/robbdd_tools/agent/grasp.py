@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan2, pi
+from math import atan2, hypot, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,12 +42,9 @@ def finger_grasps(
 
     Raises ``BehaviourError`` when the object is wider than the gripper opens.
     """
-    shape = model.shapes[0]
-    center = position + rotation @ np.array(shape.position)
-    directions, half_height = _directions(shape, rotation)
-    top = float(center[2]) + half_height
+    center, directions, top = _highest(model, position, rotation)
     grip = np.array([center[0], center[1], max(float(center[2]), top - DEPTH)])
-    below = float(grip[2]) - (float(center[2]) - half_height)
+    below = float(grip[2]) - _bottom(model, position, rotation)
     fitting = [Grasp(grip, angle, width, below) for angle, width in directions if width + PLAY <= stroke]
     if not fitting:
         narrowest = min(width for _, width in directions)
@@ -62,14 +59,38 @@ def suction_grasps(
 
     Raises ``BehaviourError`` when the object is smaller than the cup.
     """
-    shape = model.shapes[0]
-    center = position + rotation @ np.array(shape.position)
-    directions, half_height = _directions(shape, rotation)
+    center, directions, top = _highest(model, position, rotation)
     narrowest = min(width for _, width in directions)
     if narrowest < diameter:
         raise BehaviourError(f"{name} is {narrowest:.3f} m wide, the suction cup {diameter:.3f} m")
-    top = np.array([center[0], center[1], float(center[2]) + half_height])
-    return [Grasp(top, angle, narrowest, 2 * half_height) for angle, _ in _all_round(narrowest)]
+    touch = np.array([center[0], center[1], top])
+    below = top - _bottom(model, position, rotation)
+    return [Grasp(touch, angle, narrowest, below) for angle, _ in _all_round(narrowest)]
+
+
+def _highest(
+    model: ObjectModel, position: FloatArray, rotation: FloatArray
+) -> tuple[FloatArray, list[tuple[float, float]], float]:
+    """Return centre (3,) m, closing directions (rad, width in m) and top (m) of the part to take hold of.
+
+    It is the highest of those above or below the object's position: a neck, but not the wall of a bin.
+    """
+    best: tuple[FloatArray, list[tuple[float, float]], float] | None = None
+    for shape in model.shapes:
+        center = position + rotation @ np.array(shape.position)
+        directions, half_height = _directions(shape, rotation)
+        top = float(center[2]) + half_height
+        aside = hypot(*(center - position)[:2]) > min(width for _, width in directions) / 2
+        if best is None or (top > best[2] and not aside):
+            best = (center, directions, top)
+    assert best is not None
+    return best
+
+
+def _bottom(model: ObjectModel, position: FloatArray, rotation: FloatArray) -> float:
+    """Return the height (m) of an object's lowest point."""
+    centers = (float(position[2] + rotation[2] @ np.array(shape.position)) for shape in model.shapes)
+    return min(z - _directions(shape, rotation)[1] for z, shape in zip(centers, model.shapes, strict=True))
 
 
 def _directions(shape: Shape, rotation: FloatArray) -> tuple[list[tuple[float, float]], float]:

@@ -107,8 +107,8 @@ class PickPlace:
     def _lower_onto(self, target: Target, grasp: Grasp, clearance: Clearance) -> ToolPose | None:
         robot = self._robot
         x, y, surface = target.position
-        top = TRAVEL
         height = surface + grasp.below + target.gap
+        top = max(TRAVEL, height)
         closing = target.closing if target.closing is not None else grasp.closing
         while height <= top:
             pose = tool_pose(robot.base, np.array([x, y, height]), closing)

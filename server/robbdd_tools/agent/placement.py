@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin
@@ -138,14 +137,24 @@ def bearing(base: Pose, x: float, y: float) -> float:
 
 
 def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple[str, Vector]]:
-    used: Counter[str] = Counter()
+    """Yield each object with the first standard place of its kind that nothing stands at."""
+    used: list[tuple[Vector, ObjectModel]] = []
     for name in names:
         model = cast.objects[name]
-        if used[model.name] == len(model.places):
+        free = (place for place in model.places if not any(_overlapping(place, model, *one) for one in used))
+        place = next(free, None)
+        if place is None:
             room = f"there is room for {len(model.places)} objects of the kind '{model.name}' on {where}"
-            raise SceneError(f"{room}; '{name}' has no place")
-        yield name, model.places[used[model.name]]
-        used[model.name] += 1
+            raise SceneError(f"{room}, less where others stand; '{name}' has no place")
+        used.append((place, model))
+        yield name, place
+
+
+def _overlapping(place: Vector, model: ObjectModel, other_place: Vector, other: ObjectModel) -> bool:
+    if model.region is None or other.region is None:
+        return place == other_place
+    reach = (one + two for one, two in zip(model.region.half[:2], other.region.half[:2], strict=True))
+    return all(abs(a - b) < r for a, b, r in zip(place, other_place, reach, strict=False))
 
 
 def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:
@@ -164,19 +173,23 @@ def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:
 def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose, name: str) -> Iterator[_Field]:
     """The areas for an object, best first; raises ``SceneError`` when there is none."""
     carrier = cast.tables[0]
+    region = cast.objects[carrier].region
     if (workspace := scene.places.get(name)) is not None:
         if workspace not in cast.regions:
             raise SceneError(f"'{name}' is to be at '{workspace}', but nothing in the scene carries that workspace")
-        carrier = cast.regions[workspace][0][0]
+        carrier, region = cast.regions[workspace][0]
     model, pose = cast.objects[carrier], poses[carrier]
     radius = footprint(cast.objects[name])
-    if model.region is None:
+    if region is None:
         raise SceneError(f"'{name}' is to be at '{carrier}', which has no workspace")
-    x, y, z = pose.position
-    bottom = z + model.region.center[2] - model.region.half[2]
+    x, y, z = (at + offset for at, offset in zip(pose.position, region.center, strict=True))
+    bottom = z - region.half[2]
     if model.free:
-        inner = (model.region.half[0] - radius, model.region.half[1] - radius)
-        yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None)
+        inner = (region.half[0] - radius, region.half[1] - radius)
+        if region.walled:
+            yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None)
+        else:
+            yield _Field((x, y), inner, bottom, pi, FINGER_GAP, None)
         yield _Field((x, y), inner, bottom, pi, TOUCHING, None)
         return
     area = field_before(base, pose, model, cast.ranges.get(name, NORMAL))

@@ -93,8 +93,7 @@ def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, 
             model = objects.get(carrier)
             if model is None:
                 raise SceneError(f"workspace '{workspace}' is carried by '{carrier}', which is not in the scene")
-            if model.region is not None:
-                boxes.append((carrier, model.region))
+            boxes += [(carrier, region) for region in model.spaces(local_name(workspace))]
         if boxes:
             regions[workspace] = tuple(boxes)
     return regions

@@ -32,7 +32,8 @@ SETTLE_TICKS = 190
 class Robot:
     """One robot of a running simulation: its places in the engine's arrays.
 
-    ``joints`` (n,) indexes joint positions, ``speeds`` (n,) velocities, ``motors`` (n,) and ``gripper`` controls.
+    ``joints`` (n,) indexes joint positions, ``speeds`` (n,) velocities, ``motors`` (n,) and ``gripper`` controls,
+    ``targets`` (n,) the positions that the arm's servos hold at the moment.
     """
 
     def __init__(self, world: World, name: str) -> None:
@@ -46,6 +47,7 @@ class Robot:
         on_joint = np.flatnonzero(model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_JOINT))
         driven = {int(model.actuator_trnid[motor, 0]): int(motor) for motor in on_joint}
         self.motors = np.array([driven[joint.id] for joint in joints])
+        self.targets = model.actuator_actadr[self.motors]
         self.gripper = int(model.actuator(f"{name}/{robot.gripper_actuator}").id)
         self.tool = int(model.site(f"{name}/{robot.tool_site}").id)
         self.pads = tuple(int(model.geom(f"{name}/{pad}").id) for pad in robot.pads)
@@ -80,6 +82,8 @@ class Simulation:
         # Views of the engine's memory, which stays where it is: to ask for them anew in every tick takes longer.
         self._qpos: FloatArray = self.data.qpos
         self._qvel: FloatArray = self.data.qvel
+        motors = [robot.motors for robot in self.robots.values()]
+        self._servos = np.concatenate([*motors, np.empty(0, dtype=int)]).astype(int)
         self._tools: list[tuple[FloatArray, FloatArray]] = [
             (self.data.site_xpos[robot.tool], self.data.site_xmat[robot.tool]) for robot in self.robots.values()
         ]
@@ -170,8 +174,11 @@ class Simulation:
         return positions
 
     def command(self, robot: Robot, joints: FloatArray, opening: float) -> None:
-        """Set the targets of the arm's servos (rad, shape (n,)) and of the gripper; a cup that leaks has no vacuum."""
-        self.data.ctrl[robot.motors] = joints
+        """Let the targets of the arm's servos move to ``joints`` (rad, shape (n,)) within one tick; set the gripper.
+
+        A cup that leaks has no vacuum.
+        """
+        self.data.ctrl[robot.motors] = (joints - self.data.act[robot.targets]) / TICK
         leaks = robot.name in self._grips.leaking
         self.data.ctrl[robot.gripper] = robot.model.gripper_open if leaks else opening
 
@@ -189,6 +196,8 @@ class Simulation:
         else:
             self._step_and_look(self.forces)
         self.stepping += perf_counter() - began
+        # A target that nobody moves on stays where it is.
+        self.data.ctrl[self._servos] = 0.0
         if not isfinite(self._qvel @ self._qvel):
             raise SimulationError(f"the simulation became unstable at {self.time:.2f} s")
 
@@ -204,5 +213,6 @@ class Simulation:
             home = np.array(robot.model.home)
             self.data.qpos[robot.joints] = home
             self.open_fingers(robot, self.data)
+            self.data.act[robot.targets] = home
             self.command(robot, home, robot.model.gripper_open)
         mujoco.mj_forward(self.model, self.data)

@@ -42,8 +42,10 @@ def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> 
     if not regions:
         raise BehaviourError(f"nothing in the scene carries {workspace}")
     for carrier, region in regions:
-        if simulation.world.cast.objects[carrier].free:
+        if region.walled:
             yield from _in_bin(simulation, name, carrier, region)
+        elif simulation.world.cast.objects[carrier].free:
+            yield from _on_board(simulation, name, carrier, region)
         else:
             yield from _on_table(simulation, robot, name, carrier, region)
 
@@ -57,6 +59,23 @@ def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> 
     points = [position + rotation @ bottom + along * axis for along in ALONG]
     for point in sorted(points, key=lambda point: -_room(point[0], point[1], others)):
         yield Target((float(point[0]), float(point[1]), float(point[2])), INTO_BIN, atan2(axis[1], axis[0]))
+
+
+def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
+    """Yield places on a board or tray: those with room for a hand first, the nearest to the middle first."""
+    position, rotation = simulation.pose(carrier)
+    radius = footprint(simulation.world.cast.objects[name])
+    others = _others(simulation, name, carrier)
+    longest = int(np.argmax(region.half[:2]))
+    shares = np.linspace(-1.0, 1.0, GRID)
+    inner = np.maximum(np.array(region.half[:2]) - radius, 0.0)
+    offsets = sorted((np.array([sx, sy]) * inner for sx in shares for sy in shares), key=lambda one: float(one @ one))
+    x, y, z = region.center
+    points = [position + rotation @ np.array([x + dx, y + dy, z - region.half[2]]) for dx, dy in offsets]
+    closing = atan2(rotation[1, longest], rotation[0, longest])
+    # Sorting is stable: among equals the order stays that of the distance from the middle.
+    for point in sorted(points, key=lambda point: _room(point[0], point[1], others) < radius + HAND_GAP):
+        yield Target((float(point[0]), float(point[1]), float(point[2])), ONTO_TABLE, closing)
 
 
 def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, region: Region) -> Iterator[Target]:

@@ -147,6 +147,11 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
         if geom.contype or geom.conaffinity:
             geom.contype = own
             geom.conaffinity = THINGS | sum(2 << other for other in range(count) if other != index)
+    for servo in child.actuators:
+        if servo.target in robot.joints:
+            # What controls it is the speed of the target: one that jumps with every tick would shake the arm.
+            servo.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
+            servo.ctrllimited = False
     turn = [cos(base.yaw / 2), 0.0, 0.0, sin(base.yaw / 2)]
     frame = spec.worldbody.add_frame(pos=list(base.position), quat=turn)
     spec.attach(child, prefix=f"{name}/", frame=frame)

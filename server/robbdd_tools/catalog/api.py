@@ -47,11 +47,14 @@ class Slot:
 class Region:
     """An axis-aligned box in the frame of the object that carries a workspace.
 
-    ``center`` and ``half`` (half edges) in metres. A bin's region is its inside; a table's the space above its top.
+    ``center`` and ``half`` (half edges) in metres. A bin's region is its inside, ``walled``; a table's the space above
+    its top. ``name`` tells one part of an object (a shelf's board) from the others.
     """
 
     center: Vector
     half: Vector
+    name: str = ""
+    walled: bool = False
 
 
 Outline = tuple[tuple[Vector, float], ...]
@@ -212,7 +215,16 @@ class ObjectModel:
     doc: str
     region: Region | None = None
     places: tuple[Vector, ...] = ()
-    """Standard places (m; x, y on the surface below, z ignored for what stands on a table), one per copy."""
+    """Standard places (m; x, y on the surface below, z ignored for what stands on a table), best first."""
+    parts: tuple[Region, ...] = ()
+    """Parts of the object that are workspaces of their own, such as the boards of a shelf."""
+
+    def spaces(self, workspace: str) -> tuple[Region, ...]:
+        """Return the regions of a workspace that the object carries: the parts that its local name speaks of
+        (``shelf_upper`` of the part ``upper``), otherwise all parts, otherwise the whole region.
+        """
+        named = tuple(part for part in self.parts if part.name in workspace.lower())
+        return named or self.parts or (() if self.region is None else (self.region,))
 
 
 class GripperKind(StrEnum):

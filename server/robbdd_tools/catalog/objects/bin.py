@@ -23,7 +23,7 @@ def _shapes() -> tuple[Shape, ...]:
 
 BIN = ObjectModel(
     name="bin",
-    prefixes=("bin", "container", "tray"),
+    prefixes=("bin", "container"),
     shapes=_shapes(),
     mass=0.60,
     friction=0.5,
@@ -35,6 +35,7 @@ BIN = ObjectModel(
     region=Region(
         center=(0.0, 0.0, (HEIGHT + WALL) / 2),
         half=(LENGTH / 2 - WALL, WIDTH / 2 - WALL, (HEIGHT - WALL) / 2),
+        walled=True,
     ),
     places=((-0.05, 0.60, 0.0), (-0.05, -0.60, 0.0), (-0.05, 0.36, 0.0), (-0.05, -0.36, 0.0)),
 )
