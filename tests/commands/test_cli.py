@@ -40,6 +40,16 @@ def test_every_example_is_clean() -> None:
     assert robbdd("check", EXAMPLES).stdout.endswith(": 0 errors, 0 other remarks\n")
 
 
+def test_a_folder_is_read_without_what_is_installed_in_it(folder: Path) -> None:
+    for name in (".robbdd", "node_modules", "venv"):
+        (folder / name / "inner").mkdir(parents=True)
+        (folder / name / "inner" / "broken.bdd").write_text("nonsense", encoding="utf-8")
+    (folder / "venv" / "pyvenv.cfg").touch()
+    (folder / "deeper").mkdir()
+    (folder / "deeper" / "other.scene").write_text(SCENE, encoding="utf-8")
+    assert "3 files: 0 errors" in robbdd("check", folder).stdout
+
+
 def test_an_error_is_shown_with_its_place_and_code(folder: Path) -> None:
     (folder / "main.bdd").write_text(MODEL.replace("<bench_scene>", "<bench-scene>"), encoding="utf-8")
     done = robbdd("check", "main.bdd", folder=folder)

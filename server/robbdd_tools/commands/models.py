@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -28,15 +29,28 @@ def load(paths: Iterable[Path]) -> tuple[Snapshot, list[str]]:
 
 
 def model_files(paths: Iterable[Path]) -> list[Path]:
-    """Replace each folder by the model files below it, in alphabetical order."""
+    """Replace each folder by the model files below it, in alphabetical order.
+
+    What is not the project's own is passed over: hidden folders, installed packages and virtual environments.
+    """
     files: dict[Path, None] = {}
     for path in paths:
         if path.is_dir():
-            found = sorted(file for file in path.rglob("*") if file.suffix[1:] in LANGUAGES and file.is_file())
-            files |= dict.fromkeys(found)
+            files |= dict.fromkeys(sorted(_own_files(path)))
         else:
             files.setdefault(path)
     return list(files)
+
+
+def _own_files(folder: Path) -> Iterator[Path]:
+    for parent, folders, names in os.walk(folder):
+        here = Path(parent)
+        folders[:] = [name for name in folders if not _is_foreign(here / name)]
+        yield from (here / name for name in names if Path(name).suffix[1:] in LANGUAGES)
+
+
+def _is_foreign(folder: Path) -> bool:
+    return folder.name.startswith(".") or folder.name == "node_modules" or (folder / "pyvenv.cfg").is_file()
 
 
 def not_a_model(paths: Iterable[Path]) -> str | None:
