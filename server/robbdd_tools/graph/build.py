@@ -15,6 +15,7 @@ from robbdd_tools.graph.clauses import ClauseWriter, add_time
 from robbdd_tools.graph.executions import add_execution
 from robbdd_tools.graph.foreign import graph_format, read_graph_file
 from robbdd_tools.graph.identities import SHARED, Identities, identities
+from robbdd_tools.graph.instances import add_instances
 from robbdd_tools.graph.prefixes import bind_prefixes, prefix_for
 from robbdd_tools.graph.reach import Reached, Uses, doubtful, reach
 from robbdd_tools.graph.scenes import (
@@ -113,6 +114,7 @@ def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
     for position, (story, frame) in enumerate(stories):
         frame.begin()
         add_story(frame, known, story, position)
+    add_instances(placed)
     for position, (root, frame) in enumerate(placed):
         frame.begin()
         add_execution(frame, root, position)

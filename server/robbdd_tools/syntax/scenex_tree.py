@@ -76,13 +76,38 @@ class Mapping(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Gripper(Node):
+    """``gripper { actuator: "…" open: … close: … pads: "…", "…" stroke: … m }``: two fingers that close."""
+
+    actuator: Text
+    open: Number
+    close: Number
+    pads: tuple[Text, ...]
+    stroke: Number
+    stroke_unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Arm(Node):
+    """``tool: "…" gripper { … } home: (…) rad velocity: (…) rad/s``: a robot arm that can pick."""
+
+    tool: Text
+    gripper: Gripper
+    home: Vector | None
+    home_unit: str | None
+    velocity: Vector | None
+    velocity_unit: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class Model(Node):
-    """``model name as mjcf { source mappings }``."""
+    """``model name as mjcf { source mappings arm }``."""
 
     name: Name
     kind: str
     source: ModelSource
     mappings: tuple[Mapping, ...]
+    arm: Arm | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,8 +114,10 @@ from robbdd_tools.syntax.scene_tree import (
     Text,
 )
 from robbdd_tools.syntax.scenex_tree import (
+    Arm,
     Camera,
     Distribution,
+    Gripper,
     Mapping,
     Model,
     Modelled,
@@ -156,6 +158,7 @@ DeclarationTree = (
 __all__ = [
     "Actuation",
     "After",
+    "Arm",
     "Assignment",
     "Axes",
     "Before",
@@ -189,6 +192,7 @@ __all__ = [
     "Frame",
     "FrameAxis",
     "Graph",
+    "Gripper",
     "GreaterThan",
     "GroundTruth",
     "Implementation",
