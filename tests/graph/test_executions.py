@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kit import MODEL, SCENE, fixture
-from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.model import Execution
 from robbdd_tools.graph.read import read_model
@@ -74,8 +74,9 @@ def test_executions_come_back_in_written_order(form: str) -> None:
     second, first = executions(form=form)
     variant = second.variant
     assert variant == T + "bench-to-tray"
-    assert second == Execution(second.iri, variant, own, POLICIES, 3, 42, 60.0)
-    assert first == Execution(first.iri, variant, own)
+    scene = SceneInstance("https://example.org/s/bench_mjc")
+    assert second == Execution(second.iri, variant, own, scene, POLICIES, 3, 42, 60.0)
+    assert first == Execution(first.iri, variant, own, scene)
     assert (second.iri, first.iri) == (X + "second", X + "first")
 
 

@@ -104,7 +104,7 @@ def test_each_execution_has_its_scenarios_its_seed_and_its_features(tmp_path: Pa
     alone = prepare(RunRequest(plain, "main.bdd", 7), tmp_path / "alone")
     assert [entry.seed for entry in first] == [entry.seed for entry in alone.scenarios]
     assert {entry.seed for entry in first}.isdisjoint({entry.seed for entry in second})
-    assert second[0].execution == ExecutionSpec(executions[1].iri, "t:again", other, (), 3, 20.0)
+    assert second[0].execution == ExecutionSpec(executions[1].iri, "t:again", other, None, (), 3, 20.0)
 
 
 def test_only_chosen_executions_are_run(tmp_path: Path) -> None:

@@ -36,3 +36,113 @@ class Implementation:
     kind: str
     name: str
     origin: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """A distribution: ``kind`` is ``uniform``, ``normal`` or ``uniform-rotation``.
+
+    ``low`` and ``high`` bound each number of a uniform one; ``mean`` and ``covariance`` (rows behind one another)
+    are those of a normal one.
+    """
+
+    iri: str
+    kind: str
+    low: tuple[float, ...] = ()
+    high: tuple[float, ...] = ()
+    mean: tuple[float, ...] = ()
+    covariance: tuple[float, ...] = ()
+    origin: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """What places a frame relative to another one, ``base`` (empty: the world).
+
+    A ``pose`` has a position (m) and a rotation (unit quaternion, w first), or a law that they are drawn from: what
+    is drawn for a position is in units of ``scale`` m. A ``fixed`` joint holds its frames together, a ``revolute``
+    one has them ``position`` apart and its ``axes`` (those of ``base`` and ``frame``) in one line, at its zero.
+    """
+
+    frame: str
+    base: str
+    kind: str
+    position: tuple[float, ...] = ()
+    rotation: tuple[float, ...] = ()
+    position_law: str = ""
+    rotation_law: str = ""
+    scale: float = 1.0
+    axes: tuple[str, ...] = ()
+    origin: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A body of a kinematic tree or graph with its frames in written order; the first is the body's own."""
+
+    iri: str
+    frames: tuple[str, ...]
+    origin: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ArmModel:
+    """What a model file does not say of an arm that is to pick: names are those in the file.
+
+    ``open`` and ``closed`` are values of the gripper's actuator, ``stroke`` (m) is the widest opening between the
+    ``pads``. ``home`` (rad) and ``velocity`` (rad/s), one number per joint, are empty where they are not written.
+    """
+
+    tool: str
+    actuator: str
+    open: float
+    closed: float
+    pads: tuple[str, ...]
+    stroke: float
+    home: tuple[float, ...] = ()
+    velocity: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ModelSource:
+    """Where a model comes from: ``kind`` is ``file``, ``ros``, ``python`` or ``catalog``.
+
+    ``name`` is the path, the code or the catalog name, ``package`` that of ROS; ``format`` is ``mjcf``, ``urdf`` or
+    ``usd``. ``bodies`` tells for bodies of the scene's trees what the file calls them.
+    """
+
+    iri: str
+    format: str
+    kind: str
+    name: str
+    package: str = ""
+    bodies: tuple[tuple[str, str], ...] = ()
+    trees: tuple[tuple[str, str], ...] = ()
+    arm: ArmModel | None = None
+    origin: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Realisation:
+    """The models of one element of a scene."""
+
+    element: str
+    models: tuple[ModelSource, ...]
+    origin: Origin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SceneInstance:
+    """An executable scene: models of the whole scene, those of its elements, and what places bodies.
+
+    ``anchor`` is the frame that stands for the world, empty where nothing says which.
+    """
+
+    iri: str
+    models: tuple[ModelSource, ...] = ()
+    elements: tuple[Realisation, ...] = ()
+    bodies: tuple[Body, ...] = ()
+    links: tuple[Link, ...] = ()
+    laws: tuple[Law, ...] = ()
+    anchor: str = ""
+    origin: Origin | None = None

@@ -35,14 +35,14 @@ def write_gherkin(options: GherkinOptions) -> int:
     from robbdd_tools.gherkin.files import clause_origins, whole_plan
     from robbdd_tools.gherkin.render import TemplateProblem, sheet
     from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.read import read_model
+    from robbdd_tools.graph.places import placed_model
     from robbdd_tools.graph.serialize import serialize
 
     snapshot = sound_model(options.path)
     if snapshot is None:
         return FAILED
     built = build_graph(snapshot, path_to_uri(options.path))
-    model = read_model(built.graph)
+    model = placed_model(built, snapshot)
     if not model.stories:
         return _failed(f"{options.path} has no user story with a scenario, so there is no feature to write")
     try:

@@ -117,14 +117,14 @@ def requests(models: Sequence[Loaded], choice: Choice) -> list[RunRequest] | str
 
 def _load(path: Path) -> Loaded | None:
     from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.read import read_model
+    from robbdd_tools.graph.places import placed_model
     from robbdd_tools.graph.serialize import serialize
 
     snapshot = sound_model(path)
     if snapshot is None:
         return None
     graph: Any = build_graph(snapshot, path_to_uri(path)).graph
-    return Loaded(path, read_model(graph), hashlib.sha256(serialize(graph, "nt").encode()).hexdigest())
+    return Loaded(path, placed_model(built, snapshot), hashlib.sha256(serialize(built.graph, "nt").encode()).hexdigest())
 
 
 def _unknown_names(models: Sequence[Loaded], names: Sequence[str]) -> str:

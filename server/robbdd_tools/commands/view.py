@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 def view(path: Path, name: str | None, seed: int | None, output: Path | None) -> int:
     """Write the picture of the first scenario, or of that called ``name``; returns the exit code."""
     from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.read import read_model
+    from robbdd_tools.graph.places import placed_model
 
     snapshot = sound_model(path)
     if snapshot is None:
         return FAILED
-    model = read_model(build_graph(snapshot, path_to_uri(path)).graph)
+    model = placed_model(build_graph(snapshot, path_to_uri(path)), snapshot)
     target = output or Path(f"{path.stem}.png")
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
         request = RunRequest(model, str(path)) if seed is None else RunRequest(model, str(path), seed)

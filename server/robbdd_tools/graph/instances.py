@@ -26,6 +26,7 @@ def add_instances(placed: Placed) -> None:
     trees = Trees()
     templates = {root.name.text: root for root, _ in placed if isinstance(root, tree.KinematicTree)}
     for root, frame in placed:
+        frame.begin()
         match root:
             case tree.KinematicTree():
                 node = None if root.namespace is None else frame.claimed(root.name.text, root.name)
@@ -42,6 +43,7 @@ def add_instances(placed: Placed) -> None:
             case _:
                 pass
     for root, frame in placed:
+        frame.begin()
         _add(frame, trees, root)
 
 

@@ -29,9 +29,7 @@ MOST_STEPS = 50
 class Trees:
     """All trees and graphs by qualified name: their node, ``None`` for a template, and their declaration."""
 
-    owners: dict[str, tuple[URIRef | None, Owner]] = field(
-        default_factory=dict[str, tuple["URIRef | None", Owner]]
-    )
+    owners: dict[str, tuple[URIRef | None, Owner]] = field(default_factory=dict[str, tuple["URIRef | None", Owner]])
 
     def node(self, path: str, scopes: tuple[str, ...] = ()) -> str | None:
         """Return the IRI of what a qualified name stands for, looked up in the scopes first; ``None`` for nothing."""
@@ -192,7 +190,11 @@ class TreeWriter:
                 kind, name = "rbw:RevoluteJoint", joint.name.text
                 ends = {"parent": joint.parent_frame.frame, "child": joint.child_frame.frame}
             case tree.SerialChain():
-                kind, name, ends = "rbw:SerialChain", f"chain-{number}", {"chain-root": joint.root, "chain-tip": joint.tip}
+                kind, name, ends = (
+                    "rbw:SerialChain",
+                    f"chain-{number}",
+                    {"chain-root": joint.root, "chain-tip": joint.tip},
+                )
             case _:
                 return None
         node = sink.iri(f"{self.node}.{name}")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.time import TimeConstraint
 
@@ -190,14 +190,15 @@ class Story:
 class Execution:
     """How a scenario variant is executed.
 
-    ``implementation`` executes its behaviours, ``policies`` judge clauses of it in place of the predicates.
-    ``repeat`` is how often, ``seed`` decides everything random (``None``: the run's), ``timeout`` is in seconds of
-    simulated time.
+    ``implementation`` executes its behaviours in ``scene``, ``policies`` judge clauses of it in place of the
+    predicates. ``repeat`` is how often, ``seed`` decides everything random (``None``: the run's), ``timeout`` is in
+    seconds of simulated time.
     """
 
     iri: Iri
     variant: Iri
     implementation: Implementation
+    scene: SceneInstance | None = None
     policies: tuple[Policy, ...] = ()
     repeat: int = 1
     seed: int | None = None

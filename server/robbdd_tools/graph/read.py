@@ -10,6 +10,7 @@ from robbdd_tools.graph.model import AcceptanceModel, Clause, Iri, SceneModel, S
 from robbdd_tools.graph.prefixes import user_prefixes
 from robbdd_tools.graph.read_clauses import ClauseReader, used_names
 from robbdd_tools.graph.read_executions import read_executions
+from robbdd_tools.graph.read_instances import InstanceReader, Places
 from robbdd_tools.graph.read_variation import VariationReader
 from robbdd_tools.graph.records import Incomplete, Records
 from robbdd_tools.graph.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
@@ -18,10 +19,15 @@ if TYPE_CHECKING:
     from rdflib import Graph
 
 
-def read_model(graph: Graph) -> AcceptanceModel:
+def _nowhere(_: str) -> None:
+    """Say that it is not known where something is written."""
+
+
+def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
     """Return the acceptance criteria that a graph states, in written order where the graph tells it.
 
-    A variant that lacks something (a template, a value of a variable, a known predicate …) is left out.
+    ``places`` tells where nodes are written. A variant that lacks something (a template, a value of a variable, a
+    known predicate …) is left out.
     """
     records = Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
@@ -29,7 +35,8 @@ def read_model(graph: Graph) -> AcceptanceModel:
     stories = story_order(records)
     reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
     every = tuple(reader.story(node) for node in stories)
-    return AcceptanceModel(every, kinds, sets, user_prefixes(graph), read_executions(records))
+    executions = read_executions(records, InstanceReader(records, sets, places), places)
+    return AcceptanceModel(every, kinds, sets, user_prefixes(graph), executions)
 
 
 def incomplete_variants(graph: Graph) -> dict[Iri, str]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.graph.model import Execution, Iri
+from robbdd_tools.graph.read_instances import InstanceReader, Places, number, python_name
 from robbdd_tools.graph.records import Incomplete, Records
 from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
 
@@ -21,38 +23,28 @@ _PROVIDERS = {
 }
 
 
-def read_executions(records: Records) -> tuple[Execution, ...]:
+def read_executions(records: Records, instances: InstanceReader, places: Places) -> tuple[Execution, ...]:
     """Return the executions that a graph states, in written order where it tells it."""
-    found = [execution for node in records.instances("bdd:ScenarioExecution") for execution in _complete(records, node)]
+    nodes = records.instances("bdd:ScenarioExecution")
+    found = [execution for node in nodes for execution in _complete(records, node, instances, places)]
     return tuple(sorted(found, key=lambda one: (_position(records, one.iri), one.iri)))
 
 
-def python_name(records: Records, node: str) -> str:
-    """Return ``module:attribute`` of a node that is an attribute of a Python module; raises ``Incomplete``."""
-    module, attribute = records.text(node, "py:module-name"), records.text(node, "py:attribute-name")
-    if not (module and attribute):
-        raise Incomplete(f"{node} names no Python code")
-    return f"{module}:{attribute}"
-
-
-def number(records: Records, node: str, term: str) -> float | None:
-    """Return a property as a number, ``None`` when it is missing or none."""
-    value = records.literal(node, term)
-    return value if isinstance(value, int | float) else None
-
-
-def _complete(records: Records, node: Iri) -> Iterator[Execution]:
+def _complete(records: Records, node: Iri, instances: InstanceReader, places: Places) -> Iterator[Execution]:
     try:
         variant = records.one(node, "bdd:of-variant")
-        implementation = _implementation(records, records.one(node, "bdd:has-behaviour-implementation"))
+        named = records.one(node, "bdd:has-behaviour-implementation")
+        implementation = replace(_implementation(records, named), origin=places(named))
     except Incomplete:
         return
+    scene = next(iter(records.iris(records.all(node, "rbw:scene-instance"))), None)
     policies = records.iris(records.ordered(node, "obs:has-policy", "rbw:policy-list"))
     repeat, seed = number(records, node, "rbw:repeat"), number(records, node, "rbw:seed")
     yield Execution(
         node,
         variant,
         implementation,
+        None if scene is None else instances.instance(scene),
         tuple(policy for iri in policies for policy in _policy(records, iri)),
         1 if repeat is None else max(1, int(repeat)),
         None if seed is None else int(seed),

@@ -46,7 +46,29 @@ def serialize(graph: Graph, format: str) -> str:
         return json.dumps(expanded(ordered), indent=2, ensure_ascii=False) + "\n"
     if format == "nt":
         return "".join(sorted(ordered.serialize(format="nt").splitlines(keepends=True)))
-    return ordered.serialize(format=FORMATS[format]).strip("\n") + "\n"
+    text = _turtle(ordered) if format == "ttl" else ordered.serialize(format=FORMATS[format])
+    return text.strip("\n") + "\n"
+
+
+def _turtle(graph: Graph) -> str:
+    """Return a graph as Turtle with every digit of its numbers: rdflib writes six."""
+    from io import BytesIO
+
+    from rdflib import Literal
+    from rdflib.namespace import XSD
+    from rdflib.plugins.serializers.turtle import TurtleSerializer
+
+    class Exact(TurtleSerializer):
+        def label(self, node: Node, position: int) -> str:
+            short: str = super().label(node, position)
+            if isinstance(node, Literal) and node.datatype == XSD.double and isinstance(node.value, float):
+                exact = repr(node.value)
+                return short if float(short) == node.value else exact if "e" in exact else f"{exact}e0"
+            return short
+
+    stream = BytesIO()
+    Exact(graph).serialize(stream, encoding="utf-8")
+    return stream.getvalue().decode()
 
 
 def _by_story(nodes: list[Json], context: Json) -> list[Json]:

@@ -189,13 +189,13 @@ def _plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
     """Return what to write of a file without errors; raises ``ModelError``."""
     from robbdd_tools.gherkin.files import clause_origins, whole_plan
     from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.read import read_model
+    from robbdd_tools.graph.places import placed_model
 
     errors = [found for found in all_diagnostics(snapshot, uri) if found.severity is Severity.ERROR]
     if errors:
         raise ModelError(f"the model has errors, the first: {errors[0].message}")
     built = build_graph(snapshot, uri)
-    model = read_model(built.graph)
+    model = placed_model(built, snapshot)
     if not any(story.variants for story in model.stories):
         raise ModelError("the model has no scenario to run")
     return whole_plan(model, clause_origins(built, snapshot, model))

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from robbdd_tools.base.plain import from_plain
-from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.policy import Policy
 
 MANIFEST = "manifest.json"
@@ -49,13 +49,15 @@ class SceneSpec:
 class ExecutionSpec:
     """How scenarios are executed, as a ``.bddx`` says: ``name`` is the execution's CURIE.
 
-    ``implementation`` executes the behaviours; ``policies`` judge the clauses that they name (by IRI; what they
-    observe are CURIEs). ``repeat`` is how often, ``timeout`` is in seconds of simulated time.
+    ``implementation`` executes the behaviours in ``scene`` (elements by CURIE); ``policies`` judge the clauses that
+    they name (by IRI; what they observe are CURIEs). ``repeat`` is how often, ``timeout`` is in seconds of simulated
+    time.
     """
 
     iri: str
     name: str
     implementation: Implementation
+    scene: SceneInstance | None = None
     policies: tuple[Policy, ...] = ()
     repeat: int = 1
     timeout: float | None = None

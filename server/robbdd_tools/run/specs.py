@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.feature import ScenarioText
 from robbdd_tools.gherkin.tables import elements_of
@@ -56,10 +57,15 @@ class SpecWriter:
             execution.iri,
             self._curie(execution.iri),
             execution.implementation,
+            None if execution.scene is None else self._instance(execution.scene),
             tuple(self._policy(policy) for policy in execution.policies),
             execution.repeat,
             execution.timeout,
         )
+
+    def _instance(self, scene: SceneInstance) -> SceneInstance:
+        elements = tuple(replace(one, element=self._curie(one.element)) for one in scene.elements)
+        return replace(scene, elements=elements)
 
     def _policy(self, policy: Policy) -> Policy:
         return replace(policy, observations=tuple(self._observation(one) for one in policy.observations))

@@ -1,0 +1,29 @@
+"""Acceptance criteria of a file, with the places where what is executed is written."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.catalog.executable import Origin
+from robbdd_tools.graph.read import read_model
+
+if TYPE_CHECKING:
+    from robbdd_tools.graph.built import BuiltGraph
+    from robbdd_tools.graph.model import AcceptanceModel
+    from robbdd_tools.names.project import Snapshot
+
+
+def placed_model(built: BuiltGraph, snapshot: Snapshot) -> AcceptanceModel:
+    """Return the acceptance criteria of a graph that was built from a snapshot."""
+
+    def place(node: str) -> Origin | None:
+        location = built.sources.node(node)
+        analysis = None if location is None else snapshot.file(location.uri)
+        path = None if location is None else uri_to_path(location.uri)
+        if location is None or analysis is None or path is None:
+            return None
+        start = analysis.document.position(location.span.start)
+        return Origin(str(path), start.line + 1, start.column + 1)
+
+    return read_model(built.graph, place)
