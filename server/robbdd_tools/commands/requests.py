@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands.models import model_files, sound_model
@@ -123,8 +123,9 @@ def _load(path: Path) -> Loaded | None:
     snapshot = sound_model(path)
     if snapshot is None:
         return None
-    graph: Any = build_graph(snapshot, path_to_uri(path)).graph
-    return Loaded(path, placed_model(built, snapshot), hashlib.sha256(serialize(built.graph, "nt").encode()).hexdigest())
+    built = build_graph(snapshot, path_to_uri(path))
+    text = serialize(built.graph, "nt")
+    return Loaded(path, placed_model(built, snapshot), hashlib.sha256(text.encode()).hexdigest())
 
 
 def _unknown_names(models: Sequence[Loaded], names: Sequence[str]) -> str:
