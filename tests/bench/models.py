@@ -48,6 +48,19 @@ User Story (ns=t) fetching{n} {{
 """
 
 
+STORY = BLOCK.index("User Story")
+SCENARIO = BLOCK[BLOCK.index("        Scenario bench") : BLOCK.rindex("}}")]
+
+
+def long_story(lines: int) -> str:
+    """Return a sound model with a single user story that alone has about that many lines."""
+    scenario = SCENARIO.replace("tray{n}", "tray{n}-{number}")
+    count = lines // scenario.count("\n")
+    scenarios = "".join(scenario.format(n=1, number=number) for number in range(count))
+    template, story = BLOCK[:STORY].format(n=1), BLOCK[STORY:].format(n=1)
+    return HEAD + template + story.replace(SCENARIO.format(n=1), scenarios)
+
+
 def model(lines: int) -> str:
     """Return a sound model of at least ``lines`` lines, less than one block longer."""
     blocks: list[str] = [HEAD]

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.bench.models import long_story
 
 from kit import EXAMPLES, MODEL, SCENE
 from robbdd_tools.base.files import path_to_uri
@@ -39,6 +40,9 @@ PIECES = (
     "ns t = 'urn:x:'\n",
     "obj set (ns=env) parts { object bolt }\n",
     "before <pick-start>",
+    "\n        Scenario again {",
+    "Scenario ",
+    "}\n}\n",
     "<part>",
     "é🤖",
     "\r\n",
@@ -57,7 +61,7 @@ class Edit:
 
 def _texts() -> list[dict[str, str]]:
     """Pairs of model and scene that users would have open together: ours, and foreign ones where there are any."""
-    pairs = [{"main.bdd": MODEL, "lab.scene": SCENE}]
+    pairs = [{"main.bdd": MODEL, "lab.scene": SCENE}, {"main.bdd": long_story(120), "lab.scene": SCENE}]
     folder = EXAMPLES / "pickplace"
     pairs.append({path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.[bs]*"))})
     corpus = os.environ.get("ROBBDD_CORPUS")

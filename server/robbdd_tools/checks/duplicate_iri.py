@@ -61,7 +61,7 @@ def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
                 yield definition
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=4)
 def _taken(files: tuple[FileIndex, ...]) -> Taken:
     return _taken_by(files, files)
 

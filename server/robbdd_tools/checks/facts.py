@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from robbdd_tools.names.uses import KEPT_DECLARATIONS, Bound, Clauses, clauses_of
+from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.names.uses import Bound, Clauses, clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -56,7 +56,7 @@ class Facts:
     unused_bounds: tuple[Bound, ...]
 
 
-@lru_cache(maxsize=KEPT_DECLARATIONS)
+@kept_with_key
 def facts_of(declaration: Declaration) -> Facts:
     """Return the facts of a declaration."""
     root = declaration.tree

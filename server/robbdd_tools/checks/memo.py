@@ -106,7 +106,7 @@ def _renamed(before: NameTable, after: NameTable) -> set[str]:
     if before is after:
         return set()
     paths = changed_paths(before, after)
-    paths.update(path for table in (before, after) for path, _ in table.repeated())
+    paths.update(before.repeated, after.repeated)
     return {path.partition(".")[0] for path in paths}
 
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
 from robbdd_tools.base.document import Span
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.namespaces import only_namespace
 from robbdd_tools.syntax import tree
@@ -45,8 +45,20 @@ def published_form(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
             yield Diagnostic(uri, place, Severity.HINT, "published-form", message, fixes=(fix,))
 
 
-@lru_cache(maxsize=20_000)
+@kept_with_key
+def _known_changes(_: Declaration) -> dict[str | None, tuple[Change, ...]]:
+    """Return the changes by the namespace of the file."""
+    return {}
+
+
 def _changes(declaration: Declaration, namespace: str | None) -> tuple[Change, ...]:
+    known = _known_changes(declaration)
+    if namespace not in known:
+        known[namespace] = _found_changes(declaration, namespace)
+    return known[namespace]
+
+
+def _found_changes(declaration: Declaration, namespace: str | None) -> tuple[Change, ...]:
     rewriter = _Rewriter(declaration.text, "" if namespace is None else f"(ns={namespace}) ")
     return tuple(_merged(rewriter.declaration(declaration.tree)))
 

@@ -131,7 +131,7 @@ def _other_role(
     """Yield the keyword that fits what a link names: ``ws set <places>`` instead of ``obj set <places>``."""
     root = placed.declaration.tree
     nodes = walk(root) if root is not None else ()
-    link = next((node for node in nodes if isinstance(node, tree.Link) and node.reference is reference.ref), None)
+    link = next((node for node in nodes if isinstance(node, tree.Link) and node.reference == reference.ref), None)
     scope = snapshot.scope(file.document.uri)
     found = [declared for path in candidates(reference) for _, declared in scope.find(path)]
     if link is None or root is None or not found:

@@ -9,13 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
-from robbdd_tools.names.uses import KEPT_DECLARATIONS
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.chunk import grammar_text
 from robbdd_tools.syntax.symbols import walk
@@ -121,7 +121,7 @@ def _kind(snapshot: Snapshot, file: FileAnalysis, path: str) -> str | None:
     return next((declared.symbol.kind for _, declared in snapshot.scope(file.document.uri).find(path)), None)
 
 
-@lru_cache(maxsize=KEPT_DECLARATIONS)
+@kept_with_key
 def _own(language: str, declaration: Declaration) -> tuple[Token, ...]:
     """Return what a declaration tells by itself; spans count from its start."""
     concepts = dict(_concepts(declaration))

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.graph.reach import Key, Reached
 from robbdd_tools.graph.source_map import Location
 from robbdd_tools.names.scope import local_name
-from robbdd_tools.names.uses import KEPT_DECLARATIONS
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -101,13 +100,13 @@ def _sorted_out(found: Identities, repeated: Mapping[str, list[Declarer]]) -> Id
     return found
 
 
-@lru_cache(maxsize=KEPT_DECLARATIONS)
+@kept_with_key
 def namespaces_of(declaration: Declaration) -> tuple[str, ...]:
     """Return the names of the namespaces that a declaration makes nodes in."""
     return tuple(dict.fromkeys(named.namespace for named in _named(declaration)))
 
 
-@lru_cache(maxsize=KEPT_DECLARATIONS)
+@kept_with_key
 def _named(declaration: Declaration) -> tuple[_Named, ...]:
     words = dict(_behaviours(declaration.tree.body)) if isinstance(declaration.tree, tree.Template) else {}
     return tuple(

@@ -5,12 +5,11 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.graph.source_map import Location
-from robbdd_tools.names.uses import KEPT_DECLARATIONS
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -128,6 +127,6 @@ def doubtful(uses: Uses, reached: Sequence[Reached], left_out: Iterable[Location
     return tuple(entry for entry in reached if entry.key in found | reaching)
 
 
-@lru_cache(maxsize=KEPT_DECLARATIONS)
+@kept_with_key
 def _distinct_references(declaration: Declaration) -> int:
     return len({reference.ref for reference in declaration.references})

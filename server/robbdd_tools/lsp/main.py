@@ -20,8 +20,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     _log_to(options.log_file)
 
+    from robbdd_tools.base.memory import collect_rarely
     from robbdd_tools.lsp.handlers import create_server
 
+    collect_rarely()
     create_server().start_io()
     return 0
 

@@ -10,7 +10,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity, sort_k
 from robbdd_tools.names.analysis import Definition, FileAnalysis, ImportLink, PlacedDeclaration
 from robbdd_tools.names.namespaces import without_namespace
 from robbdd_tools.names.problems import repeated, unresolved
-from robbdd_tools.names.resolve import Resolution, Targets, resolve_file
+from robbdd_tools.names.resolve import Resolution, Target, Targets, resolve_file
 
 if TYPE_CHECKING:
     from robbdd_tools.names.index import FileIndex
@@ -56,8 +56,9 @@ def analyse(
     index = scope.files[0]
     known = () if before is None else before.resolutions
     resolutions = resolve_file(scope, before and before.scope, known)
+    made: dict[Target, Definition] = {}
     placed = tuple(
-        PlacedDeclaration(entry.declaration, entry.offset, Targets(scope, resolution.targets))
+        PlacedDeclaration(entry.declaration, entry.offset, Targets(scope, resolution.targets, made))
         for entry, resolution in zip(index.declarations, resolutions, strict=True)
     )
     diagnostics = [*syntax_errors(index), *repeated(scope), *without_namespace(index), *broken]

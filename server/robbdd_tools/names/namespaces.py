@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
 from robbdd_tools.base.document import Span
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE, SymbolKind
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def only_namespace(names: NameTable) -> str | None:
     return declared[0] if len(declared) == 1 else None
 
 
-@lru_cache(maxsize=256)
+@kept_with_key
 def _namespaces(names: NameTable) -> tuple[str, ...]:
     return tuple(path for path, kinds in names.kinds.items() if SymbolKind.NAMESPACE in kinds)
 

@@ -34,7 +34,7 @@ def repeated(scope: Scope) -> Iterator[Diagnostic]:
     """Yield a diagnostic for each name of the scope's own file that is declared again."""
     file = scope.files[0]
     uri = file.document.uri
-    for path, _ in file.names.repeated():
+    for path in file.names.repeated:
         first, *others = file.declared(path)
         for other in others:
             if _same_variable(first, other):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.names.analysis import Definition
@@ -13,8 +14,11 @@ from robbdd_tools.names.through import ROLES, paths_through
 
 if TYPE_CHECKING:
     from robbdd_tools.names.scope import Scope
+    from robbdd_tools.names.table import NameTable
     from robbdd_tools.syntax.declaration import Declaration, Reference
     from robbdd_tools.syntax.tree import Ref
+
+KEPT_TABLES = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,14 +53,24 @@ class Resolution:
 
 
 class Targets(Mapping["Ref", Definition]):
-    """The definitions that the references of one declaration lead to, made when they are asked for."""
+    """The definitions that the references of one declaration lead to, made when they are asked for.
 
-    def __init__(self, scope: Scope, targets: Mapping[Ref, Target]) -> None:
+    ``made`` keeps those of all declarations of a file: many refer to the same few names.
+    """
+
+    __slots__ = ("_made", "_scope", "_targets")
+
+    def __init__(self, scope: Scope, targets: Mapping[Ref, Target], made: dict[Target, Definition]) -> None:
         self._scope = scope
         self._targets = targets
+        self._made = made
 
     def __getitem__(self, ref: Ref) -> Definition:
-        return define(self._scope, self._targets[ref])
+        target = self._targets[ref]
+        found = self._made.get(target)
+        if found is None:
+            found = self._made[target] = define(self._scope, target)
+        return found
 
     def __contains__(self, ref: object) -> bool:
         return ref in self._targets
@@ -103,33 +117,48 @@ def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
     unresolved: list[Unresolved] = []
     looked_up: set[str] = set()
     through_others = False
+    tables = scope.tables
+    known = _known_lookups(tables)
     for reference in declaration.references:
-        paths = candidates(reference)
+        ref = reference.ref
+        key = (ref.role, ref.path, reference.scopes)
+        if key not in known:
+            paths = candidates(reference)
+            known[key] = (paths, *_lookup(tables, ref.role, paths))
+        paths, found, other = known[key]
         looked_up.update(paths)
-        found, other = _lookup(scope, reference, paths)
-        if found is None and reference.ref.role in ROLES:
+        if found is None and ref.role in ROLES:
             through_others = True
-            found, other = _lookup(scope, reference, [*paths, *paths_through(scope, paths)])
+            found, other = _lookup(tables, ref.role, (*paths, *paths_through(scope, paths)))
         if found is not None:
-            targets[reference.ref] = found
+            targets[ref] = found
         else:
             unresolved.append(Unresolved(reference, other))
     return Resolution(declaration, targets, tuple(unresolved), frozenset(looked_up), through_others)
 
 
-def candidates(reference: Reference) -> list[str]:
+def candidates(reference: Reference) -> tuple[str, ...]:
     """Return the qualified names that a reference may mean, innermost scope first."""
     path = reference.ref.path
-    return [*(f"{scope}.{path}" for scope in reference.scopes), path]
+    return (*[f"{scope}.{path}" for scope in reference.scopes], path)
 
 
-def _lookup(scope: Scope, reference: Reference, paths: list[str]) -> tuple[Target | None, Target | None]:
+_Lookups = dict[tuple[str, str, tuple[str, ...]], tuple[tuple[str, ...], Target | None, Target | None]]
+
+
+@lru_cache(maxsize=KEPT_TABLES)
+def _known_lookups(_: tuple[NameTable, ...]) -> _Lookups:
+    """Return what was looked up in some tables, by role, path and scopes; it holds as long as no name changes."""
+    return {}
+
+
+def _lookup(tables: tuple[NameTable, ...], role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
     """Return the nearest declaration of a fitting kind, else the nearest of another kind."""
-    kinds = ROLE_KINDS[reference.ref.role]
+    kinds = ROLE_KINDS[role]
     other: Target | None = None
     for path in paths:
-        for position, file in enumerate(scope.files):
-            for number, kind in enumerate(file.names.kinds.get(path, ())):
+        for position, table in enumerate(tables):
+            for number, kind in enumerate(table.kinds.get(path, ())):
                 if kind in kinds:
                     return Target(position, path, number), None
                 other = other or Target(position, path, number)

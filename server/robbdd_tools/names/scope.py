@@ -15,7 +15,7 @@ from robbdd_tools.syntax.tree import Namespace
 
 if TYPE_CHECKING:
     from robbdd_tools.names.index import Declared, FileIndex
-    from robbdd_tools.names.table import NameTable
+    from robbdd_tools.names.table import Entry, NameTable
     from robbdd_tools.syntax.declaration import Symbol
 
 
@@ -53,14 +53,17 @@ class Scope:
 
     def visible(self, kinds: Iterable[SymbolKind], scopes: tuple[str, ...]) -> dict[str, tuple[FileIndex, Declared]]:
         """Return every name of some kinds as it would be written at a place, nearest declaration first."""
-        wanted = set(kinds)
+        wanted = dict.fromkeys(kinds)
         names: dict[str, tuple[FileIndex, Declared]] = {}
         for position, file in enumerate(self.files):
-            for path, entries in file.names.entries.items():
-                found = next((entry for entry in entries if entry.kind in wanted), None)
-                if found is not None:
-                    written = shortened(path, scopes) if position == 0 else path
-                    names.setdefault(written, (file, file.at(found)))
+            found: dict[str, Entry] = {}
+            for kind in wanted:
+                for path, entry in file.names.of_kind.get(kind, {}).items():
+                    if path not in found or entry.place < found[path].place:
+                        found[path] = entry
+            for path, entry in found.items():
+                written = shortened(path, scopes) if position == 0 else path
+                names.setdefault(written, (file, file.at(entry)))
         for written, file, declared in instance_parts(self, wanted):
             names.setdefault(written, (file, declared))
         return names

@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import SymbolKind
 
 MOST = 3
+KEPT_TABLES = 4
 LEAST_ALIKE = 60.0
 """Per cent of alikeness (normalised insertions and deletions) below which a name is no suggestion."""
 
 
-@lru_cache(maxsize=1024)
 def closest(
     tables: tuple[NameTable, ...], kinds: tuple[SymbolKind, ...], scopes: tuple[str, ...], path: str
 ) -> tuple[tuple[str, ...], bool]:
@@ -24,6 +24,24 @@ def closest(
 
     The answer depends on the tables only (compared by identity), so it is kept while no name changes.
     """
+    kept = _known_answers(tables)
+    key = (kinds, scopes, path)
+    if key not in kept:
+        kept[key] = _closest(tables, *key)
+    return kept[key]
+
+
+_Answer = tuple[tuple[str, ...], bool]
+
+
+@lru_cache(maxsize=KEPT_TABLES)
+def _known_answers(_: tuple[NameTable, ...]) -> dict[tuple[tuple[SymbolKind, ...], tuple[str, ...], str], _Answer]:
+    return {}
+
+
+def _closest(
+    tables: tuple[NameTable, ...], kinds: tuple[SymbolKind, ...], scopes: tuple[str, ...], path: str
+) -> _Answer:
     from rapidfuzz import process
     from rapidfuzz.fuzz import ratio
 

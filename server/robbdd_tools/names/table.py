@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ class Entry:
         return (self.declaration, self.symbol)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False)
 class NameTable:
     """The names of one file, each with all its declarations in the order of the text.
 
@@ -34,9 +35,19 @@ class NameTable:
     entries: Mapping[str, tuple[Entry, ...]]
     kinds: Mapping[str, tuple[SymbolKind, ...]]
 
-    def repeated(self) -> Iterator[tuple[str, tuple[Entry, ...]]]:
-        """Yield each path that is declared more than once."""
-        return ((path, entries) for path, entries in self.entries.items() if len(entries) > 1)
+    @cached_property
+    def of_kind(self) -> Mapping[SymbolKind, Mapping[str, Entry]]:
+        """The names of each kind with the first declaration of that kind."""
+        found: dict[SymbolKind, dict[str, Entry]] = {}
+        for path, entries in self.entries.items():
+            for entry in entries:
+                found.setdefault(entry.kind, {}).setdefault(path, entry)
+        return found
+
+    @cached_property
+    def repeated(self) -> tuple[str, ...]:
+        """The paths that are declared more than once."""
+        return tuple(path for path, entries in self.entries.items() if len(entries) > 1)
 
 
 def make_table(declarations: Sequence[Declaration]) -> NameTable:

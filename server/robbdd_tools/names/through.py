@@ -8,9 +8,9 @@ user story around it. All of these have their declaration under another path, wh
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -71,7 +71,7 @@ def _rewritten(scope: Scope, path: str) -> Iterator[str]:
                 yield target + rest
 
 
-@lru_cache(maxsize=64)
+@kept_with_key
 def _targets(file: FileIndex) -> Mapping[str, tuple[str, ...]]:
     """Map each name of a file that stands for others to these."""
     found: dict[str, tuple[str, ...]] = {}

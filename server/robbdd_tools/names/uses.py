@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache, lru_cache
+from functools import cache
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax import tree
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 Kinds = frozenset[str]
 ELEMENTS: Kinds = frozenset({"object", "workspace", "agent"})
 ANYTHING: Kinds = ELEMENTS | {"number", "string"}
-KEPT_DECLARATIONS = 20_000
 _SLOTS: Mapping[Kind, Kinds] = {
     Kind.OBJECT: frozenset({"object"}),
     Kind.OBJECT_SET: frozenset({"object"}),
@@ -63,7 +63,7 @@ class Clauses:
     once: tuple[tree.During, ...]
 
 
-@lru_cache(maxsize=KEPT_DECLARATIONS)
+@kept_with_key
 def clauses_of(declaration: Declaration) -> tuple[Clauses, ...]:
     """Return the clauses of a template, or of each variant of a story; nothing for any other declaration."""
     match declaration.tree:

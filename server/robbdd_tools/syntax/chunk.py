@@ -45,8 +45,8 @@ class Parsed:
 
 
 def parse_chunk(language: str, text: str) -> Parsed | Rejected:
-    """Parse one chunk of a file whose name ends in ``language``."""
-    parser = _parser(grammar_name(language))
+    """Parse one chunk of a file whose name ends in ``language``; a ``scenario`` is parsed without its story."""
+    parser = _parser(language)
     if parser is None:
         from robbdd_tools.syntax.textx import parse_with_textx
 
@@ -63,8 +63,10 @@ def _expectation(state: State) -> Expectation:
     return Expectation(literals, frozenset(name for kind, name in state.expected if kind == "rule"))
 
 
-_GRAMMARS = {"ktree": "scenex"}
-"""File kinds that share the grammar of another one."""
+_GRAMMARS = {"ktree": "scenex", "scenario": "bdd"}
+"""File kinds, and parts of declarations, that share the grammar of another one."""
+ROOTS = {"scenario": "ScenarioChunk"}
+"""The rules of parts of declarations; a file kind has the first of its grammar."""
 
 
 @cache
@@ -73,7 +75,7 @@ def grammar_text(language: str) -> str:
     grammars = [
         data_file("grammar", f"{name}.tx").read_text(encoding="utf-8") for name in (grammar_name(language), "base")
     ]
-    if language == "bdd":
+    if grammar_name(language) == "bdd":
         grammars.append(phrase_rules(load_catalog()))
     return "\n".join(grammars)
 
@@ -84,8 +86,8 @@ def grammar_name(language: str) -> str:
 
 
 @cache
-def _parser(grammar: str) -> Compiled | None:
+def _parser(language: str) -> Compiled | None:
     try:
-        return Compiled(read_grammar(grammar_text(grammar)))
+        return Compiled(read_grammar(grammar_text(language)), ROOTS.get(language))
     except GrammarError:
         return None

@@ -102,7 +102,7 @@ class SyntaxFault:
     fix: SyntaxFix | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Declaration:
     """One chunk: its tree (``None`` when broken), names, references and faults; a function of its text only.
 

@@ -2,126 +2,78 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import lru_cache
+from collections import OrderedDict
+from weakref import WeakValueDictionary
 
-from robbdd_tools.base.document import Span
-from robbdd_tools.syntax.chunk import Expectation, Parsed, Rejected, parse_chunk
-from robbdd_tools.syntax.convert import convert
-from robbdd_tools.syntax.declaration import Declaration, SyntaxFault, SyntaxFix
-from robbdd_tools.syntax.recover import HOLE, Fault, recover
-from robbdd_tools.syntax.salvage import salvage
+from robbdd_tools.syntax.declaration import Declaration
+from robbdd_tools.syntax.faults import trailing_fault
+from robbdd_tools.syntax.piece import read_piece
+from robbdd_tools.syntax.salvage import salvage, with_lost
+from robbdd_tools.syntax.story import cut_story, quotes_scenario, read_story
 from robbdd_tools.syntax.symbols import references, symbols
 
-CACHED_CHUNKS = 20_000
-LONGEST_WORD = 40
-"""Letters of the user's text that a message repeats."""
+KEPT_LETTERS = 500_000
+"""Letters of text whose declarations are kept without being in use; a declaration takes about 100 bytes for each."""
 LANGUAGES = ("bdd", "scene", "scenex", "ktree", "bddx")
 
-_RULE_WORDS = {
-    "NameText": "a name",
-    "TextLiteral": "a string in quotes",
-    "NumberLiteral": "a number",
-    "TableRule": "the rule '|---|'",
-    "NamespacePath": "the name of a namespace",
-    "AnySetPath": "the name of a set",
-    "ModuleNameText": "the name of a module",
-    "TreePath": "the name of a kinematic tree",
-    "TreeTemplatePath": "the name of a kinematic tree template",
-    "TreeNodePath": "the name of a node of a behaviour tree",
-    "ImplementationPath": "the name of a behaviour implementation",
-    "ProviderPath": "the name of an observation provider",
-    "PolicyPath": "the name of an observation policy",
-}
-_STARTS = frozenset({"import", "ns"})
+
+class _Kept:
+    """Declarations by language and text: all that are in use, and the latest of those that are not (for undoing)."""
+
+    def __init__(self) -> None:
+        self._in_use: WeakValueDictionary[tuple[str, str], Declaration] = WeakValueDictionary()
+        self._latest: OrderedDict[tuple[str, str], Declaration] = OrderedDict()
+        self._letters = 0
+
+    def get(self, key: tuple[str, str]) -> Declaration | None:
+        return self._in_use.get(key)
+
+    def put(self, key: tuple[str, str], declaration: Declaration) -> None:
+        self._in_use[key] = self._latest[key] = declaration
+        self._letters += len(declaration.text)
+        while self._letters > KEPT_LETTERS and len(self._latest) > 1:
+            _, oldest = self._latest.popitem(last=False)
+            self._letters -= len(oldest.text)
+
+    def clear(self) -> None:
+        self.__init__()
 
 
-@lru_cache(maxsize=CACHED_CHUNKS)
+_kept = _Kept()
+
+
 def parse_declaration(language: str, text: str) -> Declaration:
     """Parse one chunk. User text never raises: a broken chunk comes back with its faults and salvaged names."""
-    parsed = parse_chunk(language, text)
-    if isinstance(parsed, Parsed):
-        return _declaration(text, text, parsed, ())
-    recovered = recover(language, text, parsed)
-    faults = tuple(_fault(text, fault) for fault in recovered.faults)
-    if recovered.parsed is None:
-        return Declaration(text, None, salvage(text), (), faults)
-    return _declaration(text, recovered.text, recovered.parsed, faults)
+    key = (language, text)
+    found = _kept.get(key)
+    if found is None:
+        found = _parsed(language, text)
+        _kept.put(key, found)
+    return found
 
 
-def _declaration(text: str, mended: str, parsed: Parsed, faults: tuple[SyntaxFault, ...]) -> Declaration:
-    """Return the declaration of a chunk whose ``mended`` text was parsed (the same text where nothing was broken)."""
-    root = convert(parsed.declaration, mended)
-    declared = symbols(root)
-    if faults:
-        # A name in a blanked part is declared all the same: its users are not at fault.
-        paths = {symbol.path for symbol in declared}
-        lost = (symbol for symbol in salvage(text) if symbol.path not in paths)
-        known = (symbol for symbol in declared if HOLE not in symbol.path)
-        declared = tuple(sorted((*known, *lost), key=lambda symbol: symbol.span))
-    if parsed.trailing is not None:
-        faults = (*faults, _trailing(text, parsed.trailing))
-    used = tuple(reference for reference in references(root) if reference.ref.path != HOLE)
-    return Declaration(text, root, declared, used, faults)
+def forget_declarations() -> None:
+    """Parse everything afresh from now on."""
+    _kept.clear()
 
 
-def _fault(text: str, fault: Fault) -> SyntaxFault:
-    found = _rejected(text, fault.rejected)
-    if fault.repair is None or fault.repair.text is None:
-        return found
-    return replace(found, fix=SyntaxFix(fault.repair.span, fault.repair.text))
+def _parsed(language: str, text: str) -> Declaration:
+    cut = cut_story(text) if language == "bdd" else None
+    if cut is None:
+        return _whole(language, text)
+    found = read_story(cut)
+    if found.faults and quotes_scenario(text):
+        whole = _whole(language, text)
+        return found if whole.faults else whole
+    return found
 
 
-def expected_words(expectation: Expectation) -> list[str]:
-    """Say what could stand at a place, in words: keywords in quotes first, then names, strings and numbers."""
-    literals = [f"'{literal}'" for literal in sorted(expectation.literals)]
-    named = (rule for rule in expectation.rules if rule in _RULE_WORDS or rule.endswith("Path"))
-    rules = sorted({_RULE_WORDS.get(rule) or _path_words(rule) for rule in named})
-    return literals + rules
-
-
-def _path_words(rule: str) -> str:
-    words = "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in rule.removesuffix("Path"))
-    return f"the name of a{'n' if words.lstrip()[:1] in 'aeiou' else ''}{words}"
-
-
-def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
-    span = _token(text, rejected.offset)
-    found = _shown(text, span)
-    if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
-        return SyntaxFault(span, f"'{found}' does not begin a declaration")
-    words = expected_words(rejected.expected)
-    if not words:
-        return _trailing(text, rejected.offset)
-    expected = " or ".join(words) if len(words) < 3 else ", ".join(words[:-1]) + " or " + words[-1]
-    if not found:
-        return SyntaxFault(_last_token(text), f"the declaration ends too early: expected {expected}")
-    return SyntaxFault(span, f"unexpected '{found}': expected {expected}")
-
-
-def _trailing(text: str, offset: int) -> SyntaxFault:
-    token = _token(text, offset)
-    return SyntaxFault(token, f"unexpected '{_shown(text, token)}' after the end of the declaration")
-
-
-def _shown(text: str, span: Span) -> str:
-    word = text[span.start : span.end]
-    return word if len(word) <= LONGEST_WORD else word[: LONGEST_WORD - 1] + "…"
-
-
-def _token(text: str, offset: int) -> Span:
-    """Return the span of the word or sign at ``offset``."""
-    end = offset
-    while end < len(text) and (text[end].isalnum() or text[end] in "_-"):
-        end += 1
-    if end == offset and offset < len(text):
-        end = offset + 1
-    return Span(offset, end)
-
-
-def _last_token(text: str) -> Span:
-    end = len(text.rstrip())
-    start = end
-    while start > 0 and not text[start - 1].isspace():
-        start -= 1
-    return Span(start, end)
+def _whole(language: str, text: str) -> Declaration:
+    piece = read_piece(language, text)
+    if piece.tree is None:
+        return Declaration(text, None, salvage(text), (), piece.faults)
+    declared = symbols(piece.tree)
+    if piece.faults:
+        declared = with_lost(declared, salvage(text))
+    faults = piece.faults if piece.trailing is None else (*piece.faults, trailing_fault(text, piece.trailing))
+    return Declaration(text, piece.tree, declared, references(piece.tree), faults)

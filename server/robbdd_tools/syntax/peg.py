@@ -62,11 +62,11 @@ class Node:
 
 
 class Compiled:
-    """A compiled grammar; its first rule is the root."""
+    """A compiled grammar; its first rule is the root if no other is named."""
 
-    def __init__(self, rules: Mapping[str, grammar.Expression]) -> None:
+    def __init__(self, rules: Mapping[str, grammar.Expression], root: str | None = None) -> None:
         self._rules = rules
-        self._root = next(iter(rules))
+        self._root = root or next(iter(rules))
         self._texts: dict[str, Parse] = {}
         self._makers: dict[str, Make] = {}
 

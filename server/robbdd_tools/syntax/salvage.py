@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE, Symbol, SymbolKind
+from robbdd_tools.syntax.recover import HOLE
 
 _NAME = r"(?P<name>[^\W\d][\w\-]*)"
 _ARGUMENT = r"\(\s*ns\s*=\s*(?P<ns>[^\W\d][\w\-]*)\s*\)\s*"
@@ -37,8 +38,9 @@ _HEADERS = (
     (re.compile(rf"ns\s+{_NAME}(?P<ns>)"), SymbolKind.NAMESPACE),
 )
 _WITHOUT_IRI = {SymbolKind.NAMESPACE, SymbolKind.TREE_TEMPLATE}
+_SCENARIO = re.compile(rf"\w+\s+(?:Variant\s+)?{_NAME}\s*{{")
 _PART = re.compile(
-    r"(?<![\w\-.<])(?:(?P<kind>object|workspace|agent|set\s+var|var|Scenario|node)\s+(?P<name>[^\W\d][\w\-]*)"
+    r"(?<![\w\-.<])(?:(?P<kind>object|workspace|agent|set\s+var|var|node)\s+(?P<name>[^\W\d][\w\-]*)"
     r"|(?P<fluent>[^\W\d][\w\-]*)\s*:\s*holds\b)"
 )
 _PARTS = {
@@ -47,7 +49,6 @@ _PARTS = {
     "agent": SymbolKind.AGENT,
     "var": SymbolKind.VARIABLE,
     "set var": SymbolKind.SET_VARIABLE,
-    "Scenario": SymbolKind.VARIANT,
     "node": SymbolKind.TREE_NODE,
 }
 _KINEMATIC = {SymbolKind.TREE, SymbolKind.TREE_TEMPLATE, SymbolKind.SCENE_INSTANCE}
@@ -81,6 +82,25 @@ def salvage(text: str) -> tuple[Symbol, ...]:
             parts = _kinematic_parts if kind in _KINEMATIC else _parts
             return (own, *parts(text, match.end(), own))
     return ()
+
+
+def salvage_scenario(text: str, story: str, namespace: str | None) -> tuple[Symbol, ...]:
+    """Return the names that a broken scenario of a story evidently declares."""
+    match = _SCENARIO.match(text)
+    if match is None:
+        return ()
+    whole = Span(0, len(text.rstrip()))
+    name = match["name"]
+    own = Symbol(f"{story}.{name}", name, SymbolKind.VARIANT, Span(*match.span("name")), whole, namespace)
+    return (own, *_parts(text, match.end(), own))
+
+
+def with_lost(declared: tuple[Symbol, ...], salvaged: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
+    """Add to the names of a mended text those of its blanked parts: their users are not at fault."""
+    paths = {symbol.path for symbol in declared}
+    lost = (symbol for symbol in salvaged if symbol.path not in paths)
+    known = (symbol for symbol in declared if HOLE not in symbol.path)
+    return tuple(sorted((*known, *lost), key=lambda symbol: symbol.span))
 
 
 def _parts(text: str, start: int, own: Symbol) -> Iterator[Symbol]:

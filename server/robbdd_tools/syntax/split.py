@@ -115,7 +115,13 @@ def _scanner(language: str) -> re.Pattern[str]:
     """Comments, strings, braces and starters; everything else is passed over."""
     starters = "|".join(_STARTERS[language])
     string = r"\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?"
-    return re.compile(rf"//[^\n]*|(?P<start>(?<![\w\-.<])(?:{starters}))|{string}|(?P<open>[{{(])|(?P<close>[}})])")
+    # The first letters alone pass over nearly all of a text.
+    letters = (re.findall(r"(?:^\(\?:|^|\|)([A-Za-z])", starter) for starter in _STARTERS[language])
+    first = "".join(sorted({letter for found in letters for letter in found}))
+    return re.compile(
+        rf"(?=[/\"'{{}}(){first}])"
+        rf"(?://[^\n]*|(?P<start>(?<![\w\-.<])(?:{starters}))|{string}|(?P<open>[{{(])|(?P<close>[}})]))"
+    )
 
 
 def _starts(language: str, text: str, position: int = 0) -> Iterator[int]:

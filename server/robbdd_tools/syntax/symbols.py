@@ -8,6 +8,7 @@ from typing import Any, cast
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE, Reference, Symbol, SymbolKind
+from robbdd_tools.syntax.recover import HOLE
 from robbdd_tools.syntax.scene_tree import field_names
 
 MOST_COPIES = 10_000
@@ -73,8 +74,7 @@ def _parts(root: tree.DeclarationTree, path: str, namespace: str) -> Iterator[Sy
             yield from _clauses(root.body, path, namespace)
         case tree.Story():
             for variant in root.variants:
-                yield _symbol(path, variant.name, SymbolKind.VARIANT, variant.span, namespace)
-                yield from _clauses(variant, f"{path}.{variant.name.text}", namespace)
+                yield from variant_symbols(variant, path, namespace)
         case tree.BehaviourTree():
             for node in root.nodes:
                 yield _symbol(path, node.name, SymbolKind.TREE_NODE, node.span, namespace)
@@ -84,6 +84,12 @@ def _parts(root: tree.DeclarationTree, path: str, namespace: str) -> Iterator[Sy
             yield from _instance_parts(root, path)
         case _:
             pass
+
+
+def variant_symbols(variant: tree.Variant, path: str, namespace: str | None) -> tuple[Symbol, ...]:
+    """Return what a scenario of the story at ``path`` declares, itself first."""
+    own = _symbol(path, variant.name, SymbolKind.VARIANT, variant.span, namespace)
+    return (own, *_clauses(variant, own.path, namespace))
 
 
 def _instance_parts(owner: tree.SceneInstance | tree.Modelled, path: str) -> Iterator[Symbol]:
@@ -125,7 +131,7 @@ def _body_parts(body: tree.RigidBody, path: str) -> Iterator[Symbol]:
                 yield _symbol(f"{path}.{frame.name.text}", pose.name, SymbolKind.POSE, pose.span, None)
 
 
-def _clauses(node: tree.Node, path: str, namespace: str) -> Iterator[Symbol]:
+def _clauses(node: tree.Node, path: str, namespace: str | None) -> Iterator[Symbol]:
     """Fluents, behaviours and quantified variables of a template or variant."""
     for part in walk(node):
         match part:
@@ -144,12 +150,13 @@ def _symbol(path: str, name: tree.Name, kind: SymbolKind, extent: Span, namespac
     return Symbol(f"{path}.{name.text}", name.text, kind, name.span, extent, namespace)
 
 
-def references(root: tree.DeclarationTree) -> tuple[Reference, ...]:
-    """Return every use of a name in a declaration, in the order of the text."""
+def references(root: tree.Node, scopes: tuple[str, ...] = ()) -> tuple[Reference, ...]:
+    """Return every use of a name in a declaration, or in a part of one inside ``scopes``, in the order of the text."""
     found: list[Reference] = []
-    _collect(root, (), found)
+    _collect(root, scopes, found)
     # An event from which a duration was told stands in the tree twice, but once in the text.
-    return tuple(sorted(dict.fromkeys(found), key=lambda reference: reference.ref.span))
+    every = (reference for reference in dict.fromkeys(found) if reference.ref.path != HOLE)
+    return tuple(sorted(every, key=lambda reference: reference.ref.span))
 
 
 def _collect(node: tree.Node, scopes: tuple[str, ...], found: list[Reference]) -> None:

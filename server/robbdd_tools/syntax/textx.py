@@ -10,14 +10,14 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-from robbdd_tools.syntax.chunk import Expectation, Parsed, Rejected, grammar_name, grammar_text
+from robbdd_tools.syntax.chunk import ROOTS, Expectation, Parsed, Rejected, grammar_text
 
 
 def parse_with_textx(language: str, text: str) -> Parsed | Rejected:
-    """Parse one chunk of a file whose name ends in ``language``, by textX itself."""
+    """Parse what ``parse_chunk`` parses, by textX itself."""
     textx: Any = import_module("textx")
     try:
-        chunk = _metamodel(grammar_name(language)).model_from_str(text)
+        chunk = _metamodel(language).model_from_str(text)
     except textx.TextXSyntaxError as error:
         offset = _offset(text, error.line, error.col)
         return Rejected(offset, _expectation(error.expected_rules))
@@ -46,6 +46,7 @@ def _expectation(rules: Any) -> Expectation:
 
 
 @cache
-def _metamodel(grammar: str) -> Any:
+def _metamodel(language: str) -> Any:
     textx: Any = import_module("textx")
-    return textx.metamodel_from_str(grammar_text(grammar), autokwd=True, memoization=True)
+    root = f"Root: {ROOTS[language]};\n" if language in ROOTS else ""
+    return textx.metamodel_from_str(root + grammar_text(language), autokwd=True, memoization=True)

@@ -1,0 +1,33 @@
+"""What is kept for how long, and how often Python looks for reference cycles."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable
+from functools import wraps
+from typing import TypeVar
+from weakref import WeakKeyDictionary
+
+Key = TypeVar("Key")
+Value = TypeVar("Value")
+
+YOUNG, OLDER, OLD = 100_000, 50, 100
+"""Objects made before the youngest are searched, and searches before the next older ones are, as Python counts them."""
+
+
+def collect_rarely() -> None:
+    """Search for cycles less often: trees have none, and a search of a large project takes longer than a keystroke."""
+    gc.set_threshold(YOUNG, OLDER, OLD)
+
+
+def kept_with_key(function: Callable[[Key], Value]) -> Callable[[Key], Value]:
+    """Keep the results of a function as long as the objects that it was called with, which they must not hold."""
+    kept: WeakKeyDictionary[Key, Value] = WeakKeyDictionary()
+
+    @wraps(function)
+    def call(key: Key) -> Value:
+        if key not in kept:
+            kept[key] = function(key)
+        return kept[key]
+
+    return call

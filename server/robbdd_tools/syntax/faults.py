@@ -1,0 +1,95 @@
+"""Puts syntax faults into words: where they stand, what was found there and what was expected."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from robbdd_tools.base.document import Span
+from robbdd_tools.syntax.chunk import Expectation, Rejected
+from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.recover import Fault
+
+LONGEST_WORD = 40
+"""Letters of the user's text that a message repeats."""
+
+_RULE_WORDS = {
+    "NameText": "a name",
+    "TextLiteral": "a string in quotes",
+    "NumberLiteral": "a number",
+    "TableRule": "the rule '|---|'",
+    "NamespacePath": "the name of a namespace",
+    "AnySetPath": "the name of a set",
+    "ModuleNameText": "the name of a module",
+    "TreePath": "the name of a kinematic tree",
+    "TreeTemplatePath": "the name of a kinematic tree template",
+    "TreeNodePath": "the name of a node of a behaviour tree",
+    "ImplementationPath": "the name of a behaviour implementation",
+    "ProviderPath": "the name of an observation provider",
+    "PolicyPath": "the name of an observation policy",
+}
+_STARTS = frozenset({"import", "ns"})
+
+
+def fault_in(text: str, fault: Fault) -> SyntaxFault:
+    """Return an error that was found in a text as users see it."""
+    found = _rejected(text, fault.rejected)
+    if fault.repair is None or fault.repair.text is None:
+        return found
+    return replace(found, fix=SyntaxFix(fault.repair.span, fault.repair.text))
+
+
+def expected_words(expectation: Expectation) -> list[str]:
+    """Say what could stand at a place, in words: keywords in quotes first, then names, strings and numbers."""
+    literals = [f"'{literal}'" for literal in sorted(expectation.literals)]
+    named = (rule for rule in expectation.rules if rule in _RULE_WORDS or rule.endswith("Path"))
+    rules = sorted({_RULE_WORDS.get(rule) or _path_words(rule) for rule in named})
+    return literals + rules
+
+
+def _path_words(rule: str) -> str:
+    words = "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in rule.removesuffix("Path"))
+    return f"the name of a{'n' if words.lstrip()[:1] in 'aeiou' else ''}{words}"
+
+
+def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
+    span = _token(text, rejected.offset)
+    found = _shown(text, span)
+    if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
+        return SyntaxFault(span, f"'{found}' does not begin a declaration")
+    words = expected_words(rejected.expected)
+    if not words:
+        return trailing_fault(text, rejected.offset)
+    expected = " or ".join(words) if len(words) < 3 else ", ".join(words[:-1]) + " or " + words[-1]
+    if not found:
+        return SyntaxFault(last_token(text), f"the declaration ends too early: expected {expected}")
+    return SyntaxFault(span, f"unexpected '{found}': expected {expected}")
+
+
+def trailing_fault(text: str, offset: int) -> SyntaxFault:
+    """Return the fault of text that stands behind the end of what could be read."""
+    token = _token(text, offset)
+    return SyntaxFault(token, f"unexpected '{_shown(text, token)}' after the end of the declaration")
+
+
+def _shown(text: str, span: Span) -> str:
+    word = text[span.start : span.end]
+    return word if len(word) <= LONGEST_WORD else word[: LONGEST_WORD - 1] + "…"
+
+
+def _token(text: str, offset: int) -> Span:
+    """Return the span of the word or sign at ``offset``."""
+    end = offset
+    while end < len(text) and (text[end].isalnum() or text[end] in "_-"):
+        end += 1
+    if end == offset and offset < len(text):
+        end = offset + 1
+    return Span(offset, end)
+
+
+def last_token(text: str) -> Span:
+    """Return the span of the last word or sign of a text."""
+    end = len(text.rstrip())
+    start = end
+    while start > 0 and not text[start - 1].isspace():
+        start -= 1
+    return Span(start, end)

@@ -1,0 +1,49 @@
+"""Moves what was read of a piece of text to where that piece stands in a larger one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any, cast
+
+from robbdd_tools.syntax.declaration import Reference, Symbol, SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.scene_tree import Node, Ref, field_names
+
+
+def moved_node(node: Any, by: int) -> Any:
+    """Return a tree, or what stands in a field of one, with all its spans ``by`` code points further on."""
+    if isinstance(node, Node):
+        kind = type(node)
+        return kind(node.span.shifted(by), *[_moved(getattr(node, name), by) for name in _inner_fields(kind)])
+    return _moved(node, by)
+
+
+def _moved(value: Any, by: int) -> Any:
+    if isinstance(value, Node):
+        return moved_node(value, by)
+    if isinstance(value, tuple):
+        return tuple([_moved(entry, by) for entry in cast(tuple[Any, ...], value)])
+    return value
+
+
+@cache
+def _inner_fields(kind: type[Node]) -> tuple[str, ...]:
+    """Return the fields of a kind of node behind its span, which is always the first."""
+    return field_names(kind)[1:]
+
+
+def moved_symbol(symbol: Symbol, by: int) -> Symbol:
+    """Return a symbol at its place in a larger text."""
+    return replace(symbol, span=symbol.span.shifted(by), extent=symbol.extent.shifted(by))
+
+
+def moved_reference(reference: Reference, by: int) -> Reference:
+    """Return a reference at its place in a larger text."""
+    ref = reference.ref
+    return Reference(Ref(ref.span.shifted(by), ref.role, ref.path), reference.scopes)
+
+
+def moved_fault(fault: SyntaxFault, by: int) -> SyntaxFault:
+    """Return a fault, with what mends it, at its place in a larger text."""
+    fix = None if fault.fix is None else SyntaxFix(fault.fix.span.shifted(by), fault.fix.text)
+    return SyntaxFault(fault.span.shifted(by), fault.message, fix)

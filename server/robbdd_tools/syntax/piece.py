@@ -1,0 +1,33 @@
+"""Text to tree: parses one piece of text by its grammar, mended where it is broken."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from robbdd_tools.syntax.chunk import Parsed, parse_chunk
+from robbdd_tools.syntax.convert import convert
+from robbdd_tools.syntax.declaration import SyntaxFault
+from robbdd_tools.syntax.faults import fault_in
+from robbdd_tools.syntax.recover import recover
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """What a text says: its tree (``None`` when nothing helped), its faults, the offset of text behind its end."""
+
+    tree: Any
+    faults: tuple[SyntaxFault, ...]
+    trailing: int | None
+
+
+def read_piece(language: str, text: str) -> Piece:
+    """Parse one piece of text; user text never raises."""
+    parsed = parse_chunk(language, text)
+    if isinstance(parsed, Parsed):
+        return Piece(convert(parsed.declaration, text), (), parsed.trailing)
+    recovered = recover(language, text, parsed)
+    faults = tuple(fault_in(text, fault) for fault in recovered.faults)
+    if recovered.parsed is None:
+        return Piece(None, faults, None)
+    return Piece(convert(recovered.parsed.declaration, recovered.text), faults, recovered.parsed.trailing)

@@ -1,0 +1,255 @@
+"""Reads a user story scenario by scenario, so that an edit inside one parses that one only, however long the story is.
+
+The story's text is cut at its scenarios. What stands around them is parsed with a stand-in in their place, and each
+scenario by itself; both are kept by their texts. The result is that of parsing the whole, for nothing in a scenario
+tells how another one is to be read; and an error costs no more than its own scenario.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import chain, pairwise
+
+from robbdd_tools.base.document import Span
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import Declaration, Reference, Symbol, SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.faults import last_token, trailing_fault
+from robbdd_tools.syntax.move import moved_fault, moved_node, moved_reference, moved_symbol
+from robbdd_tools.syntax.piece import Piece, read_piece
+from robbdd_tools.syntax.recover import HOLE
+from robbdd_tools.syntax.salvage import salvage, salvage_scenario, with_lost
+from robbdd_tools.syntax.symbols import references, symbols, variant_symbols
+
+KEPT_SCENARIOS = 1000
+"""Scenarios by their text, and the same in their places: enough for stories of tens of thousands of lines."""
+STAND_IN = f"Scenario {HOLE}{{template:<{HOLE}>scene:<{HOLE}>variation:var<{HOLE}>:{{}}}}\n"
+_NAME = r"[^\W\d][\w\-]*"
+_STRING = r"\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?"
+_SCANNER = re.compile(
+    rf"(?=[/\"'{{}}S])(?://[^\n]*|{_STRING}|(?P<open>{{)|(?P<close>}})"
+    rf"|(?<![\w\-.<])(?P<scenario>Scenario(?![\w\-])(?P<header>(?:\s+Variant(?=\s+{_NAME}))?\s+{_NAME}\s*{{)?))"
+)
+_LONG_STRINGS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
+_HEADER_LINE = re.compile(rf"\n\s*Scenario\s+{_NAME}[^\n]*{{")
+_WORD = "Scenario"
+_NAMELESS = re.compile(rf"{_WORD}\s*{{")
+_STORY = re.compile(r"User\s+Story\b")
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """A story's text in parts: where its scenarios begin, and where what closes the story begins."""
+
+    text: str
+    starts: tuple[int, ...]
+    end: int
+
+    @property
+    def head(self) -> str:
+        """The text before the first scenario."""
+        return self.text[: self.starts[0]]
+
+    @property
+    def tail(self) -> str:
+        """The text behind the last scenario."""
+        return self.text[self.end :]
+
+    def scenarios(self) -> Iterator[tuple[int, str]]:
+        """Yield each scenario's offset and text, with what stands between it and the next."""
+        return ((start, self.text[start:end]) for start, end in pairwise((*self.starts, self.end)))
+
+
+def cut_story(text: str) -> Cut | None:
+    """Return where a story's scenarios are, ``None`` for the text of anything but a story with scenarios.
+
+    A scenario begins at its word directly inside the story's braces or, with its name and brace, at the beginning of
+    a line wherever that line is: a missing brace then costs one scenario.
+    """
+    if not _STORY.match(text):
+        return None
+    starts: list[int] = []
+    depth, end = 0, None
+    for match in _SCANNER.finditer(text):
+        if match["open"]:
+            depth += 1
+        elif match["close"]:
+            depth -= 1
+            if depth == 0 and end is None:
+                end = match.start()
+        elif match["scenario"] and (depth == 1 or (match["header"] and _starts_line(text, match.start()))):
+            starts.append(match.start())
+            depth, end = (2 if match["header"] else 1), None
+    if not starts:
+        return None
+    return Cut(text, tuple(starts), _closing_line(text, starts[-1]) if end is None else end)
+
+
+def quotes_scenario(text: str) -> bool:
+    """Tell whether a string of several lines holds what would otherwise begin a scenario, which ``cut_story`` misses.
+
+    A quote that is not closed, as while one types, looks like that as well.
+    """
+    return any("\n" in match[0] and _HEADER_LINE.search(match[0]) for match in _LONG_STRINGS.finditer(text))
+
+
+def without_earlier_scenarios(text: str) -> str:
+    """Return the text of a story that ends at a cursor without the scenarios before the one at the cursor."""
+    cut = cut_story(text)
+    return text if cut is None else cut.head + text[cut.starts[-1] :]
+
+
+def _starts_line(text: str, offset: int) -> bool:
+    """Tell whether only white space stands before a place in its line."""
+    return not text[text.rfind("\n", 0, offset) + 1 : offset].strip()
+
+
+def _closing_line(text: str, start: int) -> int:
+    """Return where a story with too few braces is closed: at a brace further left than its last scenario."""
+    if _starts_line(text, start):
+        column = start - text.rfind("\n", 0, start) - 1
+        for line in re.finditer(r"^([ \t]*)}", text[start:], re.MULTILINE):
+            if len(line[1]) < column:
+                return start + line.end() - 1
+    return len(text)
+
+
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """What a story says around its scenarios, with spans in a text where a stand-in has their place."""
+
+    story: tree.Story | None
+    symbols: tuple[Symbol, ...]
+    references: tuple[Reference, ...]
+    faults: tuple[SyntaxFault, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Scenario:
+    """What one scenario says; ``variant`` is ``None`` where it cannot be told."""
+
+    variant: tree.Variant | None
+    symbols: tuple[Symbol, ...]
+    references: tuple[Reference, ...]
+    faults: tuple[SyntaxFault, ...]
+
+
+def read_story(cut: Cut) -> Declaration:
+    """Return the declaration of a story, of which only scenarios with a new text are parsed."""
+    frame = _frame(cut.head, cut.tail)
+    own = [replace(symbol, extent=_stretched(symbol.extent, cut)) for symbol in frame.symbols]
+    path, namespace = (own[0].path, own[0].namespace) if own else ("", None)
+    found = [one for start, text in cut.scenarios() for one in _placed(text, path, namespace, start)]
+    outside = (_outside(fault, cut) for fault in frame.faults)
+    faults = sorted(chain(outside, *(one.faults for one in found)), key=lambda fault: fault.span)
+    story = frame.story
+    if story is not None:
+        variants = tuple(one.variant for one in found if one.variant is not None)
+        story = replace(story, span=_stretched(story.span, cut), variants=variants)
+    symbols = tuple(chain(own, *(one.symbols for one in found)))
+    references = tuple(chain(frame.references, *(one.references for one in found)))
+    return Declaration(cut.text, story, symbols, references, tuple(faults))
+
+
+@lru_cache(maxsize=KEPT_SCENARIOS)
+def _frame(head: str, tail: str) -> _Frame:
+    text = head + STAND_IN + tail
+    piece = read_piece("bdd", text)
+    faults = piece.faults if piece.trailing is None else (*piece.faults, trailing_fault(text, piece.trailing))
+    lost = salvage(head)[:1]
+    if not isinstance(piece.tree, tree.Story):
+        return _Frame(None, lost, (), faults)
+    story = replace(piece.tree, variants=())
+    known = tuple(symbol for symbol in symbols(story) if symbol.name != HOLE)
+    return _Frame(story, known or lost, references(story), faults)
+
+
+def _outside(fault: SyntaxFault, cut: Cut) -> SyntaxFault:
+    """Return a fault of a frame at its place in the whole story."""
+    start = _unframed(fault.span.start, cut)
+    span = Span(start, start + fault.span.end - fault.span.start)
+    if cut.starts[0] <= fault.span.start < len(cut.head) + len(STAND_IN):
+        # Nothing but the end of the story is missed behind the stand-in.
+        span = last_token(cut.text)
+    fix = fault.fix
+    if fix is not None:
+        place = Span(_unframed(fix.span.start, cut), _unframed(fix.span.end, cut))
+        fix = SyntaxFix(place, fix.text)
+    return SyntaxFault(span, fault.message, fix)
+
+
+def _stretched(span: Span, cut: Cut) -> Span:
+    return Span(span.start, _unframed(span.end, cut))
+
+
+def _unframed(offset: int, cut: Cut) -> int:
+    """Return the place in the whole story of a place in its frame."""
+    behind = len(cut.head) + len(STAND_IN)
+    if offset <= len(cut.head):
+        return offset
+    return cut.end if offset < behind else offset - behind + cut.end
+
+
+@lru_cache(maxsize=KEPT_SCENARIOS)
+def _placed(text: str, story: str, namespace: str | None, offset: int) -> tuple[_Scenario, ...]:
+    return tuple(
+        _Scenario(
+            moved_node(one.variant, offset),
+            tuple(moved_symbol(symbol, offset) for symbol in one.symbols),
+            tuple(moved_reference(reference, offset) for reference in one.references),
+            tuple(moved_fault(fault, offset) for fault in one.faults),
+        )
+        for one in _scenarios(text, story, namespace)
+    )
+
+
+@lru_cache(maxsize=KEPT_SCENARIOS)
+def _scenarios(text: str, story: str, namespace: str | None) -> tuple[_Scenario, ...]:
+    """Return what a text says that begins with a scenario; what stands behind its end may be another one."""
+    found: list[_Scenario] = []
+    start = 0
+    while True:
+        rest = text[start:]
+        piece = _read_scenario(rest)
+        faults = (trailing_fault(rest, 0),) if piece.tree is None and found else piece.faults
+        found.append(_scenario(piece.tree, rest, faults, (story, namespace), start))
+        if piece.trailing is None:
+            return tuple(found)
+        start += piece.trailing
+
+
+def _read_scenario(text: str) -> Piece:
+    """Parse a text that begins with a scenario; one whose name is still to be typed is read with a stand-in for it."""
+    nameless = _NAMELESS.match(text)
+    if nameless is None:
+        return read_piece("scenario", text)
+    by = -len(HOLE) - 1
+    piece = read_piece("scenario", f"{_WORD} {HOLE}{text[len(_WORD) :]}")
+    fault = SyntaxFault(Span(nameless.end() - 1, nameless.end()), "unexpected '{': expected a name")
+    variant: tree.Variant | None = moved_node(piece.tree, by)
+    if variant is not None:
+        variant = replace(variant, span=Span(0, variant.span.end))
+    trailing = None if piece.trailing is None else piece.trailing + by
+    return Piece(variant, (fault, *(moved_fault(fault, by) for fault in piece.faults)), trailing)
+
+
+def _scenario(
+    variant: tree.Variant | None,
+    text: str,
+    faults: tuple[SyntaxFault, ...],
+    story: tuple[str, str | None],
+    offset: int,
+) -> _Scenario:
+    path, namespace = story
+    declared = variant_symbols(variant, path, namespace) if variant is not None and path else ()
+    if faults and path:
+        declared = with_lost(declared, salvage_scenario(text, path, namespace))
+    used = references(variant, (path,)) if variant is not None else ()
+    return _Scenario(
+        moved_node(variant, offset),
+        tuple(moved_symbol(symbol, offset) for symbol in declared),
+        tuple(moved_reference(reference, offset) for reference in used),
+        tuple(moved_fault(fault, offset) for fault in faults),
+    )
