@@ -9,11 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
-from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
 from robbdd_tools.syntax import tree
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration, Reference
 
 COMMENT, STRING, NUMBER, KEYWORD = "comment", "string", "number", "keyword"
+KEPT_DECLARATIONS = 2000
 NAME = "name"
 """A name that is used; only what it leads to tells its concept, so that no token carries this one."""
 PREDICATE, ACTION, TIME, ARGUMENT, CODE = "predicate", "action", "time constraint", "argument", "python"
@@ -121,7 +121,7 @@ def _kind(snapshot: Snapshot, file: FileAnalysis, path: str) -> str | None:
     return next((declared.symbol.kind for _, declared in snapshot.scope(file.document.uri).find(path)), None)
 
 
-@kept_with_key
+@lru_cache(maxsize=KEPT_DECLARATIONS)
 def _own(language: str, declaration: Declaration) -> tuple[Token, ...]:
     """Return what a declaration tells by itself; spans count from its start."""
     concepts = dict(_concepts(declaration))
