@@ -13,12 +13,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from agent.worlds import BIN, BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, Steps, write_run
+from agent.worlds import execution as build_execution
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.png import SIGNATURE, write_png
 from robbdd_tools.agent.session import calls_of
+from robbdd_tools.agent.video import NoVideo, write_video
+from robbdd_tools.agent.viewer import NoViewer, Viewer
 from robbdd_tools.run.protocol import Execute, encode
 
 
@@ -121,3 +125,47 @@ def test_moments_that_are_none_are_explained(tmp_path: Path) -> None:
     assert done.returncode in (2, 3)
     assert "Traceback" not in done.stderr
     assert done.returncode == 3 or "holds something else than moments" in done.stderr
+
+
+@pytest.mark.physics
+def test_a_scenario_is_filmed_with_captions_or_the_reason_is_given(tmp_path: Path) -> None:
+    """The strip at the bottom changes with time and events; a violated clause is written above."""
+    wrong = f'"{CUBE}" is located at "{OTHER_WS}" after event "t:place-end"'
+    doing = f'"{PANDA}" picks "{CUBE}" and places it at "{BIN_WS}"'
+    (spec,) = write_run(tmp_path / "run", [Steps((("when", doing), ("then", wrong)))])
+    execution = Execution(spec, calls_of(spec))
+    end = execution.advance_until(lambda _: False).end
+    Moments(tmp_path / "run").keep(0, spec.clauses[1].line, end - 0.2, execution.state_at(end))
+    done = render(tmp_path / "run", tmp_path / "videos", "videos", MUJOCO_GL="egl")
+    assert "Traceback" not in done.stderr
+    if done.returncode == 3:
+        assert done.stderr.strip()
+        return
+    assert done.stdout.splitlines() == [str(tmp_path / "videos" / "fetch-1.webp")]
+    with Image.open(tmp_path / "videos" / "fetch-1.webp") as film:
+        count = int(getattr(film, "n_frames"))  # noqa: B009  # a property that only moving pictures have
+        assert count == pytest.approx(end / 0.08, abs=2)
+        frames: list[np.ndarray[tuple[int, ...], np.dtype[np.uint8]]] = []
+        for index in (0, count // 2, count - 1):
+            film.seek(index)
+            frames.append(np.asarray(film.convert("RGB")))
+    strips = [frame[-20:] for frame in frames]
+    assert all(strip.max() > 200 for strip in strips)
+    assert (strips[0] != strips[1]).any()
+    first, _, last = (int(np.median(frame[:20])) for frame in frames)
+    assert last < 40 < first
+
+
+def test_without_pillow_there_are_no_moving_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "PIL.Image", None)
+    with pytest.raises(NoVideo, match=r"pip install 'robbdd-tools\[video\]'"):
+        write_video(tmp_path / "a.webp", build_execution(), "a", ())
+
+
+def test_a_window_that_cannot_be_opened_leaves_the_simulation_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setitem(sys.modules, "mujoco.viewer", None)
+    simulation = build_execution().simulation
+    with pytest.raises(NoViewer, match="no window can be opened"):
+        Viewer(simulation)
+    assert not simulation.watchers

@@ -50,3 +50,11 @@ def test_verdicts_stand_without_pictures(
     said = capsys.readouterr()
     assert "4 hold" in said.out
     assert said.err.startswith("robbdd: no pictures: nothing here can render without a display")
+
+
+def test_a_window_needs_a_display(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
+    assert main(["run", MODEL, "--viewer"]) == 2
+    assert "robbdd: --viewer needs a display, and there is none" in capsys.readouterr().err

@@ -1,7 +1,8 @@
 """Pictures of a run folder, without a display.
 
 ``python -m robbdd_tools.agent.render RUN_FOLDER INDEX FILE.png`` renders the initial scene of scenario number INDEX
-(from 0); ``… RUN_FOLDER moments FOLDER`` the moment of every clause that was violated.
+(from 0); ``… RUN_FOLDER moments FOLDER`` the moment of every clause that was violated; ``… RUN_FOLDER videos FOLDER``
+every scenario from beginning to end, executed again: the same seed gives the same bits.
 
 Exit codes: 0 done; 2 the scene cannot be set up or a file not be read or written; 3 nothing here can render (the
 environment variable ``MUJOCO_GL`` chooses among ``egl``, ``osmesa`` and ``glfw``). Messages are on standard error,
@@ -24,23 +25,28 @@ if TYPE_CHECKING:
     from robbdd_tools.run.protocol import Manifest, ScenarioSpec
 
 FAILED, NO_GRAPHICS = 2, 3
-MOMENTS = "moments"
-USAGE = "usage: python -m robbdd_tools.agent.render RUN_FOLDER (INDEX FILE.png | moments FOLDER)"
+MOMENTS, VIDEOS = "moments", "videos"
+USAGE = "usage: python -m robbdd_tools.agent.render RUN_FOLDER (INDEX FILE.png | moments FOLDER | videos FOLDER)"
 
 
 def render(folder: Path, what: str, output: Path) -> int:
     """Write the pictures that are asked for; returns the exit code."""
     try:
         from robbdd_tools.agent.picture import NoPicture
+        from robbdd_tools.agent.video import NoVideo
     except Exception as error:  # the engine chooses its back end when it is imported; each fails in its own way
         print(f"{type(error).__name__}: {error}", file=sys.stderr)
         return NO_GRAPHICS
     try:
         manifest = read_manifest(folder)
-        pictures = _moments(folder, manifest, output) if what == MOMENTS else _scene(manifest, int(what), output)
+        if what in (MOMENTS, VIDEOS):
+            output.mkdir(parents=True, exist_ok=True)
+            pictures = (_moments if what == MOMENTS else _videos)(folder, manifest, output)
+        else:
+            pictures = _scene(manifest, int(what), output)
         for picture in pictures:
-            print(picture)
-    except (SceneError, OSError) as error:
+            print(picture, flush=True)
+    except (SceneError, NoVideo, OSError) as error:
         print(error, file=sys.stderr)
         return FAILED
     except NoPicture as error:
@@ -56,12 +62,34 @@ def _scene(manifest: Manifest, index: int, output: Path) -> Iterator[Path]:
 def _moments(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
     from robbdd_tools.agent.moments import Moments
 
-    output.mkdir(parents=True, exist_ok=True)
     for index, moments in groupby(Moments(folder), key=lambda moment: moment.index):
         spec = manifest.scenarios[index]
         names = {clause.line: clause.name for clause in spec.clauses}
-        stem = spec.name.rpartition(":")[2].replace(" -- ", "-")
+        stem = _stem(spec)
         yield from _pictures(spec, ((output / f"{stem}-{names[moment.line]}.png", moment) for moment in moments))
+
+
+def _videos(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
+    from robbdd_tools.agent.execution import Execution
+    from robbdd_tools.agent.moments import Moments
+    from robbdd_tools.agent.sentences import read_clause
+    from robbdd_tools.agent.session import calls_of, timing_of
+    from robbdd_tools.agent.video import Violation, write_video
+
+    moments = list(Moments(folder))
+    for index, spec in enumerate(manifest.scenarios):
+        names = {clause.line: clause.name for clause in spec.clauses}
+        clauses = [read_clause(clause.sentence) for clause in spec.clauses if clause.role != "when"]
+        execution = Execution(spec, calls_of(spec), timing_of(clauses))
+        execution.advance_until(lambda _: False)
+        violations = [Violation(moment.at, names[moment.line]) for moment in moments if moment.index == index]
+        path = output / f"{_stem(spec)}.webp"
+        write_video(path, execution, _stem(spec), violations)
+        yield path
+
+
+def _stem(spec: ScenarioSpec) -> str:
+    return spec.name.rpartition(":")[2].replace(" -- ", "-")
 
 
 def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]]) -> Iterator[Path]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from time import perf_counter
@@ -12,9 +13,11 @@ from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Call, Execution, Timing
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.sentences import Clause, Doing, fluents_of, read_clause, read_doing, read_event
+from robbdd_tools.agent.viewer import NoViewer, Viewer
 from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.protocol import (
+    VIEWER,
     ClauseJudged,
     ClauseStarted,
     LogLine,
@@ -46,6 +49,7 @@ class ScenarioRun:
         self._doings = {line: doing for line, role, text in texts if role == "when" and (doing := read_doing(text))}
         self._clauses = {line: read_clause(text) for line, role, text in texts if role != "when"}
         self._execution: Execution | None = None
+        self._viewer: Viewer | None = None
         self._broken = ""
         self._began = perf_counter()
         channel.send(ScenarioStarted(index))
@@ -57,11 +61,20 @@ class ScenarioRun:
         if self._execution is None:
             try:
                 calls = [call_of(doing) for doing in self._doings.values()]
-                self._execution = Execution(self._spec, calls, _timing(self._clauses.values()))
+                self._execution = Execution(self._spec, calls, timing_of(self._clauses.values()))
+                self._show(self._execution)
             except SceneError as error:
                 self._broken = str(error)
                 self._channel.send(LogLine("error", f"{self._spec.name}: {error}"))
                 raise
+
+    def _show(self, execution: Execution) -> None:
+        """Open a window on the scenario where one is wanted; verdicts stand without it."""
+        if os.environ.get(VIEWER):
+            try:
+                self._viewer = Viewer(execution.simulation)
+            except NoViewer as error:
+                self._channel.send(LogLine("warning", str(error)))
 
     def clause(self, line: int, text: str) -> Verdict:
         """Run on as far as a Given or Then clause needs and judge it."""
@@ -107,6 +120,8 @@ class ScenarioRun:
         for line, sentence in list(self._open.items()):
             self._report(line, unknown(self._broken or f"no step definition for '{sentence}'"))
         execution = self._execution
+        if self._viewer is not None:
+            self._viewer.close()
         if execution is not None:
             self._tell_ranges(execution)
         simulated = execution.simulated if execution is not None else 0.0
@@ -218,7 +233,7 @@ def call_of(doing: Doing) -> Call:
     return Call(doing.behaviour.name, arguments)
 
 
-def _timing(clauses: Iterable[Clause]) -> Timing:
+def timing_of(clauses: Iterable[Clause]) -> Timing:
     """Leave enough time before and after for the windows that the clauses speak of."""
     lead, tail = LEAD, 0.0
     for clause in clauses:

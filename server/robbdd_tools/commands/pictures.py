@@ -15,11 +15,18 @@ ADVICE = (
     "nothing here can render without a display: install EGL (libegl1 and libgl1) or OSMesa (libosmesa6), "
     "or set MUJOCO_GL=glfw where there is a display"
 )
-MOMENTS = "moments"
+MOMENTS, VIDEOS = "moments", "videos"
 
 
 class NoPictures(Exception):
     """There are no pictures; the message says why, and what to do about it."""
+
+
+def no_display() -> str:
+    """Return why no window can be shown here, nothing where one can."""
+    if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        return ""
+    return "--viewer needs a display, and there is none (DISPLAY is not set); --record DIR writes moving pictures"
 
 
 def render_scene(folder: Path, index: int, output: Path) -> None:
@@ -30,6 +37,11 @@ def render_scene(folder: Path, index: int, output: Path) -> None:
 def render_moments(folder: Path, output: Path) -> int:
     """Write the moment of every violated clause into a folder and return how many; raises ``NoPictures``."""
     return len(_render(folder, MOMENTS, output))
+
+
+def render_videos(folder: Path, output: Path) -> int:
+    """Write every scenario of a run as a moving picture and return how many; raises ``NoPictures``."""
+    return len(_render(folder, VIDEOS, output))
 
 
 def _render(folder: Path, what: str, output: Path) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import tempfile
 from collections.abc import Callable, Generator, Mapping
@@ -14,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools import __version__
 from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.execute import execute
-from robbdd_tools.commands.pictures import NoPictures, render_moments
+from robbdd_tools.commands.pictures import NoPictures, no_display, render_moments, render_videos
 from robbdd_tools.commands.requests import Choice, digest, load_models, requests
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.prepare import prepare_all
+from robbdd_tools.run.protocol import VIEWER
 from robbdd_tools.run.store import NoSuchRun, RunRecord, RunStore, StoredRun, shown_path, store_beside
 
 if TYPE_CHECKING:
@@ -44,13 +46,17 @@ class Outputs:
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """What to run (a model, or a folder of them) and how; ``rerun_failed`` is about the last stored run of it."""
+    """What to run (a model, or a folder of them) and how.
+
+    ``rerun_failed`` is about the last stored run of it; ``viewer`` opens a window on each scenario, one after another.
+    """
 
     path: Path
     choice: Choice
     policy: Policy
     outputs: Outputs
     rerun_failed: bool = False
+    viewer: bool = False
 
 
 def run(options: RunOptions) -> int:
@@ -59,6 +65,12 @@ def run(options: RunOptions) -> int:
     for report in (outputs.report, outputs.junit):
         if report is not None and not report.absolute().parent.is_dir():
             return _failed(f"cannot write {report}: there is no folder {report.parent}")
+    if options.viewer:
+        problem = no_display()
+        if problem:
+            return _failed(problem)
+        os.environ[VIEWER] = "1"
+        options = replace(options, policy=replace(options.policy, jobs=1))
     models = load_models(options.path)
     if models is None:
         return FAILED
@@ -116,12 +128,16 @@ def _report(results: RunResults, outputs: Outputs) -> None:
 
 def _record(folder: Path, target: Path) -> None:
     """Write the pictures; verdicts stand without them."""
-    try:
-        count = render_moments(folder, target)
-    except NoPictures as error:
-        print(f"robbdd: no pictures: {error}", file=sys.stderr)
-    else:
-        print(f"{count} picture{'' if count == 1 else 's'} of violated clauses in {target}", file=sys.stderr)
+    for render, what, of in (
+        (render_moments, "picture", "violated clauses"),
+        (render_videos, "moving picture", "scenarios"),
+    ):
+        try:
+            count = render(folder, target)
+        except NoPictures as error:
+            print(f"robbdd: no {what}s: {error}", file=sys.stderr)
+        else:
+            print(f"{count} {what}{'' if count == 1 else 's'} of {of} in {target}", file=sys.stderr)
 
 
 @contextmanager

@@ -26,8 +26,9 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     outputs = parser.add_argument_group("outputs")
     outputs.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     outputs.add_argument("--junit", metavar="OUT.xml", type=Path, help="write the results as JUnit XML")
-    text = "write a picture of each violated clause's moment here"
+    text = "write a moving picture of each scenario and a picture of each violated clause's moment here"
     outputs.add_argument("--record", metavar="DIR", type=Path, help=text)
+    outputs.add_argument("--viewer", action="store_true", help="follow each scenario in a window, in real time")
     text = "keep features, manifest, logs and results here instead of in the store"
     outputs.add_argument("-o", "--output", metavar="DIR", type=Path, help=text)
     outputs.add_argument("--no-store", action="store_true", help="keep nothing of the run")
@@ -58,7 +59,7 @@ def run_options(options: argparse.Namespace) -> RunOptions:
     outputs = Outputs(
         options.json, options.junit, options.output, options.record, options.store, keep=not options.no_store
     )
-    return RunOptions(options.path, choice, policy(options), outputs, options.rerun_failed)
+    return RunOptions(options.path, choice, policy(options), outputs, options.rerun_failed, options.viewer)
 
 
 def policy(options: argparse.Namespace) -> Policy:

@@ -17,6 +17,8 @@ from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.policy import Policy
 
 MANIFEST = "manifest.json"
+VIEWER = "ROBBDD_VIEWER"
+"""Environment variable of the agent: when it is set, a window shows each scenario in real time."""
 
 
 @dataclass(frozen=True, slots=True)
