@@ -2,6 +2,7 @@
 import * as vscode from "vscode";
 import type { Server } from "./client";
 import type { PreviewView } from "./preview/view";
+import { newProject } from "./projects";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
 
@@ -16,6 +17,7 @@ export function registerCommands(
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
     "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
     "robbdd.previewGherkin": (target) => withModel(target, (uri) => previews.open(vscode.Uri.parse(uri))),
+    "robbdd.newProject": () => newProject(server),
     "robbdd.restartServer": () => server.restart(),
     "robbdd.showLog": () => {
       log.show();

@@ -1,4 +1,5 @@
 // The server's answer to `robbdd/preview`, and the way from a place in a model to a line of its feature.
+import { isRecord } from "../values";
 
 export interface Place {
   readonly line: number;
@@ -82,8 +83,4 @@ function isRange(value: unknown): boolean {
 
 function isPlace(value: unknown): boolean {
   return isRecord(value) && typeof value["line"] === "number" && typeof value["character"] === "number";
-}
-
-function isRecord(value: unknown): value is Record<string, unknown> {
-  return typeof value === "object" && value !== null;
 }

@@ -1,4 +1,5 @@
 // What the server says about a run, as it arrives in the notification `robbdd/runMessage`.
+import { isRecord } from "../values";
 
 export interface RunStarted {
   readonly type: "RunStarted";
@@ -111,8 +112,4 @@ function isRunMessage(value: unknown): value is RunMessage {
   }
   const fields = FIELDS[value["type"] as RunMessage["type"]];
   return Object.entries(fields).every(([name, check]) => check(value[name]));
-}
-
-function isRecord(value: unknown): value is Record<string, unknown> {
-  return typeof value === "object" && value !== null;
 }

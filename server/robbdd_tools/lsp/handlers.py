@@ -14,6 +14,7 @@ from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.editing import register_editing
 from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
+from robbdd_tools.lsp.projects import register_projects
 from robbdd_tools.lsp.reading import register_reading
 from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
 from robbdd_tools.lsp.server import RobbddServer
@@ -38,6 +39,7 @@ def create_server() -> RobbddServer:
     register_tokens(server)
     register_ways(server)
     register_preview(server)
+    register_projects(server)
     return server
 
 

@@ -1,0 +1,72 @@
+// Begins projects from the templates that the server knows.
+import * as vscode from "vscode";
+import type { Server } from "./client";
+import { isRecord } from "./values";
+
+interface Template {
+  readonly name: string;
+  readonly about: string;
+}
+
+/** Ask for a template, a folder and a name, and open the first model of the project that the server writes there. */
+export async function newProject(server: Server): Promise<void> {
+  const answer = await server.request("robbdd/templates", {});
+  if (!Array.isArray(answer) || !answer.every(isTemplate)) {
+    void vscode.window.showWarningMessage("The RobBDD language server is not running: it has the templates.");
+    return;
+  }
+  const template = await vscode.window.showQuickPick(
+    answer.map(({ name, about }) => ({ label: name, detail: about })),
+    { title: "New RobBDD Project", placeHolder: "What should it begin as?" },
+  );
+  const parent = template && (await chooseParent());
+  const name = parent && (await askName(template.label));
+  if (template === undefined || parent === undefined || name === undefined) {
+    return;
+  }
+  const folder = vscode.Uri.joinPath(parent, name);
+  const begun = await server.request("robbdd/newProject", { template: template.label, uri: folder.toString() });
+  const problem = isRecord(begun) ? begun["problem"] : "the server did not answer";
+  if (typeof problem === "string") {
+    void vscode.window.showErrorMessage(`No project was begun: ${problem}`);
+    return;
+  }
+  await open(folder, isRecord(begun) ? begun["models"] : []);
+}
+
+/** The workspace's only folder; else the user chooses. */
+async function chooseParent(): Promise<vscode.Uri | undefined> {
+  const [only, ...others] = vscode.workspace.workspaceFolders ?? [];
+  if (only !== undefined && others.length === 0) {
+    return only.uri;
+  }
+  const chosen = await vscode.window.showOpenDialog({
+    canSelectFiles: false,
+    canSelectFolders: true,
+    openLabel: "Create the Project Here",
+  });
+  return chosen?.[0];
+}
+
+function askName(template: string): Thenable<string | undefined> {
+  return vscode.window.showInputBox({
+    title: "New RobBDD Project",
+    prompt: "The name of its folder; its models' namespaces get this name as well.",
+    value: template,
+    validateInput: (value) => (/^[^/\\:*?"<>|]+$/.test(value.trim()) ? undefined : "A folder cannot have this name."),
+  });
+}
+
+async function open(folder: vscode.Uri, models: unknown): Promise<void> {
+  const first: unknown = Array.isArray(models) ? models[0] : undefined;
+  if (typeof first === "string") {
+    await vscode.window.showTextDocument(vscode.Uri.parse(first));
+  }
+  if (vscode.workspace.getWorkspaceFolder(folder) === undefined) {
+    vscode.workspace.updateWorkspaceFolders(vscode.workspace.workspaceFolders?.length ?? 0, 0, { uri: folder });
+  }
+}
+
+function isTemplate(value: unknown): value is Template {
+  return isRecord(value) && typeof value["name"] === "string" && typeof value["about"] === "string";
+}

@@ -1,0 +1,62 @@
+"""Begins projects: copies of the examples under a namespace of their own."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from robbdd_tools.base.data import data_folder
+
+EXAMPLES = "examples"
+EXAMPLE_NAMESPACE = "https://example.org/robbdd/"
+"""What the namespaces of the examples begin with; a new project has its own name there."""
+IGNORED = ".robbdd/\n__pycache__/\n"
+
+
+class ScaffoldProblem(Exception):
+    """A project cannot begin as wanted; the message says why, for the user."""
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """An example that a project can begin as; ``about`` is the first line of its first model."""
+
+    name: str
+    about: str
+    folder: Path
+
+
+def templates() -> dict[str, Template]:
+    """Return the templates by name, in alphabetical order; raises ``OSError``."""
+    found: dict[str, Template] = {}
+    for folder in sorted(path for path in data_folder("", EXAMPLES).iterdir() if path.is_dir()):
+        models = _models(folder)
+        if models:
+            first_line = models[0].read_text(encoding="utf-8").partition("\n")[0]
+            found[folder.name] = Template(folder.name, first_line.lstrip("/ "), folder)
+    return found
+
+
+def begin_project(folder: Path, template: str) -> list[Path]:
+    """Copy a template into ``folder``, which must not hold anything yet; returns its models.
+
+    Raises ``ScaffoldProblem`` and ``OSError``.
+    """
+    known = templates()
+    if template not in known:
+        raise ScaffoldProblem(f"there is no template '{template}'; there are {', '.join(known)}")
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise ScaffoldProblem(f"{folder} is there already; name a new or an empty folder")
+    name = re.sub(r"[^a-z0-9]+", "-", folder.absolute().name.lower()).strip("-") or "project"
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in sorted(known[template].folder.iterdir()):
+        if path.is_file() and not path.name.startswith("."):
+            text = path.read_text(encoding="utf-8").replace(EXAMPLE_NAMESPACE, f"https://example.org/{name}/")
+            (folder / path.name).write_text(text, encoding="utf-8", newline="\n")
+    (folder / ".gitignore").write_text(IGNORED, encoding="utf-8", newline="\n")
+    return _models(folder)
+
+
+def _models(folder: Path) -> list[Path]:
+    return sorted(folder.glob("*.bdd"))

@@ -1,0 +1,45 @@
+"""The requests ``robbdd/templates`` and ``robbdd/newProject``: begin a project from the editor.
+
+The first has no parameters and answers a list of ``name`` and ``about``. The second takes ``template`` and the ``uri``
+of a new or empty folder, and answers the URIs of the ``models`` written there, or the ``problem``.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.scaffold import ScaffoldProblem, begin_project, templates
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.server import RobbddServer
+
+TEMPLATES, NEW_PROJECT = "robbdd/templates", "robbdd/newProject"
+
+
+def register_projects(server: RobbddServer) -> None:
+    """Add the requests to a server."""
+
+    @server.feature(TEMPLATES)
+    async def list_templates(_params: Any) -> list[dict[str, str]]:
+        known = await asyncio.to_thread(templates)
+        return [{"name": template.name, "about": template.about} for template in known.values()]
+
+    @server.feature(NEW_PROJECT)
+    async def new_project(params: Any) -> dict[str, Any]:
+        folder = uri_to_path(str(params.uri))
+        if folder is None:
+            return {"models": [], "problem": f"{params.uri} is not a folder of this machine"}
+        return await asyncio.to_thread(_begin, folder, str(params.template))
+
+
+def _begin(folder: Path, template: str) -> dict[str, Any]:
+    try:
+        models = begin_project(folder, template)
+    except ScaffoldProblem as problem:
+        return {"models": [], "problem": str(problem)}
+    except OSError as error:
+        return {"models": [], "problem": f"{error.filename or folder}: {error.strerror or error}"}
+    return {"models": [path_to_uri(model) for model in models], "problem": None}
