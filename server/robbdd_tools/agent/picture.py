@@ -69,7 +69,7 @@ class Camera:
         self._renderer.update_scene(data, self._view)
         scene = self._renderer.scene
         for index, (name, carrier, region) in enumerate(self._regions()):
-            self._draw(scene, data, carrier, region, COLORS[index % len(COLORS)], local_name(name))
+            self._draw(scene, data, carrier, region, COLORS[index % len(COLORS)], local_name(name), index % 2 > 0)
         pixels: NDArray[np.uint8] = self._renderer.render()
         return pixels
 
@@ -111,7 +111,14 @@ class Camera:
                 yield name, carrier, region
 
     def _draw(
-        self, scene: Any, data: Any, carrier: str, region: Region, color: tuple[float, float, float], name: str
+        self,
+        scene: Any,
+        data: Any,
+        carrier: str,
+        region: Region,
+        color: tuple[float, float, float],
+        name: str,
+        odd: bool,
     ) -> None:
         body = data.body(carrier)
         turn: FloatArray = body.xmat.reshape(3, 3)
@@ -120,8 +127,9 @@ class Camera:
         free = self._simulation.world.cast.objects[carrier].free
         opacity = OPACITY if free else THIN
         _add(scene, mujoco.mjtGeom.mjGEOM_BOX, half, center, turn, (*color, opacity), "")
-        # The middle of a table is where things lie: its label goes to a corner.
-        corner = np.array([0.0, 0.0, 1.0]) if free else np.array([-1.0, 1.0, 1.0])
+        # The middle of a table is where things lie: its label goes to a corner; boards lie side by side.
+        side = 0.0 if region.walled else -0.8 if odd else 0.8
+        corner = np.array([0.0, side, 1.0]) if free else np.array([-1.0, 1.0, 1.0])
         above = center + turn @ (corner * half + np.array([0.0, 0.0, 2 * LABEL]))
         _add(scene, mujoco.mjtGeom.mjGEOM_SPHERE, np.full(3, LABEL), above, turn, (*color, 1.0), name)
 
