@@ -8,6 +8,8 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.sentences import AnyOf, Clause, Filler, Fluent, Junction, Unmatched, fluents_of
+from robbdd_tools.agent.streams import Unobserved
+from robbdd_tools.agent.user_code import UserCodeError
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import After, Before, During, NoWindow, TimeConstraint, window
@@ -88,6 +90,8 @@ def _fluent(fluent: Fluent, trace: Trace, regions: Regions, events: AbstractSet[
 def _judged(fluent: Fluent, arguments: Arguments, trace: Trace, regions: Regions) -> Verdict:
     try:
         return judge(fluent.predicate, arguments, fluent.time, trace, regions)
+    except (Unobserved, UserCodeError) as error:
+        return unknown(str(error))
     except Exception as error:  # an evaluator may come from any package; its failure is missing evidence
         return unknown(f"the evaluator of '{fluent.predicate.name}' failed: {type(error).__name__}: {error}")
 

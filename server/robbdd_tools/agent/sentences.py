@@ -133,6 +133,12 @@ def fluents_of(clause: Clause) -> Iterator[Fluent]:
             return
 
 
+def read_timed_text(text: str) -> tuple[str, TimeConstraint] | None:
+    """Split a text that nothing in the catalog says from the time constraint it ends with, ``None`` without one."""
+    match = re.fullmatch(rf"(?P<words>.*) {TIME}", text)
+    return (match["words"], _time(match)) if match is not None else None
+
+
 def unescaped(text: str) -> str:
     """Return a string as the user wrote it from what stands for it in a step."""
     return _ESCAPE.sub(lambda match: chr(int(match[1], 16)) if match[1] else _NAMED.get(match[2], match[2]), text)

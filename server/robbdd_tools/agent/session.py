@@ -12,6 +12,7 @@ from robbdd_tools.agent.clauses import decide, is_closed, ranges
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Call, Execution, Timing
 from robbdd_tools.agent.moments import Moments
+from robbdd_tools.agent.policies import with_policies
 from robbdd_tools.agent.sentences import Clause, Doing, fluents_of, read_clause, read_doing, read_event
 from robbdd_tools.agent.viewer import NoViewer, Viewer
 from robbdd_tools.monitor.time import After, Before
@@ -47,7 +48,12 @@ class ScenarioRun:
         self._moments = moments
         self._open = {clause.line: clause.sentence for clause in spec.clauses}
         self._doings = {line: doing for line, role, text in texts if role == "when" and (doing := read_doing(text))}
-        self._clauses = {line: read_clause(text) for line, role, text in texts if role != "when"}
+        parts = {clause.line: clause.parts or (clause.iri,) for clause in spec.clauses}
+        self._clauses = {
+            line: with_policies(read_clause(text), parts.get(line, ()), spec)
+            for line, role, text in texts
+            if role != "when"
+        }
         self._execution: Execution | None = None
         self._viewer: Viewer | None = None
         self._broken = ""

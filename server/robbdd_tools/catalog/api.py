@@ -85,6 +85,14 @@ class Evidence(Protocol):
         """Mean velocity of that position since the sample before, m/s, shape (n, 3)."""
         ...
 
+    def position_at(self, name: str, times: FloatArray) -> FloatArray:
+        """Position at the last sample at or before each of some times (n,), within the window or before it, (n, 3)."""
+        ...
+
+    def orientation_at(self, name: str, times: FloatArray) -> FloatArray:
+        """Orientation at the last sample at or before each of some times (n,), (n, 4)."""
+        ...
+
     def outline(self, name: str) -> Outline:
         """How far an object reaches around its position."""
         ...

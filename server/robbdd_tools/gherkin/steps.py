@@ -31,12 +31,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step: keyword, text, and the clause that it states. ``role`` is ``given``, ``when`` or ``then``."""
+    """One step: keyword, text, and the clause that it states. ``role`` is ``given``, ``when`` or ``then``.
+
+    ``parts`` are the fluents and texts of a group, in the order of the text; nothing for a clause that stands alone.
+    """
 
     keyword: str
     text: str
     clause: Iri
     role: str
+    parts: tuple[Iri, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +93,9 @@ class StepWriter:
                 case BehaviourClause() | EventClause():
                     yield Step("When", self.sentence(clause, values), clause.iri, "when")
                 case _:
-                    yield Step(clause.role.capitalize(), self.sentence(clause, values), clause.iri, clause.role)
+                    alone = isinstance(clause, Fluent | TextFluent | TextClause)
+                    parts = () if alone else tuple(self._parts(clause, values))
+                    yield Step(clause.role.capitalize(), self.sentence(clause, values), clause.iri, clause.role, parts)
 
     def sentence(self, clause: Clause, values: Mapping[Iri, Filler], *, within: bool = False) -> str:
         """Return the sentence of one clause with its values; ``within`` tells that it is a part of a group."""
@@ -121,6 +127,21 @@ class StepWriter:
                 return self._grouped(
                     "and", [self._all_of(clause.clauses, inner) for inner in self._each(clause, values)]
                 )
+
+    def _parts(self, clause: Clause, values: Mapping[Iri, Filler]) -> Iterator[Iri]:
+        """Yield the fluents and texts of a clause as often as its sentence states them."""
+        match clause:
+            case Junction():
+                inner = [(operand, values) for operand in clause.operands]
+            case Exists() if self._is_one_choice(clause, values):
+                inner = [(part, self._some(clause, values)) for part in clause.clauses]
+            case Exists() | ForAll():
+                inner = [(part, each) for each in self._each(clause, values) for part in clause.clauses]
+            case _:
+                yield clause.iri
+                return
+        for part, bound in inner:
+            yield from self._parts(part, bound)
 
     def time(self, constraint: TimeConstraint) -> str:
         """Return the words of a time constraint."""

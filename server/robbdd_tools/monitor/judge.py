@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from robbdd_tools.monitor.time import NoWindow, TimeConstraint, Window, window
+from robbdd_tools.monitor.time import TOLERANCE, NoWindow, TimeConstraint, Window, window
 from robbdd_tools.monitor.vacuity import Range
 from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Outcome, Verdict, unknown
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from robbdd_tools.catalog.api import Arguments, FloatArray, Outline, Predicate, Region
     from robbdd_tools.monitor.trace import Trace
 
@@ -56,6 +58,17 @@ class WindowEvidence:
             return np.full((1, 3), np.nan)
         steps = np.diff(path, axis=0) / np.diff(times)[:, None]
         return np.concatenate([steps[:1], steps])[self._rows]
+
+    def position_at(self, name: str, times: FloatArray) -> FloatArray:
+        """Positions at the last samples at or before some times, m, shape (n, 3); raises ``KeyError``."""
+        return self.trace.positions[self._rows_at(times), self.trace.column(name)]
+
+    def orientation_at(self, name: str, times: FloatArray) -> FloatArray:
+        """Orientations at the last samples at or before some times, shape (n, 4); raises ``KeyError``."""
+        return self.trace.orientations[self._rows_at(times), self.trace.column(name)]
+
+    def _rows_at(self, times: FloatArray) -> NDArray[np.intp]:
+        return np.maximum(np.searchsorted(self.trace.times, times + TOLERANCE, side="right") - 1, 0)
 
     def outline(self, name: str) -> Outline:
         """How far an object reaches around its position; raises ``KeyError``."""

@@ -67,13 +67,17 @@ class ExecutionSpec:
 
 @dataclass(frozen=True, slots=True)
 class ClauseSpec:
-    """One clause of one scenario: the feature line of its step, the IRI it judges, its place in the scenario."""
+    """One clause of one scenario: the feature line of its step, the IRI it judges, its place in the scenario.
+
+    ``parts`` are the IRIs of the fluents of a group, in the order of the sentence.
+    """
 
     line: int
     iri: str
     name: str
     role: str
     sentence: str
+    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,7 +275,7 @@ def _scenario(entry: dict[str, Any], executions: Mapping[str, ExecutionSpec]) ->
             dict(scene["places"]),
             tuple(ConfigSpec(**config) for config in scene["config"]),
         ),
-        clauses=tuple(ClauseSpec(**clause) for clause in clauses),
+        clauses=tuple(from_plain(ClauseSpec, clause) for clause in clauses),
         execution=None if execution is None else executions[execution],
         **entry,
     )

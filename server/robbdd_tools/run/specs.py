@@ -103,7 +103,7 @@ class SpecWriter:
             scene=self._scene(shared, variant.scene, scenario.values),
             events=shared.events,
             clauses=tuple(
-                ClauseSpec(line, step.clause, curie(step.clause).rsplit(":", 1)[-1], step.role, step.text)
+                ClauseSpec(line, step.clause, curie(step.clause).rsplit(":", 1)[-1], step.role, step.text, step.parts)
                 for line, step in zip(scenario.lines, scenario.steps, strict=True)
                 # A template may leave a step out; there is nothing to judge then.
                 if line

@@ -1,0 +1,62 @@
+"""What a provider tells of a thing's position: at a rate, late, and not quite right."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.catalog.geometry import out_of_frame
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Evidence, FloatArray
+    from robbdd_tools.monitor.policy import Observation
+
+SOURCES = {"topic": "a ROS topic", "entity-state": "ROS entity states", "transforms": "ROS transforms"}
+
+
+class Unobserved(Exception):
+    """There is nothing to judge on; the message says why."""
+
+
+class Stream:
+    """The observations of one element that are known at each sample of a window.
+
+    The provider looks at the times k / rate; what it saw is known a latency later, with noise on each axis that follows
+    from the seed, the observation and k alone. ``positions`` (n, 3) m are the last known ones, ``stamps`` (n,) s the
+    times at which they were taken. Raises ``Unobserved`` where the simulation has no such provider or nothing was
+    known yet.
+    """
+
+    def __init__(self, observation: Observation, target: str, evidence: Evidence, seed: int) -> None:
+        self.target = target
+        provider = observation.provider
+        if provider.kind != "ground-truth":
+            where = SOURCES.get(provider.kind, provider.kind) + (f" '{provider.source}'" if provider.source else "")
+            raise Unobserved(f"{target} is observed by {where}, which a simulation does not have")
+        rate = provider.rate
+        if rate is None or rate <= 0:
+            raise Unobserved(f"the update rate of the provider of {target} must be above 0 Hz")
+        looks = np.floor((evidence.times - provider.latency) * rate + 1e-6).astype(int)
+        if looks.min(initial=0) < 0:
+            first = float(evidence.times[int(np.argmin(looks))])
+            raise Unobserved(f"nothing was known of {target} at {first:.2f} s: it is seen {provider.latency:g} s later")
+        self.stamps: FloatArray = looks / rate
+        noise = _noise(seed, f"{observation.iri} {target}", int(looks.max(initial=0)) + 1) * provider.noise
+        self.positions: FloatArray = _truth(evidence, target, self.stamps) + noise[looks]
+
+
+def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:
+    """Positions (n, 3) m at the last samples at or before some times; of a workspace, that of its first region."""
+    regions = dict(zip(evidence.workspaces, map(evidence.regions, evidence.workspaces), strict=True)).get(target)
+    if not regions:
+        return evidence.position_at(target, stamps)
+    carrier, region = regions[0]
+    return out_of_frame(region.center, evidence.position_at(carrier, stamps), evidence.orientation_at(carrier, stamps))
+
+
+def _noise(seed: int, name: str, count: int) -> FloatArray:
+    """Return normally distributed numbers (count, 3); a longer array begins as a shorter one."""
+    digest = hashlib.sha256(f"{seed} {name}".encode()).digest()
+    return np.random.default_rng(int.from_bytes(digest[:8], "big")).standard_normal((count, 3))
