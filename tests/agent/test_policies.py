@@ -36,7 +36,7 @@ def spec_of(
     model: str = "",
 ) -> ScenarioSpec:
     policy = Policy("x:policy", CLAUSE, rule, horizon, (Observation("x:seen", provider, targets),))
-    way = ExecutionSpec("x:run", "x:run", Implementation("x:impl", "catalog", "pick-place"), (policy,))
+    way = ExecutionSpec("x:run", "x:run", Implementation("x:impl", "catalog", "pick-place"), policies=(policy,))
     return replace(scenario(seed=seed), values={"t:var-thing": CUBE}, execution=way, model=model)
 
 
