@@ -44,12 +44,27 @@ def rename(snapshot: Snapshot, uri: str, offset: int, name: str) -> list[Edit]:
     if _NAME.fullmatch(name) is None:
         raise RenameRefused(f"'{name}' is no name: use a letter or _, then letters, digits, _ and -")
     _refuse_clash(snapshot, definition, name)
-    edits = {Edit(definition.uri, definition.span, name)}
+    return [Edit(place, span, name) for place, span in name_places(snapshot, definition)]
+
+
+def name_places(snapshot: Snapshot, definition: Definition) -> list[tuple[str, Span]]:
+    """Return every place where a declared name itself is written, also as a part of qualified names."""
+    places = {(definition.uri, definition.span)}
     for use in uses(snapshot, definition):
         span = _part(use, definition)
         if span is not None:
-            edits.add(Edit(use.uri, span, name))
-    return sorted(edits, key=lambda edit: (edit.uri, edit.span))
+            places.add((use.uri, span))
+    return sorted(places)
+
+
+def linked_places(snapshot: Snapshot, uri: str, offset: int) -> list[Span]:
+    """Return the places of the name under a cursor that can be typed over together: those of one document only."""
+    found = symbol_at(snapshot, uri, offset)
+    if found is None or _text(snapshot, found[1].uri, found[1].span) != found[1].symbol.name:
+        return []
+    places = name_places(snapshot, found[1])
+    inside = any(place == uri and span.contains(offset) for place, span in places)
+    return [span for _, span in places] if inside and all(place == uri for place, _ in places) else []
 
 
 def _refuse_clash(snapshot: Snapshot, definition: Definition, name: str) -> None:

@@ -34,7 +34,7 @@ def loaded(snapshot: Snapshot, uri: str) -> list[Importable]:
 
 def beside(snapshot: Snapshot, uri: str) -> list[Importable]:
     """Return the files in the folder of a file that it may import and that nobody has loaded yet."""
-    unread = (_on_disk(name) for name in _beside(uri) if name not in snapshot.sources)
+    unread = (file_on_disk(name) for name in _beside(uri) if name not in snapshot.sources)
     return _importable(uri, (index for index in unread if index is not None))
 
 
@@ -64,7 +64,8 @@ def _beside(uri: str) -> list[str]:
     return [path_to_uri(entry) for entry in entries[:MOST_NEIGHBOURS]]
 
 
-def _on_disk(uri: str) -> FileIndex | None:
+def file_on_disk(uri: str) -> FileIndex | None:
+    """Return what a file on disk says, kept until it changes there; ``None`` when it cannot be read."""
     path = uri_to_path(uri)
     try:
         status = path.stat() if path is not None else None

@@ -11,7 +11,7 @@ from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.fixes import imports_from_disk
 from robbdd_tools.features.scenarios import RunnableScenario, runnable_scenarios
 from robbdd_tools.lsp.convert import Converter, document_of
-from robbdd_tools.lsp.editing import register_editing
+from robbdd_tools.lsp.editing import refactorings, register_editing
 from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.projects import register_projects
@@ -74,7 +74,7 @@ def _register_documents(server: RobbddServer) -> None:
 
 
 def _register_actions(server: RobbddServer) -> None:
-    kinds = [types.CodeActionKind.QuickFix, types.CodeActionKind.Source]
+    kinds = [types.CodeActionKind.QuickFix, types.CodeActionKind.Refactor, types.CodeActionKind.Source]
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=kinds))
     async def code_action(ls: RobbddServer, params: types.CodeActionParams) -> list[types.CodeAction]:
@@ -84,6 +84,9 @@ def _register_actions(server: RobbddServer) -> None:
             actions: list[types.CodeAction] = []
             if _asked(only, types.CodeActionKind.QuickFix):
                 actions += _quick_fixes(ls, snapshot, params)
+            selected = ls.convert.span(document_of(snapshot, uri), params.range)
+            found = refactorings(ls, snapshot, uri, selected)
+            actions += (action for action in found if not only or any(_is(action.kind, kind) for kind in only))
             if _asked(only, types.CodeActionKind.Source):
                 span = ls.convert.span(document_of(snapshot, uri), params.range)
                 actions += [
@@ -131,7 +134,16 @@ def _register_commands(server: RobbddServer) -> None:
 
 
 def _asked(only: Sequence[types.CodeActionKind | str] | None, kind: types.CodeActionKind) -> bool:
-    return not only or any(kind == wanted or kind.startswith(f"{wanted}.") for wanted in only)
+    return not only or any(_is(kind, wanted) for wanted in only)
+
+
+def _is(kind: types.CodeActionKind | str | None, wanted: types.CodeActionKind | str) -> bool:
+    """Tell whether a kind of action is another one or below it."""
+    return f"{_value(kind)}.".startswith(f"{_value(wanted)}.")
+
+
+def _value(kind: types.CodeActionKind | str | None) -> str:
+    return kind.value if isinstance(kind, types.CodeActionKind) else kind or ""
 
 
 def _quick_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionParams) -> list[types.CodeAction]:

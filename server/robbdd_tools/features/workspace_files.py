@@ -1,0 +1,48 @@
+"""The model files of a folder on disk, open or not."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.features.unimported import file_on_disk
+from robbdd_tools.names.index import FileIndex, language_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.project import Snapshot
+
+MOST_FILES = 5_000
+"""Model files of a workspace that are looked at."""
+_PASSED_OVER = frozenset({"node_modules", "__pycache__", "build", "dist"})
+
+
+def model_files(folders: Iterable[str]) -> list[str]:
+    """Return the URIs of the model files below some folders in alphabetical order; hidden folders are passed over."""
+    found: dict[str, None] = {}
+    for folder in folders:
+        path = uri_to_path(folder)
+        for uri in _below(path) if path is not None else ():
+            found.setdefault(uri)
+            if len(found) == MOST_FILES:
+                return sorted(found)
+    return sorted(found)
+
+
+def workspace_indices(snapshot: Snapshot, folders: Iterable[str]) -> Iterator[FileIndex]:
+    """Yield every readable model file: as the project has it, else as it is on disk."""
+    for uri in sorted({*model_files(folders), *snapshot.sources}):
+        source = snapshot.sources.get(uri)
+        index = source if isinstance(source, FileIndex) else None if source is not None else file_on_disk(uri)
+        if index is not None:
+            yield index
+
+
+def _below(folder: Path) -> Iterator[str]:
+    for place, inner, names in os.walk(folder):
+        inner[:] = sorted(name for name in inner if not name.startswith(".") and name not in _PASSED_OVER)
+        for name in sorted(names):
+            if language_of(name):
+                yield path_to_uri(Path(place) / name)

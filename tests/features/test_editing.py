@@ -1,0 +1,97 @@
+"""Names typed over together, moved files, layout of parts of a text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from kit import EXAMPLES, MODEL, SCENE, fixture
+from robbdd_tools.base.diagnostic import Edit
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.features.format_range import format_on_type, format_range
+from robbdd_tools.features.layout import lay_out
+from robbdd_tools.features.rename import linked_places
+from robbdd_tools.features.rename_files import import_edits
+from robbdd_tools.features.workspace_files import model_files, workspace_indices
+from robbdd_tools.names.project import Project
+
+
+def edited(text: str, edits: list[Edit]) -> str:
+    for edit in sorted(edits, key=lambda edit: edit.span, reverse=True):
+        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
+    return text
+
+
+def linked(old: str, new: str) -> list[str]:
+    case = fixture(MODEL.replace(old, new, 1))
+    text = case.project.texts()[case.uri][1]
+    return [text[span.start : span.end] for span in linked_places(case.snapshot, case.uri, case.cursor)]
+
+
+def test_a_name_of_one_document_is_typed_over_everywhere() -> None:
+    assert linked("var goal", "var go$0al") == ["goal"] * 5
+    assert linked("<pick-start> until", "<pick-$0start> until") == ["pick-start"] * 3
+
+
+def test_a_name_that_other_documents_use_is_not_linked() -> None:
+    assert linked("<places.bench_ws>", "<places.ben$0ch_ws>") == []
+    assert linked("So That", "So T$0hat") == []
+
+
+def test_imports_follow_a_moved_file_and_a_moved_importer(tmp_path: Path) -> None:
+    (tmp_path / "cells").mkdir()
+    (tmp_path / ".git").mkdir()
+    (tmp_path / ".git" / "x.scene").write_text(SCENE, encoding="utf-8")
+    (tmp_path / "cells" / "lab.scene").write_text(SCENE, encoding="utf-8")
+    text = MODEL.replace("lab.scene", "cells/lab.scene")
+    (tmp_path / "main.bdd").write_text(text, encoding="utf-8")
+    main, lab = path_to_uri(tmp_path / "main.bdd"), path_to_uri(tmp_path / "cells" / "lab.scene")
+    folder = path_to_uri(tmp_path)
+    assert model_files([folder]) == [lab, main]
+    indices = list(workspace_indices(Project().snapshot(), [folder]))
+
+    def after(moves: dict[str, str]) -> str:
+        return edited(text, [edit for edit in import_edits(indices, moves) if edit.uri == main]).split("\n")[0]
+
+    assert after({lab: f"{folder}/bench.scene"}) == 'import "bench.scene"'
+    assert after({f"{folder}/cells": f"{folder}/rooms/cells"}) == 'import "rooms/cells/lab.scene"'
+    assert after({main: f"{folder}/cells/main.bdd"}) == 'import "lab.scene"'
+    assert after({main: f"{folder}/a/main.bdd", lab: f"{folder}/a/lab.scene"}) == 'import "lab.scene"'
+    assert after({f"{folder}/other.scene": f"{folder}/more.scene"}) == 'import "cells/lab.scene"'
+
+
+def test_an_unsaved_import_follows_a_moved_file() -> None:
+    case = fixture(MODEL)
+    indices = workspace_indices(case.snapshot, [])
+    (edit,) = import_edits(indices, {"file:///fixture/lab.scene": "file:///fixture/deep/lab.scene"})
+    assert (edit.uri, edit.text) == (case.uri, "deep/lab.scene")
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.rglob("*.*")), ids=lambda path: path.name)
+def test_laying_out_all_lines_is_laying_out_the_text(path: Path) -> None:
+    text = path.read_text(encoding="utf-8").replace("    ", " ").replace(" {", "   {")
+    document = Document("file:///x.bdd", 0, text)
+    assert edited(text, format_range(document, Span(0, len(text)))) == lay_out(text)
+
+
+def test_only_the_selected_lines_are_laid_out() -> None:
+    text = MODEL.replace("    var part", "  var   part").replace("    var goal", "  var   goal")
+    start = text.index("  var   part")
+    found = edited(text, format_range(Document("x", 0, text), Span(start, start + 5)))
+    assert found == MODEL.replace("    var goal", "  var   goal")
+
+
+def test_a_new_line_is_indented_as_the_layout_has_it() -> None:
+    text = MODEL.replace("    When:\n", "    When:\n\n", 1)
+    line = text.index("    When:\n") + len("    When:\n")
+    (edit,) = format_on_type(Document("x", 0, text), line, "\n")
+    assert (edit.span, edit.text) == (Span(line, line), " " * 8)
+
+
+def test_a_closing_brace_goes_below_its_opening_line_and_a_bar_aligns_its_table() -> None:
+    text = "Scenario Template (ns=t) x {\n    var a\n    }"
+    assert edited(text, format_on_type(Document("x", 0, text), len(text), "}")) == text[:-5] + "}\n"
+    rows = "| <a> | <bb> |\n|---|---|\n| 1 | 2 |"
+    assert edited(rows, format_on_type(Document("x", 0, rows), len(rows), "|")).rstrip() == lay_out(rows).rstrip()

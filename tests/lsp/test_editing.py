@@ -1,0 +1,78 @@
+"""Changes of texts that a client asks for, over the wire."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from lsp_kit import CLIENTS, Editor
+
+
+async def actions(editor: Editor, at: str, only: list[str] | None = None) -> dict[str, types.CodeAction]:
+    place = editor.position(at)
+    params = types.CodeActionParams(
+        text_document=types.TextDocumentIdentifier(uri=editor.uri),
+        range=types.Range(start=place, end=place),
+        context=types.CodeActionContext(diagnostics=[], only=only),
+    )
+    found = await editor.client.text_document_code_action_async(params)
+    return {action.title: action for action in found or () if isinstance(action, types.CodeAction)}
+
+
+@CLIENTS
+async def test_refactorings_are_offered_by_their_kind(editor: Editor) -> None:
+    editor.open()
+    found = await actions(editor, "variation:", ["refactor.rewrite"])
+    assert list(found) == ["Write the product as a table"]
+    edit = found["Write the product as a table"].edit
+    assert edit is not None
+    assert edit.changes is not None
+    assert edit.changes[editor.uri][0].new_text.startswith("| <pick-place.thing>")
+    assert await actions(editor, "variation:", ["quickfix"]) == {}
+
+
+async def test_a_scene_is_split_off_into_a_new_file(editor: Editor) -> None:
+    editor.open()
+    editor.path = editor.path.with_name("bench.scene")
+    editor.uri = editor.path.as_uri()
+    editor.open(editor.path.read_text(encoding="utf-8"))
+    found = await actions(editor, "scene (ns=env)", ["refactor.extract"])
+    edit = found["Move the scene to 'bench_scene.scene'"].edit
+    assert edit is not None
+    changes = list(edit.document_changes or ())
+    assert isinstance(changes[0], types.CreateFile)
+    assert len(changes) == 4
+
+
+@CLIENTS
+async def test_imports_follow_a_renamed_file(editor: Editor) -> None:
+    old = editor.path.with_name("bench.scene").as_uri()
+    move = types.FileRename(old_uri=old, new_uri=old.replace("bench.scene", "cells/bench.scene"))
+    edit = await editor.client.workspace_will_rename_files_async(types.RenameFilesParams(files=[move]))
+    assert edit is not None
+    assert edit.changes is not None
+    new = {uri.rsplit("/", 1)[-1]: [change.new_text for change in edits] for uri, edits in edit.changes.items()}
+    assert new == {"pickplace.bdd": ["cells/bench.scene"], "bench.scenex": ["cells/bench.scene"]}
+
+
+@CLIENTS
+async def test_parts_are_laid_out_and_names_linked(editor: Editor) -> None:
+    tidy = editor.text
+    editor.open(tidy.replace("    var thing", "  var   thing"))
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    options = types.FormattingOptions(tab_size=4, insert_spaces=True)
+    place = editor.position("var   thing")
+    edits = await editor.client.text_document_range_formatting_async(
+        types.DocumentRangeFormattingParams(
+            text_document=document, range=types.Range(start=place, end=place), options=options
+        )
+    )
+    assert [edit.new_text for edit in edits or ()] == ["    var thing\n"]
+    typed = await editor.client.text_document_on_type_formatting_async(
+        types.DocumentOnTypeFormattingParams(text_document=document, position=place, ch="}", options=options)
+    )
+    assert [edit.new_text for edit in typed or ()] == ["    var thing\n"]
+    linked = await editor.client.text_document_linked_editing_range_async(
+        types.LinkedEditingRangeParams(**editor.at("var   thi", after=True))
+    )
+    assert linked is not None
+    assert len(linked.ranges) == 6
