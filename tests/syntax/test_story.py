@@ -129,6 +129,7 @@ def test_a_broken_scenario_keeps_the_names_of_all_others() -> None:
         ("        }\n}", "        }}\n}", 11, "after the end of the declaration"),
         ("        Scenario bench", "        Scenaro bench", 3, "expected 'Scenario'"),
         ("User Story (ns=t) fetching {", "User Story (ns=t) fetching", 1, "expected '{'"),
+        ("    Scenarios:\n", "    Scenarios\n", 3, "unexpected 'Scenario': expected ':'"),
         ('As A "operator"', "As A", 1, "expected a string in quotes"),
     ],
 )

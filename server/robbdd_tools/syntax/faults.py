@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from robbdd_tools.base.document import Span
@@ -27,6 +28,7 @@ _RULE_WORDS = {
     "ProviderPath": "the name of an observation provider",
     "PolicyPath": "the name of an observation policy",
 }
+_EMPTY_LINE = re.compile(r"[ \t\r]*\n([ \t]*)\r?\n")
 _STARTS = frozenset({"import", "ns"})
 
 
@@ -61,7 +63,8 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
         return trailing_fault(text, rejected.offset)
     expected = " or ".join(words) if len(words) < 3 else ", ".join(words[:-1]) + " or " + words[-1]
     if not found:
-        return SyntaxFault(last_token(text), f"the declaration ends too early: expected {expected}")
+        place = _blank_line(text) if "}" in rejected.expected.literals else None
+        return SyntaxFault(place or last_token(text), f"the declaration ends too early: expected {expected}")
     return SyntaxFault(span, f"unexpected '{found}': expected {expected}")
 
 
@@ -84,6 +87,13 @@ def _token(text: str, offset: int) -> Span:
     if end == offset and offset < len(text):
         end = offset + 1
     return Span(offset, end)
+
+
+def _blank_line(text: str) -> Span | None:
+    """Return the empty line behind the last word of a text, which is where a closing brace would stand."""
+    end = len(text.rstrip())
+    match = _EMPTY_LINE.match(text, end)
+    return None if match is None else Span(match.start(1), match.end(1))
 
 
 def last_token(text: str) -> Span:

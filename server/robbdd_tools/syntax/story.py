@@ -170,7 +170,9 @@ def _outside(fault: SyntaxFault, cut: Cut) -> SyntaxFault:
     """Return a fault of a frame at its place in the whole story."""
     start = _unframed(fault.span.start, cut)
     span = Span(start, start + fault.span.end - fault.span.start)
-    if cut.starts[0] <= fault.span.start < len(cut.head) + len(STAND_IN):
+    if fault.span.start == len(cut.head):
+        span = Span(start, start + len(_WORD))
+    elif len(cut.head) < fault.span.start < len(cut.head) + len(STAND_IN):
         # Nothing but the end of the story is missed behind the stand-in.
         span = last_token(cut.text)
     fix = fault.fix
