@@ -81,10 +81,12 @@ def test_expressions_nest() -> None:
     assert [type(operand) for operand in found.operands] == [tree.Fluent, tree.Negation, tree.Conjunction]
 
 
-def test_and_is_not_mixed_with_or_in_one_parenthesis() -> None:
-    fluent = "a{}: holds(<x> is held by <y>, before <e>)"
-    text = template(f"( {fluent.format(1)} and {fluent.format(2)} or {fluent.format(3)} )")
-    assert faults(text)[0][0] == "or"
+@pytest.mark.parametrize("layout", [" ", "\n"])
+@pytest.mark.parametrize(("one", "other"), [("and", "or"), ("or", "and")])
+def test_and_is_not_mixed_with_or_in_one_parenthesis(one: str, other: str, layout: str) -> None:
+    first, second, third = (f"a{number}: holds(<x> is held by <y>, before <e>)" for number in range(3))
+    text = template(layout.join(("(", first, one, second, other, third, ")")))
+    assert [found for found, _ in faults(text)] == [other]
 
 
 def test_keywords_need_a_boundary() -> None:

@@ -25,6 +25,7 @@ from robbdd_tools.checks.published_form import published_form
 from robbdd_tools.checks.repeated_value import repeated_value
 from robbdd_tools.checks.row_width import row_width
 from robbdd_tools.checks.selection_size import selection_size
+from robbdd_tools.checks.setting import setting
 from robbdd_tools.checks.type_conflict import type_conflict
 from robbdd_tools.checks.unused_event import unused_event
 from robbdd_tools.checks.unused_import import unused_import
@@ -47,6 +48,7 @@ DECLARATION_RULES = (
     repeated_value,
     row_width,
     selection_size,
+    setting,
     type_conflict,
 )
 FILE_RULES = (

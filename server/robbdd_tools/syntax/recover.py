@@ -128,6 +128,8 @@ def _repairs(text: str, stopped: Rejected) -> Iterator[Repair]:
     yield from _lines(text, offset, ((0, 0),))
     if found.end > found.start:
         yield _blanked(text, found)
+    if ")" in literals:
+        yield from _rest_of_brackets(text, offset)
     yield from _lines(text, offset, ((1, 0), (0, 1), (1, 1), (2, 0)))
     yield from _blocks(text, offset)
 
@@ -178,6 +180,20 @@ def _lines(text: str, offset: int, windows: tuple[tuple[int, int], ...]) -> Iter
     for before, after in windows:
         if own - before > 0 and own + after < len(lines):
             yield _blanked(text, Span(lines[own - before][0], lines[own + after][1]))
+
+
+def _rest_of_brackets(text: str, offset: int) -> Iterator[Repair]:
+    """Blank what stands between the error and the bracket that closes those around it, as after 'a and b' 'or c'."""
+    depth = 0
+    for match in _BRACKETS.finditer(text, offset):
+        if match["open"]:
+            depth += 1
+        elif match["close"] and depth:
+            depth -= 1
+        elif match["close"]:
+            if match["close"] == ")":
+                yield _blanked(text, Span(offset, match.start()))
+            return
 
 
 def _blocks(text: str, offset: int) -> Iterator[Repair]:
