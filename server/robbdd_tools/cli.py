@@ -55,7 +55,8 @@ def _parser() -> argparse.ArgumentParser:
 
     graph = commands.add_parser("graph", help="print the knowledge graph of a model and its imports")
     graph.add_argument("path", metavar="FILE", type=Path)
-    graph.add_argument("--format", choices=FORMATS, default="ttl")
+    graph.add_argument("--format", choices=(*FORMATS, "svg"), default="ttl", help="svg is a picture of its structure")
+    _take_results(graph)
     graph.set_defaults(command=_graph)
 
     gherkin = commands.add_parser("gherkin", help="write a folder of features that behave runs")
@@ -99,6 +100,7 @@ def _parser() -> argparse.ArgumentParser:
     query.add_argument("-f", "--file", metavar="QUERY.rq", type=Path, help="read the query from this file")
     query.add_argument("--name", metavar="NAME", help="a query that comes along; without any query they are listed")
     query.add_argument("--format", choices=("table", "csv", "json"), default="table")
+    _take_results(query)
     query.set_defaults(command=_query)
     new = commands.add_parser("new", help="begin a project from a template")
     new.add_argument(
@@ -108,6 +110,11 @@ def _parser() -> argparse.ArgumentParser:
     new.set_defaults(command=_new)
     _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
+
+
+def _take_results(parser: argparse.ArgumentParser) -> None:
+    text = "with the results of a run: its JSON, or the number of a stored run (default: the newest)"
+    parser.add_argument("--results", metavar="RESULT.json|RUN", nargs="?", const="latest", help=text)
 
 
 def _allow_hosts(*parsers: argparse.ArgumentParser) -> None:
@@ -143,7 +150,7 @@ def _format(options: argparse.Namespace) -> int:
 def _graph(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.export import print_graph
 
-    return print_graph(options.path, options.format)
+    return print_graph(options.path, options.format, options.results)
 
 
 def _gherkin(options: argparse.Namespace) -> int:
@@ -191,7 +198,7 @@ def _view(options: argparse.Namespace) -> int:
 def _query(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.query import query
 
-    return query(options.path, options.query, options.file, options.name, options.format)
+    return query(options.path, options.query, options.file, options.name, options.format, options.results)
 
 
 if __name__ == "__main__":

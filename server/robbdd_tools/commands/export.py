@@ -2,21 +2,50 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.results import graph_with_results
+
+if TYPE_CHECKING:
+    from robbdd_tools.graph.built import BuiltGraph
+    from robbdd_tools.graph.source_map import Location
+    from robbdd_tools.names.project import Snapshot
+
+PICTURE = "svg"
+"""The format that is a picture of the structure, not the graph itself."""
 
 
-def print_graph(path: Path, form: str) -> int:
-    """Print the graph of a model and its imports; returns the exit code."""
-    from robbdd_tools.graph.build import build_graph
+def print_graph(path: Path, form: str, results: str | None) -> int:
+    """Print the graph of a model and its imports, with the results of a run if any; returns the exit code."""
     from robbdd_tools.graph.serialize import serialize
 
     snapshot = sound_model(path)
     if snapshot is None:
         return FAILED
-    sys.stdout.write(serialize(build_graph(snapshot, path_to_uri(path)).graph, form))
+    built = graph_with_results(snapshot, path, results)
+    if built is None:
+        return FAILED
+    sys.stdout.write(_picture(snapshot, built, path) if form == PICTURE else serialize(built.graph, form))
     return OK
+
+
+def _picture(snapshot: Snapshot, built: BuiltGraph, path: Path) -> str:
+    """Return the structure of a model as SVG, whose places name files from the model's folder."""
+    from robbdd_tools.graph.structure import structure_of
+    from robbdd_tools.graph.svg import draw
+
+    def source(location: Location) -> str:
+        file, analysis = uri_to_path(location.uri), snapshot.file(location.uri)
+        if file is None or analysis is None:
+            return ""
+        start = analysis.document.position(location.span.start)
+        name = Path(os.path.relpath(file, path.absolute().parent)).as_posix()
+        return f"{name}:{start.line + 1}:{start.column + 1}"
+
+    return draw(structure_of(built), source)

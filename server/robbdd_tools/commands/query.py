@@ -9,17 +9,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Document
-from robbdd_tools.base.files import Unreadable, path_to_uri, read_text
+from robbdd_tools.base.files import Unreadable, read_text
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.results import graph_with_results
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.query import Rows, Term
 
 
-def query(path: Path, text: str | None, file: Path | None, name: str | None, form: str) -> int:
-    """Print the answer to one query, given as text, in a file, or by the name of a ready one; returns the exit code."""
-    from robbdd_tools.graph.build import build_graph
+def query(path: Path, text: str | None, file: Path | None, name: str | None, form: str, results: str | None) -> int:
+    """Print the answer to one query, given as text, in a file, or by the name of a ready one; returns the exit code.
+
+    ``results`` of a run (see ``graph_with_results``) are asked together with the model.
+    """
     from robbdd_tools.graph.query import BadQuery, run_query
 
     source = _source(text, file, name)
@@ -29,8 +32,11 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
     snapshot = sound_model(path)
     if snapshot is None:
         return FAILED
+    built = graph_with_results(snapshot, path, results)
+    if built is None:
+        return FAILED
     try:
-        rows = run_query(build_graph(snapshot, path_to_uri(path)).graph, asked)
+        rows = run_query(built.graph, asked)
     except BadQuery as error:
         start = Document("", 0, asked).position(error.offset)
         print(f"{place}:{start.line + 1}:{start.column + 1}: error: {error} [query]", file=sys.stderr)

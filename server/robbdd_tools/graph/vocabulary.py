@@ -25,6 +25,8 @@ PREFIXES = {
     "py": f"{METAMODELS}languages/python#",
     "ros": "https://index.ros.org/p/",
     "rbw": WORKBENCH,
+    "earl": "http://www.w3.org/ns/earl#",
+    "prov": "http://www.w3.org/ns/prov#",
     "rdf": "http://www.w3.org/1999/02/22-rdf-syntax-ns#",
     "xsd": "http://www.w3.org/2001/XMLSchema#",
 }

@@ -1,0 +1,42 @@
+"""Results of runs beside the graph of their model, for the commands that ask or print it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import Unreadable, path_to_uri, read_text
+from robbdd_tools.run.store import LATEST, RESULTS, NoSuchRun, store_beside
+
+if TYPE_CHECKING:
+    from robbdd_tools.graph.built import BuiltGraph
+    from robbdd_tools.names.project import Snapshot
+
+
+def graph_with_results(snapshot: Snapshot, path: Path, results: str | None) -> BuiltGraph | None:
+    """Return the graph of a model with the results of a run: a file, a run of the project's store, or none.
+
+    Says what is wrong with the results, and returns ``None``, where they cannot be used.
+    """
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.results import BadResults, add_results, read_results
+
+    built = build_graph(snapshot, path_to_uri(path))
+    if results is None:
+        return built
+    file = Path(results)
+    try:
+        if results == LATEST or not file.exists():
+            file = store_beside(path).find(results).folder / RESULTS
+        text = read_text(file)
+        if isinstance(text, Unreadable):
+            raise NoSuchRun(text.reason)
+        add_results(built.graph, read_results(text))
+    except NoSuchRun as error:
+        print(f"robbdd: {error}", file=sys.stderr)
+        return None
+    except BadResults as error:
+        print(f"robbdd: {file} holds no results of a run: {error}", file=sys.stderr)
+        return None
+    return built

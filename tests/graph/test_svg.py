@@ -1,0 +1,110 @@
+"""The picture of a graph: everything in it once, readable, with its place, the same bytes each time."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+from commands.test_graph_models import robbdd
+from graph.models import EVERYTHING
+from graph.statements import built
+from kit import EXAMPLES, MODEL
+from robbdd_tools.graph.source_map import Location
+from robbdd_tools.graph.structure import structure_of
+from robbdd_tools.graph.svg import LETTER, draw
+
+SVG = "{http://www.w3.org/2000/svg}"
+MODELS = pytest.mark.parametrize("text", [MODEL, EVERYTHING], ids=["small", "everything"])
+
+
+def place(location: Location) -> str:
+    return f"{location.uri.rpartition('/')[2]}:{location.span.start}:{location.span.end}"
+
+
+def picture(text: str) -> ElementTree.Element:
+    return ElementTree.fromstring(draw(structure_of(built(text)), place))
+
+
+def nodes(text: str) -> list[ElementTree.Element]:
+    return [group for group in picture(text).iter(f"{SVG}g") if "data-iri" in group.attrib]
+
+
+def extent(group: ElementTree.Element) -> tuple[float, float, float, float]:
+    """Left, top, right and bottom of a node's outline."""
+    shape = group[1]
+    if shape.tag == f"{SVG}rect":
+        x, y, width, height = (float(shape.attrib[name]) for name in ("x", "y", "width", "height"))
+        return x, y, x + width, y + height
+    points = [tuple(map(float, pair.split(","))) for pair in shape.attrib["points"].split()]
+    across, down = zip(*points, strict=True)
+    return min(across), min(down), max(across), max(down)
+
+
+def test_every_concept_of_a_story_is_there_once() -> None:
+    concepts = [group.attrib["data-concept"] for group in nodes(MODEL)]
+    assert sorted(concepts) == sorted(["story", "variant", "template", "given", "when", "then", *["event"] * 4])
+
+
+def test_a_clause_reads_as_it_is_written() -> None:
+    texts = {"".join(f"{line} " for line in group.itertext()) for group in nodes(MODEL)}
+    assert any("in-tray part is located at goal within 0.5 s after place-end" in text for text in texts)
+    assert any("robot picks part and places at goal from pick-start until place-end" in text for text in texts)
+
+
+def test_each_node_tells_where_it_is_written() -> None:
+    for group in nodes(MODEL):
+        name, start, end = group.attrib["data-source"].split(":")
+        assert name == "main.bdd"
+        written = MODEL[int(start) : int(end)]
+        assert written
+        assert group.attrib["data-source"] in (group.findtext(f"{SVG}title") or "")
+        if group.attrib["data-concept"] != "when":
+            assert group.attrib["data-iri"].endswith(written)
+
+
+@MODELS
+def test_nothing_covers_anything_else(text: str) -> None:
+    boxes = [extent(group) for group in nodes(text)]
+    for number, (left, top, right, bottom) in enumerate(boxes):
+        for other in boxes[number + 1 :]:
+            assert right <= other[0] or other[2] <= left or bottom <= other[1] or other[3] <= top
+
+
+@MODELS
+def test_text_stays_within_its_box(text: str) -> None:
+    for group in nodes(text):
+        left, top, right, bottom = extent(group)
+        for line in group.iter(f"{SVG}text"):
+            start, base = float(line.attrib["x"]), float(line.attrib["y"])
+            wide = LETTER / 0.88 if line.attrib["class"] == "name" else LETTER
+            assert left < start
+            assert start + wide * len(line.text or "") <= right
+            assert top < base < bottom
+
+
+@MODELS
+def test_the_same_text_gives_the_same_bytes_and_nothing_is_fetched(text: str) -> None:
+    first = draw(structure_of(built(text)), place)
+    assert draw(structure_of(built(text)), place) == first
+    assert set(re.findall(r"url\(([^)]*)\)", first)) == {"#tip"}
+    assert not re.search(r"href|@import|@font-face|<image|<script", first)
+
+
+def test_all_colours_are_explained() -> None:
+    legend = {group.findtext(f"{SVG}text") for group in picture(MODEL).iter(f"{SVG}g") if "transform" in group.attrib}
+    concepts = {"User story", "Scenario variant", "Scenario template", "Given", "When", "Then", "Event"}
+    assert legend == concepts | {"leads to", "lasts from and until"}
+
+
+def test_the_command_line_draws_with_lines_and_columns(tmp_path: Path) -> None:
+    done = robbdd("graph", EXAMPLES / "tworobots" / "heights.bdd", "--format", "svg", folder=tmp_path)
+    assert done.returncode == 0
+    lines = (EXAMPLES / "tworobots" / "heights.bdd").read_text(encoding="utf-8").splitlines()
+    found = re.search(r'data-iri="[^"]*/goal-untouched" data-source="heights\.bdd:(\d+):(\d+)"', done.stdout)
+    assert found is not None
+    assert lines[int(found[1]) - 1][int(found[2]) - 1 :].startswith("goal-untouched")
+    assert "goal has config height_scale = scale" in done.stdout
+    assert str(tmp_path) not in done.stdout
