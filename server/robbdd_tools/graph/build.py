@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from robbdd_tools.graph.behaviour_trees import add_behaviour_tree
 from robbdd_tools.graph.built import BuiltGraph as BuiltGraph
 from robbdd_tools.graph.built import Clash
 from robbdd_tools.graph.clauses import ClauseWriter, add_time
@@ -129,6 +130,8 @@ def _add_simple(frame: Frame, scenes: Scenes, root: tree.DeclarationTree) -> Non
                 frame.sink.add_types(node, [kind], frame.at(root.name))
         case tree.ConstantSet():
             _add_constant_set(frame, root)
+        case tree.BehaviourTree():
+            add_behaviour_tree(frame, root)
         case tree.ElementSet():
             add_element_set(frame, scenes, root)
         case tree.SimilarSet():

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.graph.behaviour_trees import link_behaviour
 from robbdd_tools.graph.sink import Frame, Sink
 from robbdd_tools.graph.source_map import Location
 from robbdd_tools.graph.vocabulary import JUNCTIONS, TIME_TYPES
@@ -176,6 +177,7 @@ class ClauseWriter:
         if self._sink.claim_behaviour(behaviour, word.name, self.frame.at(use.name)):
             self._sink.add_types(behaviour, ["bhv:Behaviour", *word.rdf_types], self.frame.at(use.name))
         self._sink.add(scenario, "bhv:of-behaviour", behaviour, self.frame.at(use.name))
+        link_behaviour(self.frame, behaviour, use)
         self._start(node, ["bdd:WhenBehaviour"], "when", self.frame.at(use.name))
         self._sink.add(node, "bhv:of-behaviour", behaviour, self.frame.at(use.name))
         self._arguments(node, word.slots, use.action)

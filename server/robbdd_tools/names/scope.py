@@ -97,4 +97,7 @@ def shortened(path: str, scopes: tuple[str, ...]) -> str:
 
 def local_name(symbol: Symbol) -> str:
     """Return what the IRI of a declared name ends with."""
+    if symbol.kind is SymbolKind.TREE_NODE:
+        # A node may have the name of the behaviour that it executes.
+        return f"node-{symbol.path}"
     return f"var-{symbol.name}" if symbol.kind in ROLE_KINDS["Variable"] else symbol.name
