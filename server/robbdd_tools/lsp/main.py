@@ -1,4 +1,4 @@
-"""``robbdd-lsp``: starts the language server over standard input and output."""
+"""``robbdd-lsp``: starts the language server over standard input and output, or for a client at a TCP address."""
 
 from __future__ import annotations
 
@@ -10,12 +10,22 @@ from pathlib import Path
 
 from robbdd_tools import __version__
 
+LOOPBACK = "127.0.0.1"
+LARGEST_PORT = 65535
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the server until its client ends it; returns the exit code."""
     parser = argparse.ArgumentParser("robbdd-lsp", description="Language server for RobBDD models.")
     parser.add_argument("--version", action="version", version=f"robbdd-lsp {__version__}")
-    parser.add_argument("--stdio", action="store_true", help="talk over standard input and output (the default)")
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument("--stdio", action="store_true", help="talk over standard input and output (the default)")
+    way.add_argument(
+        "--tcp",
+        type=address,
+        metavar="[HOST:]PORT",
+        help="wait for one client at this address; without a host on loopback only",
+    )
     parser.add_argument("--log-file", type=Path, metavar="FILE", help="write a log to this file")
     options = parser.parse_args(arguments)
     _log_to(options.log_file)
@@ -24,8 +34,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from robbdd_tools.lsp.handlers import create_server
 
     collect_rarely()
-    create_server().start_io()
+    server = create_server()
+    if options.tcp is None:
+        server.start_io()
+    else:
+        server.start_tcp(*options.tcp)
     return 0
+
+
+def address(text: str) -> tuple[str, int]:
+    """Read ``PORT`` or ``HOST:PORT``; raises ``ArgumentTypeError`` for anything else."""
+    host, colon, port = text.rpartition(":")
+    if not port.isdecimal() or int(port) > LARGEST_PORT or (colon and not host):
+        raise argparse.ArgumentTypeError(f"'{text}' is no address: write PORT or HOST:PORT, such as 2087")
+    return host.strip("[]") or LOOPBACK, int(port)
 
 
 def _log_to(file: Path | None) -> None:

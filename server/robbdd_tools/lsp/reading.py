@@ -10,8 +10,9 @@ from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe import describe_path, describe_words
 from robbdd_tools.features.hover import hover
+from robbdd_tools.features.scenario_hints import scenario_hints
 from robbdd_tools.features.type_hints import type_hints
-from robbdd_tools.lsp.convert import document_of
+from robbdd_tools.lsp.convert import document_of, markup
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
 
@@ -52,7 +53,9 @@ def _register_completion(server: RobbddServer) -> None:
 
         found = await ls.analyse(find)
         if found is not None:
-            item.documentation = types.MarkupContent(kind=types.MarkupKind.Markdown, value=found)
+            client = ls.client_capabilities.text_document
+            abilities = client.completion.completion_item if client and client.completion else None
+            item.documentation = markup(found, abilities.documentation_format if abilities else None)
         return item
 
 
@@ -64,7 +67,9 @@ def _register_hover(server: RobbddServer) -> None:
             found = hover(snapshot, document.uri, ls.convert.offset(document, params.position), ls.judged)
             if found is None:
                 return None
-            contents = types.MarkupContent(kind=types.MarkupKind.Markdown, value=found.markdown)
+            client = ls.client_capabilities.text_document
+            formats = client.hover.content_format if client is not None and client.hover is not None else None
+            contents = markup(found.markdown, formats)
             return types.Hover(contents=contents, range=ls.convert.range(document, found.span))
 
         return await ls.analyse(find)
@@ -76,22 +81,34 @@ def _register_hints(server: RobbddServer) -> None:
         def find(snapshot: Snapshot) -> list[types.InlayHint]:
             document = document_of(snapshot, params.text_document.uri)
             wanted = ls.convert.span(document, params.range)
-            return [
-                types.InlayHint(
-                    position=ls.convert.position(document, hint.span.end),
-                    label=hint.label,
-                    tooltip="\n".join(hint.lines),
-                    padding_left=True,
-                )
-                for hint in clause_hints(snapshot, document.uri, ls.judged)
-                if wanted.contains(hint.span.end)
-            ] + [
-                types.InlayHint(
-                    position=ls.convert.position(document, hint.span.end),
-                    label=hint.label,
-                    kind=types.InlayHintKind.Type,
-                )
-                for hint in type_hints(snapshot, document.uri, wanted)
-            ]
+            return (
+                [
+                    types.InlayHint(
+                        position=ls.convert.position(document, hint.span.end),
+                        label=hint.label,
+                        tooltip="\n".join(hint.lines),
+                        padding_left=True,
+                    )
+                    for hint in clause_hints(snapshot, document.uri, ls.judged)
+                    if wanted.contains(hint.span.end)
+                ]
+                + [
+                    types.InlayHint(
+                        position=ls.convert.position(document, hint.span.end),
+                        label=hint.label,
+                        kind=types.InlayHintKind.Type,
+                    )
+                    for hint in type_hints(snapshot, document.uri, wanted)
+                ]
+                + [
+                    types.InlayHint(
+                        position=ls.convert.position(document, hint.span.end),
+                        label=hint.label,
+                        kind=types.InlayHintKind.Parameter,
+                        padding_left=True,
+                    )
+                    for hint in scenario_hints(snapshot, document.uri, wanted)
+                ]
+            )
 
         return await ls.analyse(find)

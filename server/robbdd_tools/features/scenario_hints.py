@@ -1,0 +1,40 @@
+"""How many scenarios each variant stands for, to be shown behind its name."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.checks.counting import scenario_count
+from robbdd_tools.checks.variants import scenarios
+from robbdd_tools.names.elements import Site
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.project import Snapshot
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioHint:
+    """What to show behind a variant's name, which is at ``span`` (absolute)."""
+
+    span: Span
+    label: str
+
+
+def scenario_hints(snapshot: Snapshot, uri: str, within: Span) -> list[ScenarioHint]:
+    """Return a hint for each variant in a part of a file whose sets are known."""
+    file = snapshot.file(uri)
+    hints: list[ScenarioHint] = []
+    for placed in file.declarations if file is not None else ():
+        if file is None or not isinstance(placed.declaration.tree, tree.Story):
+            continue
+        if placed.span.end < within.start or within.end < placed.offset:
+            continue
+        site = Site(snapshot, file, placed)
+        for scenario in scenarios(site):
+            count, span = scenario_count(scenario), site.span(scenario.variant.name)
+            if count is not None and within.contains(span.end):
+                hints.append(ScenarioHint(span, f"{count:,} scenario{'' if count == 1 else 's'}"))
+    return hints

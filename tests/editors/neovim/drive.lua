@@ -1,0 +1,68 @@
+-- What a user of Neovim sees: an error and its fix, completion, hover, colours, hints, a rename across files.
+local function expect(condition, words)
+  if not condition then
+    io.stderr:write("FAILED: " .. words .. "\n")
+    vim.cmd("cquit 1")
+  end
+  io.stdout:write("ok: " .. words .. "\n")
+end
+
+local function eventually(words, check)
+  expect(vim.wait(60000, check, 20), words)
+end
+
+local function place(text, behind)
+  for number, line in ipairs(vim.api.nvim_buf_get_lines(0, 0, -1, false)) do
+    local first, last = line:find(text, 1, true)
+    if first then
+      return { line = number - 1, character = behind and last or first - 1 }
+    end
+  end
+  error("not in the text: " .. text)
+end
+
+local function ask(method, parameters)
+  parameters.textDocument = { uri = vim.uri_from_bufnr(0) }
+  local answers = vim.lsp.buf_request_sync(0, method, parameters, 60000) or {}
+  for _, answer in pairs(answers) do
+    return answer.result
+  end
+end
+
+eventually("the server attaches", function()
+  local client = vim.lsp.get_clients({ bufnr = 0 })[1]
+  return client ~= nil and client.initialized
+end)
+
+local at = place("template: <pick-place>", false)
+vim.api.nvim_buf_set_text(0, at.line, at.character + 11, at.line, at.character + 21, { "pick-plaice" })
+eventually("a misspelt name is underlined", function()
+  local found = vim.diagnostic.get(0)
+  return #found == 1 and found[1].code == "unknown-name"
+end)
+vim.cmd("undo")
+eventually("the diagnostic goes when it is mended", function()
+  return #vim.diagnostic.get(0) == 0
+end)
+
+local items = ask("textDocument/completion", { position = place("before <evt-p", true) })
+local labels = vim.tbl_map(function(item) return item.label end, items.items or items)
+expect(vim.tbl_contains(labels, "evt-pick-start"), "events are completed")
+
+local hover = ask("textDocument/hover", { position = place("Scenario part-to", true) })
+expect(hover.contents.value:find("4 scenarios", 1, true) ~= nil, "hover counts scenarios")
+
+local tokens = ask("textDocument/semanticTokens/full", {})
+expect(#tokens.data > 100, "words have their colours")
+
+local last = vim.api.nvim_buf_line_count(0)
+local range = { start = { line = 0, character = 0 }, ["end"] = { line = last, character = 0 } }
+expect(#ask("textDocument/inlayHint", { range = range }) >= 4, "variables have hints")
+
+local edit = ask("textDocument/rename", { position = place("places.left", true), newName = "near_ws" })
+expect(vim.tbl_count(edit.changes) == 2, "a rename reaches the scene")
+
+for _, client in ipairs(vim.lsp.get_clients()) do
+  client:stop()
+end
+vim.cmd("qall!")

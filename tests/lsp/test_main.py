@@ -1,0 +1,65 @@
+"""How the server is started."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import socket
+import sys
+from typing import Any
+
+import pytest
+
+from robbdd_tools import __version__
+from robbdd_tools.lsp.main import address, main
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [("2087", ("127.0.0.1", 2087)), ("localhost:80", ("localhost", 80)), ("[::1]:9", ("::1", 9))],
+)
+def test_an_address_is_a_port_on_loopback_or_what_it_says(text: str, place: tuple[str, int]) -> None:
+    assert address(text) == place
+
+
+@pytest.mark.parametrize("text", ["", "host", "host:", "host:x", "1:70000", "-1"])
+def test_no_address_ends_with_a_sentence(text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--tcp", text])
+    assert ended.value.code == 2
+    assert "PORT" in capsys.readouterr().err
+
+
+def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert capsys.readouterr().out == f"robbdd-lsp {__version__}\n"
+
+
+async def connected(port: int) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
+    """Connect as soon as the server listens."""
+    while True:
+        try:
+            return await asyncio.open_connection("127.0.0.1", port)
+        except ConnectionRefusedError:
+            await asyncio.sleep(0.02)
+
+
+async def test_a_client_is_served_over_tcp() -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    server = await asyncio.create_subprocess_exec(sys.executable, "-m", "robbdd_tools.lsp.main", "--tcp", str(port))
+    try:
+        async with asyncio.timeout(60):
+            reader, writer = await connected(port)
+            body = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": {"capabilities": {}}})
+            writer.write(f"Content-Length: {len(body)}\r\n\r\n{body}".encode())
+            header = await reader.readuntil(b"\r\n\r\n")
+            length = int(header.split(b"Content-Length: ")[1].split(b"\r\n")[0])
+            answer: dict[str, Any] = json.loads(await reader.readexactly(length))
+        assert answer["result"]["serverInfo"]["name"] == "robbdd-lsp"
+        writer.close()
+    finally:
+        server.kill()
+        await server.wait()
