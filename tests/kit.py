@@ -19,11 +19,14 @@ import pytest
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.names.project import Project, Snapshot
+from robbdd_tools.syntax.parse import LANGUAGES
 
 FOLDER = "file:///fixture/"
 ROOT = Path(__file__).parent.parent
 EXAMPLES = ROOT / "examples"
 DOCS = ROOT / "docs"
+MODELS = sorted(path for path in EXAMPLES.rglob("*") if path.suffix[1:] in LANGUAGES)
+"""The models of all examples, of every file kind."""
 
 SCENE = """ns env = 'https://example.org/env/'
 obj set (ns=env) parts { object bolt, object nut }

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit import EXAMPLES, MODEL, SCENE, fixture
+from kit import MODEL, MODELS, SCENE, fixture
 from robbdd_tools.base.diagnostic import Edit
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.files import path_to_uri
@@ -69,7 +69,7 @@ def test_an_unsaved_import_follows_a_moved_file() -> None:
     assert (edit.uri, edit.text) == (case.uri, "deep/lab.scene")
 
 
-@pytest.mark.parametrize("path", sorted(EXAMPLES.rglob("*.*")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.name)
 def test_laying_out_all_lines_is_laying_out_the_text(path: Path) -> None:
     text = path.read_text(encoding="utf-8").replace("    ", " ").replace(" {", "   {")
     document = Document("file:///x.bdd", 0, text)

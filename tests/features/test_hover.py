@@ -59,7 +59,7 @@ def test_the_comment_above_a_declaration_is_shown() -> None:
 def test_elements_tell_what_simulates_them() -> None:
     assert "Simulated as *franka-panda*" in at("<arms.pan$0da>")
     scene = f"//- main.scene\n{SCENE}"
-    assert "Simulated as *bin*" in shown(scene.replace("object tray", "object tr$0ay"))
+    assert "Simulated as *tray*" in shown(scene.replace("object tray", "object tr$0ay"))
     assert "8 elements: `arms.panda`" in at("scene: <bench_$0scene>")
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit import EXAMPLES, MODEL, SCENE, corpus, fixture
+from kit import MODEL, MODELS, SCENE, corpus, fixture
 from robbdd_tools.features.layout import lay_out
 from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.serialize import serialize
@@ -121,7 +121,7 @@ def test_the_graph_stays_the_same() -> None:
     assert graph(lay_out(MODEL), lay_out(SCENE)) == graph(MODEL) == graph(lay_out(squeezed))
 
 
-@pytest.mark.parametrize("path", sorted(EXAMPLES.rglob("*.*")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.name)
 def test_examples_are_laid_out(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert lay_out(text) == text

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kit import EXAMPLES, MODEL, ROOT, SCENE, fixture
+from kit import MODEL, MODELS, ROOT, SCENE, fixture
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features import semantic_tokens as feature
@@ -101,7 +101,7 @@ def test_an_unsaved_scene_gives_the_names_in_it_their_concepts() -> None:
     assert "tray_ws" not in words
 
 
-@pytest.mark.parametrize("path", sorted(EXAMPLES.rglob("*.*")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.name)
 @pytest.mark.parametrize("cut", [1, 2, 3])
 def test_tokens_stand_in_order_apart_and_within_their_lines(path: Path, cut: int) -> None:
     text = path.read_text(encoding="utf-8")

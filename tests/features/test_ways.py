@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit import EXAMPLES, MODEL, SCENE, Fixture, fixture
+from kit import MODEL, MODELS, SCENE, Fixture, fixture
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.call_hierarchy import callable_at, calls_from, calls_to
@@ -115,7 +115,7 @@ def test_brackets_tell_what_to_select_in_broken_text() -> None:
     assert found[:3] == ["two", " one two ", "( one two )"]
 
 
-@pytest.mark.parametrize("path", sorted(EXAMPLES.rglob("*.*")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.name)
 def test_every_selection_holds_the_one_before(path: Path) -> None:
     project = Project()
     uri = path_to_uri(path)
