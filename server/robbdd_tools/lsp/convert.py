@@ -98,7 +98,7 @@ class Converter:
             code=diagnostic.code,
             source=SOURCE,
             related_information=related or None,
-            tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code.startswith("unused-") else None,
+            tags=_tags(diagnostic.code),
         )
 
     def completion(
@@ -156,6 +156,12 @@ def document_of(snapshot: Snapshot, uri: str) -> Document:
     """Return the document of a file; an empty one for a file without text, so that places in it are its start."""
     source = snapshot.sources.get(uri)
     return source.document if isinstance(source, FileIndex) else Document(uri, 0, "")
+
+
+def _tags(code: str) -> list[types.DiagnosticTag] | None:
+    if code.startswith("unused-"):
+        return [types.DiagnosticTag.Unnecessary]
+    return [types.DiagnosticTag.Deprecated] if code == "published-form" else None
 
 
 def symbol_kind(kind: str) -> types.SymbolKind:
