@@ -37,6 +37,7 @@ HOMES = {
     "jinja2": {"gherkin"},
     "behave": {"agent"},
     "mujoco": {"agent"},
+    "mcap": {"agent"},
     "pygls": {"lsp"},
     "lsprotocol": {"lsp"},
     "rich": {"commands"},

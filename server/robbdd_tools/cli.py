@@ -14,7 +14,7 @@ from pathlib import Path
 from robbdd_tools import __version__
 from robbdd_tools.commands import FAILED, INTERRUPTED, OK
 from robbdd_tools.commands.arguments import allow_selection, wanted
-from robbdd_tools.commands.run_arguments import allow_run, allow_store, run_options
+from robbdd_tools.commands.run_arguments import allow_policy, allow_run, allow_store, policy, run_options
 
 FORMATS = ("ttl", "json-ld", "json-ld-expanded", "nt", "xml")
 
@@ -81,6 +81,20 @@ def _parser() -> argparse.ArgumentParser:
     runs.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", default=Path())
     allow_store(runs)
     runs.set_defaults(command=_runs)
+
+    replay = commands.add_parser("replay", help="simulate a stored run again and prove that its traces are the same")
+    replay.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
+    replay.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
+    allow_policy(replay)
+    allow_store(replay)
+    replay.set_defaults(command=_replay)
+
+    judge = commands.add_parser("judge", help="judge the traces of a stored run by an edited model, without simulating")
+    judge.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
+    judge.add_argument("path", metavar="FILE|DIR", type=Path)
+    judge.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
+    allow_store(judge)
+    judge.set_defaults(command=_judge)
 
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
     view.add_argument("path", metavar="FILE", type=Path)
@@ -181,6 +195,18 @@ def _new(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.new import list_templates, new_project
 
     return list_templates() if options.path is None else new_project(options.path, options.template)
+
+
+def _replay(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.replay import ReplayOptions, replay
+
+    return replay(ReplayOptions(options.run, policy(options), options.scenario or (), options.store))
+
+
+def _judge(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.judge import JudgeOptions, judge
+
+    return judge(JudgeOptions(options.run, options.path, options.store, options.json))
 
 
 def _import(options: argparse.Namespace) -> int:

@@ -8,7 +8,7 @@ import pytest
 
 from robbdd_tools.run.store import KEPT, NoSuchRun, RunRecord, RunStore, project_root, shown_path, store_beside
 
-RECORD = RunRecord("m.bdd", "abc", 1, "0.1.0", "MuJoCo 4")
+RECORD = RunRecord("m.bdd", "../../../m.bdd", "abc", 1, "0.1.0", "MuJoCo 4")
 
 
 def test_runs_are_numbered_and_found_by_number_name_or_folder(tmp_path: Path) -> None:

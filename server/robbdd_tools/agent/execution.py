@@ -125,6 +125,10 @@ class Execution:
             if known and isinstance(selected, Window):
                 self._reaches.sample(agent, name, range(selected.first, selected.last + 1))
         self.wall += perf_counter() - began
+        return self.complete(trace)
+
+    def complete(self, trace: Trace) -> Trace:
+        """Return a trace with all that is known beside its samples."""
         size, forces = len(trace.times), self.simulation.forces
         return replace(
             trace,

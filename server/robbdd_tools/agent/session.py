@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
+from itertools import chain
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -14,7 +15,10 @@ from robbdd_tools.agent.execution import Call, Execution, Timing
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.policies import with_policies
 from robbdd_tools.agent.sentences import Clause, Doing, fluents_of, read_clause, read_doing, read_event
+from robbdd_tools.agent.trace_codec import Evidence
+from robbdd_tools.agent.trace_file import verdict_views, write_trace
 from robbdd_tools.agent.viewer import NoViewer, Viewer
+from robbdd_tools.agent.views import views
 from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.protocol import (
@@ -25,6 +29,7 @@ from robbdd_tools.run.protocol import (
     MarginRanges,
     ScenarioFinished,
     ScenarioStarted,
+    trace_file,
 )
 
 if TYPE_CHECKING:
@@ -40,7 +45,13 @@ class ScenarioRun:
     """One scenario being executed. ``texts`` are its steps in order: line, role (given, when, then) and sentence."""
 
     def __init__(
-        self, index: int, spec: ScenarioSpec, texts: Sequence[tuple[int, str, str]], channel: Channel, moments: Moments
+        self,
+        index: int,
+        spec: ScenarioSpec,
+        texts: Sequence[tuple[int, str, str]],
+        channel: Channel,
+        moments: Moments,
+        trace_file: Path | None = None,
     ) -> None:
         self._index = index
         self._spec = spec
@@ -56,6 +67,8 @@ class ScenarioRun:
         }
         self._execution: Execution | None = None
         self._viewer: Viewer | None = None
+        self._trace_file = trace_file
+        self._verdicts: list[ClauseJudged] = []
         self._broken = ""
         self._began = perf_counter()
         channel.send(ScenarioStarted(index))
@@ -130,6 +143,8 @@ class ScenarioRun:
             self._viewer.close()
         if execution is not None:
             self._tell_ranges(execution)
+        if execution is not None and self._trace_file is not None:
+            self._write_trace(execution, self._trace_file)
         simulated = execution.simulated if execution is not None else 0.0
         stepping = execution.stepping if execution is not None else 0.0
         wall = perf_counter() - self._began
@@ -141,6 +156,14 @@ class ScenarioRun:
             found = ranges(clause, execution.measured(clause, execution.trace), execution.regions)
             if found:
                 self._channel.send(MarginRanges(self._index, line, found))
+
+    def _write_trace(self, execution: Execution, path: Path) -> None:
+        trace = execution.complete(execution.trace)
+        seen = chain(views(execution.simulation, trace), verdict_views(self._spec, self._verdicts, trace.end))
+        try:
+            write_trace(path, Evidence(trace, execution.regions), seen)
+        except (OSError, TypeError) as error:
+            self._channel.send(LogLine("warning", f"{self._spec.name}: the trace is not kept: {error}"))
 
     def _judged(self, line: int, verdict: Callable[[Execution], Verdict]) -> Verdict:
         if line in self._open:
@@ -163,19 +186,19 @@ class ScenarioRun:
             return
         if verdict.outcome is Outcome.VIOLATED and verdict.at is not None and self._execution is not None:
             self._moments.keep(self._index, line, verdict.at, self._execution.state_at(verdict.at))
-        self._channel.send(
-            ClauseJudged(
-                self._index,
-                line,
-                str(verdict.outcome),
-                verdict.robustness,
-                verdict.unit,
-                verdict.at,
-                verdict.reason,
-                verdict.worst_at,
-                verdict.vacuous,
-            )
+        judged = ClauseJudged(
+            self._index,
+            line,
+            str(verdict.outcome),
+            verdict.robustness,
+            verdict.unit,
+            verdict.at,
+            verdict.reason,
+            verdict.worst_at,
+            verdict.vacuous,
         )
+        self._verdicts.append(judged)
+        self._channel.send(judged)
 
 
 class Session:
@@ -188,6 +211,7 @@ class Session:
             ((folder / spec.feature).resolve(), spec.line): index
             for index, spec in reversed(list(enumerate(manifest.scenarios)))
         }
+        self._folder = folder
         self._manifest = manifest
         self._moments = Moments(folder)
         self._present: ScenarioRun | None = None
@@ -207,7 +231,8 @@ class Session:
         index = index if handed_out is None else handed_out
         self._moments.clear(index)
         spec = self._manifest.scenarios[index]
-        self._present = ScenarioRun(index, spec, texts, self._channel, self._moments)
+        trace = trace_file(self._folder, index) if self._manifest.traces else None
+        self._present = ScenarioRun(index, spec, texts, self._channel, self._moments, trace)
 
     @property
     def scenario(self) -> ScenarioRun:

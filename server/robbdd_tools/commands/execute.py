@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -21,14 +21,16 @@ if TYPE_CHECKING:
     from robbdd_tools.run.scheduler import Policy
 
 
-def execute(folder: Path, manifest: Manifest, policy: Policy) -> tuple[RunResults, str, bool]:
-    """Run a prepared folder; Ctrl-C ends it and keeps what is finished.
+def execute(
+    folder: Path, manifest: Manifest, policy: Policy, indices: Sequence[int] | None = None
+) -> tuple[RunResults, str, bool]:
+    """Run a prepared folder, or some scenarios of it; Ctrl-C ends it and keeps what is finished.
 
     Returns the results, the simulator's name and version, and whether the run was interrupted. Raises ``OSError``.
     """
     results, simulator = RunResults(manifest), ""
-    with Display(results) as display:
-        scheduler = Scheduler(folder, manifest, policy, display.watch)
+    with Display(results, None if indices is None else len(indices)) as display:
+        scheduler = Scheduler(folder, manifest, policy, display.watch, indices)
         with _ctrl_c_cancels(scheduler) as interrupted:
             for message in scheduler.messages():
                 results.apply(message)

@@ -24,8 +24,9 @@ STYLES = {Outcome.HOLDS: "green", Outcome.VIOLATED: "bold red", Outcome.UNKNOWN:
 class Display:
     """Prints a run. The bar is drawn on a terminal only; elsewhere each scenario is a few plain lines."""
 
-    def __init__(self, results: RunResults) -> None:
+    def __init__(self, results: RunResults, total: int | None = None) -> None:
         self._results = results
+        self._total = len(results.scenarios) if total is None else total
         self._console = Console(highlight=False, soft_wrap=True)
         self._progress = Progress(
             TextColumn("{task.description}"),
@@ -40,7 +41,7 @@ class Display:
         )
         self._held = self._failed = 0
         self._fails: set[int] = set()
-        self._task = self._progress.add_task("starting", total=len(results.scenarios))
+        self._task = self._progress.add_task("starting", total=self._total)
 
     def __enter__(self) -> Display:
         self._progress.start()
@@ -87,10 +88,12 @@ class Display:
         for name, reason in self._vacuous():
             self._console.print(Text(f"{name} could not have failed: {reason}", STYLES[Outcome.UNKNOWN]))
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
-        counts = [f"{self._results.count(outcome)} {_word(outcome)}" for outcome in Outcome]
+        shown = self._results.scenarios if self._total == len(self._results.scenarios) else finished
+        outcomes = [scenario.verdict for scenario in shown]
+        counts = [f"{outcomes.count(outcome)} {_word(outcome)}" for outcome in Outcome]
         simulated = sum(scenario.finished.simulated for scenario in finished if scenario.finished)
         wall = sum(scenario.finished.wall for scenario in finished if scenario.finished)
-        total = len(self._results.scenarios)
+        total = self._total
         self._console.print(
             f"{total} scenario{'' if total == 1 else 's'}: {', '.join(counts)}"
             f"  (seed {self._results.manifest.seed}; {simulated:.1f} s simulated in {wall:.1f} s)"

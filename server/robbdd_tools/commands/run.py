@@ -20,7 +20,7 @@ from robbdd_tools.commands.requests import Choice, digest, load_models, requests
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.prepare import prepare_all
 from robbdd_tools.run.protocol import VIEWER
-from robbdd_tools.run.store import NoSuchRun, RunRecord, RunStore, StoredRun, shown_path, store_beside
+from robbdd_tools.run.store import NoSuchRun, RunRecord, RunStore, StoredRun, origin, shown_path, store_beside
 
 if TYPE_CHECKING:
     from robbdd_tools.run.prepare import RunRequest
@@ -89,9 +89,10 @@ def run(options: RunOptions) -> int:
     found = requests(models, choice)
     if isinstance(found, str):
         return _failed(found)
-    record = RunRecord(shown_path(options.path), digest(models), choice.wanted.seed, __version__)
     try:
         with _place(store, outputs) as place:
+            start = origin(options.path, place.folder)
+            record = RunRecord(shown_path(options.path), start, digest(models), choice.wanted.seed, __version__)
             return _run(options, found, record, place)
     except OSError as error:
         return _failed(f"{error.filename or outputs.folder or outputs.report}: {error.strerror or error}")
@@ -99,7 +100,7 @@ def run(options: RunOptions) -> int:
 
 def _run(options: RunOptions, found: list[RunRequest], record: RunRecord, place: StoredRun) -> int:
     outputs = options.outputs
-    manifest = prepare_all(found, str(options.path), record.seed, place.folder)
+    manifest = prepare_all(found, str(options.path), record.seed, place.folder, place.kept)
     if not manifest.scenarios:
         return _failed("no scenario fits the selection")
     place.write_record(record)
@@ -157,7 +158,7 @@ def _place(store: RunStore, outputs: Outputs) -> Generator[StoredRun]:
             yield place
             return
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
-        yield StoredRun(0, Path(folder))
+        yield StoredRun(0, Path(folder), kept=False)
 
 
 def _last_results(store: RunStore, path: Path) -> Mapping[str, Any]:

@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from time import monotonic
@@ -19,15 +19,20 @@ PATIENCE = 0.2
 
 
 class Agent:
-    """One agent process working on a run folder; ``number`` names its log."""
+    """One agent process working on a run folder; ``number`` names its log.
 
-    def __init__(self, folder: Path, number: int = 1) -> None:
+    ``module`` is what it runs, ``arguments`` what this is told beside the folder.
+    """
+
+    def __init__(
+        self, folder: Path, number: int = 1, module: str = "robbdd_tools.agent", arguments: Sequence[str] = ()
+    ) -> None:
         self._log = folder / LOGS / f"agent-{number}.log"
         self._log.parent.mkdir(exist_ok=True)
         with self._log.open("wb") as log:
             # Its own session: Ctrl-C in a terminal reaches the parent, which then stops the agent in good order.
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "robbdd_tools.agent", str(folder)],
+                [sys.executable, "-m", module, str(folder), *arguments],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=log,

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Iterable, Iterator
 
 from robbdd_tools.run.protocol import RunMessage, ScenarioFinished
 
 
 class InOrder:
-    """Lets the messages of one scenario through as they come, and keeps those of later ones until it is their turn."""
+    """Lets the messages of one scenario through as they come, and keeps those of later ones until it is their turn.
 
-    def __init__(self) -> None:
-        self._turn = 0
+    ``turns`` are the numbers of the scenarios, increasing.
+    """
+
+    def __init__(self, turns: Iterable[int]) -> None:
+        self._turns = deque(turns)
         self._kept: dict[int, list[RunMessage]] = {}
 
     def take(self, index: int, message: RunMessage) -> Iterator[RunMessage]:
         """Take a message that belongs to scenario ``index``; yields those that are due now."""
-        if index != self._turn:
+        if not self._turns or index != self._turns[0]:
             self._kept.setdefault(index, []).append(message)
             return
         due = [message]
@@ -24,8 +28,8 @@ class InOrder:
             yield from due
             if not isinstance(due[-1], ScenarioFinished):
                 return
-            self._turn += 1
-            due = self._kept.pop(self._turn, [])
+            self._turns.popleft()
+            due = self._kept.pop(self._turns[0], []) if self._turns else []
 
     def forget(self, index: int) -> None:
         """Drop what is kept of scenario ``index`` and later ones."""

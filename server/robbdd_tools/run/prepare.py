@@ -72,7 +72,7 @@ def prepare(request: RunRequest, folder: Path) -> Manifest:
     return prepare_all([request], request.name, request.seed, folder)
 
 
-def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Path) -> Manifest:
+def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Path, traces: bool = False) -> Manifest:
     """Write everything that the agent needs to run several models, called ``name`` together; raises ``OSError``."""
     parts: list[_Part] = []
     for number, request in enumerate(requests, start=1):
@@ -80,7 +80,7 @@ def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Pa
         plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
         executions = request.chosen_executions()
         parts += _parts(plan, request.name, request.seed, executions, below, request.repeat, request.only)
-    return Manifest(name, seed, tuple(_written(parts, name, seed, folder)))
+    return Manifest(name, seed, tuple(_written(parts, name, seed, folder, traces)), traces)
 
 
 def lay_out(
@@ -94,14 +94,16 @@ def lay_out(
     return _written(list(_parts(plan, name, seed, executions, FEATURES, 1)), name, seed, folder)
 
 
-def _written(parts: Sequence[_Part], name: str, seed: int, folder: Path) -> Iterator[ScenarioSpec]:
+def _written(
+    parts: Sequence[_Part], name: str, seed: int, folder: Path, traces: bool = False
+) -> Iterator[ScenarioSpec]:
     features = folder / FEATURES
     (features / "steps").mkdir(parents=True, exist_ok=True)
     (features / "environment.py").write_text(_ENVIRONMENT, encoding="utf-8", newline="\n")
     (features / "steps" / "catalog_steps.py").write_text(_STEPS, encoding="utf-8", newline="\n")
     with (folder / MANIFEST).open("w", encoding="utf-8", newline="\n") as manifest:
         known = [asdict(part.writer.execution) for part in parts if part.writer.execution is not None]
-        head = {"model": name, "seed": seed, "executions": known}
+        head = {"model": name, "seed": seed, "traces": traces, "executions": known}
         manifest.write(json.dumps(head, ensure_ascii=False)[:-1] + ', "scenarios": [')
         separator = "\n"
         for part in parts:

@@ -108,11 +108,12 @@ class ScenarioSpec:
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """Everything the agent needs beside the feature files."""
+    """Everything the agent needs beside the feature files; ``traces`` tells it to write ``trace_file``s."""
 
     model: str
     seed: int
     scenarios: tuple[ScenarioSpec, ...]
+    traces: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,6 +243,17 @@ def decode_order(line: str) -> Execute:
             raise ValueError(f"not an order: {line[:200]!r}")
 
 
+def scenario_key(spec: ScenarioSpec) -> str:
+    """Return what a scenario is found by in another run, of a model that may have been edited since."""
+    execution = None if spec.execution is None else spec.execution.iri
+    return json.dumps([spec.variant, spec.values, execution, spec.repetition], sort_keys=True)
+
+
+def trace_file(folder: Path, index: int) -> Path:
+    """Return where the trace of a scenario of a run is."""
+    return folder / "traces" / f"{index:06}.mcap"
+
+
 def write_manifest(folder: Path, manifest: Manifest) -> None:
     """Write the manifest into a run folder."""
     data = asdict(manifest)
@@ -259,7 +271,8 @@ def read_manifest(folder: Path) -> Manifest:
     """
     data = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
     executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
-    return Manifest(data["model"], data["seed"], tuple(_scenario(entry, executions) for entry in data["scenarios"]))
+    scenarios = tuple(_scenario(entry, executions) for entry in data["scenarios"])
+    return Manifest(data["model"], data["seed"], scenarios, data.get("traces", False))
 
 
 def _scenario(entry: dict[str, Any], executions: Mapping[str, ExecutionSpec]) -> ScenarioSpec:

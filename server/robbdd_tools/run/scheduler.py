@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from pathlib import Path
@@ -95,6 +95,7 @@ class Scheduler:
     ``messages`` is to be consumed by one thread; ``cancel`` may be called from any thread and from a signal handler.
     ``watch`` is told every message when it comes; those that ``messages`` yields are in the manifest's order, so that
     they do not depend on how many processes there are. ``ending`` says why scenarios were left open.
+    ``indices`` are those of the scenarios to be executed, increasing; all when ``None``.
     """
 
     def __init__(
@@ -103,15 +104,17 @@ class Scheduler:
         manifest: Manifest,
         policy: Policy | None = None,
         watch: Callable[[RunMessage], None] = no_watcher,
+        indices: Sequence[int] | None = None,
     ) -> None:
         self._folder = folder
         self._specs = manifest.scenarios
         self._policy = policy or Policy()
         self._watch = watch
         self._events: SimpleQueue[Event | None] = SimpleQueue()
-        self._waiting = deque(range(len(self._specs)))
+        self._indices = range(len(self._specs)) if indices is None else indices
+        self._waiting = deque(self._indices)
         self._workers: list[_Worker] = []
-        self._order = InOrder()
+        self._order = InOrder(self._indices)
         self._launched = 0
         self._wasted = 0
         self._greeted = False
@@ -229,7 +232,7 @@ class Scheduler:
 
     def _stop_after(self, index: int) -> None:
         """Leave scenarios after one undone; those before it go on, so that the outcome does not depend on timing."""
-        if index + 1 < len(self._specs):
+        if index != self._indices[-1]:
             self.ending = STOPPED
         self._waiting = deque(waiting for waiting in self._waiting if waiting < index)
         self._order.forget(index + 1)

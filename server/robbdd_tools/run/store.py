@@ -7,6 +7,7 @@ which says what was run. Nothing in it depends on the wall clock.
 from __future__ import annotations
 
 import json
+import os
 import shutil
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -31,12 +32,14 @@ class NoSuchRun(Exception):
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """What was run: the model's path, relative to the project's root where it lies below it, and a digest of its graph.
+    """What was run: the model, and a digest of its graph.
 
-    ``version`` is that of this package, ``simulator`` that of the engine.
+    ``path`` is the model's relative to the project's root, ``origin`` relative to the run's folder; ``version`` is that
+    of this package, ``simulator`` that of the engine.
     """
 
     path: str
+    origin: str
     digest: str
     seed: int
     version: str
@@ -45,10 +48,11 @@ class RunRecord:
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A run's folder; ``number`` is its place in its store, 0 for a folder elsewhere."""
+    """A run's folder; ``number`` is its place in its store, 0 for a folder elsewhere; ``kept`` when it stays."""
 
     number: int
     folder: Path
+    kept: bool = True
 
     def record(self) -> RunRecord:
         """Return what was run; raises ``NoSuchRun``."""
@@ -141,6 +145,11 @@ def project_root(path: Path) -> Path:
     """Return the nearest folder above a model that is a project's root, else the model's own folder."""
     here = path.absolute() if path.is_dir() else path.absolute().parent
     return next((folder for folder in (here, *here.parents) if any((folder / mark).exists() for mark in MARKS)), here)
+
+
+def origin(model: Path, folder: Path) -> str:
+    """Return a model's path relative to the folder of its run: both may be moved together."""
+    return Path(os.path.relpath(model.absolute(), folder.absolute())).as_posix()
 
 
 def store_beside(path: Path) -> RunStore:

@@ -1,0 +1,162 @@
+"""``python -m robbdd_tools.agent.judge FOLDER RUN``: judges stored traces against other clauses, without simulating.
+
+FOLDER is a run folder whose scenarios are to be judged, RUN the stored run with the traces. Reports as the agent does.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from robbdd_tools.agent.channel import Lines
+from robbdd_tools.agent.clauses import decide, events_of, ranges
+from robbdd_tools.agent.sentences import fluents_of, read_clause, read_event
+from robbdd_tools.agent.trace_codec import Evidence
+from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
+from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    ClauseSpec,
+    LogLine,
+    Manifest,
+    MarginRanges,
+    RunFinished,
+    RunMessage,
+    RunStarted,
+    ScenarioFinished,
+    ScenarioSpec,
+    ScenarioStarted,
+    read_manifest,
+    scenario_key,
+    trace_file,
+)
+
+STRANGER = "the stored run has no scenario with these values"
+CHANGED = "{} changed since the run: only a new run can tell"
+
+
+class StoredTraces:
+    """The traces of a run, and the verdicts on its behaviours; raises ``OSError``, ``ValueError`` or ``KeyError``."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        manifest = read_manifest(folder)
+        self._specs = {scenario_key(spec): (index, spec) for index, spec in enumerate(manifest.scenarios)}
+        self._results: list[Mapping[str, Any]] = json.loads((folder / "results.json").read_text(encoding="utf-8"))[
+            "scenarios"
+        ]
+
+    def judged(self, spec: ScenarioSpec) -> Iterator[tuple[ClauseSpec, Verdict]]:
+        """Yield the verdicts on the clauses of a scenario."""
+        index, stored = self._specs.get(scenario_key(spec), (0, None))
+        try:
+            evidence = None if stored is None else read_trace(trace_file(self._folder, index))
+            reason = STRANGER if stored is None else _change(spec, stored)
+        except UnreadableTrace as error:
+            evidence, reason = None, str(error)
+        for clause in spec.clauses:
+            if stored is None or evidence is None or reason:
+                yield clause, unknown(reason)
+            elif clause.role == "when":
+                yield clause, self._done(clause, evidence, index)
+            else:
+                yield clause, _decided(clause, evidence, spec, stored)
+
+    def ranges(self, spec: ScenarioSpec) -> Iterator[tuple[int, tuple[tuple[float, float], ...]]]:
+        """Yield by line how far the margins of a scenario's clauses varied in its trace."""
+        index, stored = self._specs.get(scenario_key(spec), (0, None))
+        if stored is None or _change(spec, stored):
+            return
+        try:
+            evidence = read_trace(trace_file(self._folder, index))
+        except UnreadableTrace:
+            return
+        for clause in spec.clauses:
+            found = (
+                () if clause.role == "when" else ranges(read_clause(clause.sentence), evidence.trace, evidence.regions)
+            )
+            if found:
+                yield clause.line, found
+
+    def _done(self, clause: ClauseSpec, evidence: Evidence, index: int) -> Verdict:
+        """Return the verdict on a When clause: an event of the trace, or what the run said of the behaviour."""
+        event = read_event(clause.sentence)
+        if event is not None:
+            time = evidence.trace.event_time(event)
+            return unknown(f"event {event} never occurred") if time is None else Verdict(Outcome.HOLDS, at=time)
+        for entry in self._results[index]["clauses"]:
+            if entry["sentence"] == clause.sentence:
+                return Verdict(
+                    Outcome(entry["verdict"]), entry["robustness"], entry["unit"], entry["at"], entry["reason"]
+                )
+        return unknown(CHANGED.format("the behaviour"))
+
+
+def _change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
+    """Say why a trace is no evidence for a scenario any more."""
+    if spec.scene != stored.scene:
+        return CHANGED.format("the scene")
+    if _behaviours(spec) != _behaviours(stored):
+        return CHANGED.format("the behaviour")
+    return ""
+
+
+def _behaviours(spec: ScenarioSpec) -> list[str]:
+    return [one.sentence for one in spec.clauses if one.role == "when" and read_event(one.sentence) is None]
+
+
+def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored: ScenarioSpec) -> Verdict:
+    read, trace = read_clause(clause.sentence), evidence.trace
+    for fluent in fluents_of(read):
+        for event in events_of(fluent.time):
+            if event in spec.events and spec.events[event] != stored.events.get(event):
+                return unknown(f"the stored trace has no record of event {event}")
+            # The run went no further than its own clauses asked for.
+            if event in spec.events and not trace.finished and trace.event_time(event) is None:
+                return unknown(f"the stored trace ends at {trace.end:.2f} s, before event {event}")
+    return decide(read, trace, evidence.regions, spec.events.keys())
+
+
+def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
+    yield RunStarted(len(manifest.scenarios), "stored traces")
+    for index, spec in enumerate(manifest.scenarios):
+        yield ScenarioStarted(index)
+        for clause, verdict in traces.judged(spec):
+            yield ClauseJudged(
+                index,
+                clause.line,
+                str(verdict.outcome),
+                verdict.robustness,
+                verdict.unit,
+                verdict.at,
+                verdict.reason,
+                verdict.worst_at,
+                verdict.vacuous,
+            )
+        for line, found in traces.ranges(spec):
+            yield MarginRanges(index, line, found)
+        yield ScenarioFinished(index, 0.0, 0.0, 0.0)
+    yield RunFinished(True)
+
+
+def _main() -> int:
+    channel = Lines(os.dup(1))
+    # Users' evaluators may print; that must not end up among the messages.
+    os.dup2(2, 1)
+    folder, run = map(Path, sys.argv[1:])
+    try:
+        for message in _messages(read_manifest(folder), StoredTraces(run)):
+            channel.send(message)
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        channel.send(LogLine("error", f"{run} cannot be judged: {error}"))
+        channel.send(RunFinished(False))
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main())

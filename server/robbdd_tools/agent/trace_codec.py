@@ -1,0 +1,95 @@
+"""A trace as bytes and back, equal to the last bit: whatever fields a trace has or gets."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from robbdd_tools.catalog.api import Region
+from robbdd_tools.monitor.judge import Regions
+from robbdd_tools.monitor.trace import EventStamp, Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What clauses are judged on: a trace, and the regions of its scene's workspaces."""
+
+    trace: Trace
+    regions: Regions
+
+
+KINDS: Mapping[str, Any] = {kind.__name__: kind for kind in (Evidence, Trace, EventStamp, Region)}
+"""The dataclasses that may occur; anything else would not come back."""
+
+
+def pack(evidence: Evidence) -> bytes:
+    """Return the length (8 bytes, little-endian) of a JSON description, this, and the arrays, each series in one piece.
+
+    Raises ``TypeError`` for a value that could not be restored.
+    """
+    arrays: list[np.ndarray[Any, Any]] = []
+    head = json.dumps(_described(evidence, arrays), ensure_ascii=False).encode()
+    # Time runs fastest: the many series that never change then nearly vanish when the file is compressed.
+    return b"".join((len(head).to_bytes(8, "little"), head, *(array.tobytes(order="F") for array in arrays)))
+
+
+def unpack(data: bytes) -> Evidence:
+    """Restore what ``pack`` made; raises ``ValueError``, ``KeyError`` or ``TypeError`` for other bytes."""
+    start = 8 + int.from_bytes(data[:8], "little")
+    found = _restored(json.loads(data[8:start]), _Arrays(data, start))
+    if not isinstance(found, Evidence):
+        raise TypeError("these bytes hold no trace")
+    return found
+
+
+class _Arrays:
+    """Reads arrays off, one after the other."""
+
+    def __init__(self, data: bytes, start: int) -> None:
+        self._data = data
+        self._next = start
+
+    def take(self, kind: str, shape: list[int]) -> np.ndarray[Any, Any]:
+        size = int(np.prod(shape))
+        found = np.frombuffer(self._data, np.dtype(kind), size, self._next)
+        self._next += found.nbytes
+        return np.ascontiguousarray(found.reshape(shape, order="F"))
+
+
+def _described(value: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
+    if isinstance(value, np.ndarray):
+        array = cast("np.ndarray[Any, Any]", value)
+        little = array.astype(array.dtype.newbyteorder("<"), copy=False)
+        arrays.append(little)
+        return {"array": little.dtype.str, "shape": list(little.shape)}
+    if is_dataclass(value) and not isinstance(value, type):
+        name = type(value).__name__
+        if KINDS.get(name) is not type(value):
+            raise TypeError(f"a {name} in a trace cannot be stored")
+        return {"kind": name, "fields": {f.name: _described(getattr(value, f.name), arrays) for f in fields(value)}}
+    if isinstance(value, Mapping):
+        entries = cast(Mapping[Any, Any], value).items()
+        return {"map": [[_described(key, arrays), _described(inner, arrays)] for key, inner in entries]}
+    if isinstance(value, tuple | list):
+        return {"tuple": [_described(inner, arrays) for inner in cast(tuple[Any, ...], value)]}
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    raise TypeError(f"a {type(value).__name__} in a trace cannot be stored")
+
+
+def _restored(value: Any, arrays: _Arrays) -> Any:
+    match value:
+        case {"array": kind, "shape": shape}:
+            return arrays.take(kind, shape)
+        case {"kind": name, "fields": entries}:
+            return KINDS[name](**{field: _restored(inner, arrays) for field, inner in entries.items()})
+        case {"map": entries}:
+            return {_restored(key, arrays): _restored(inner, arrays) for key, inner in entries}
+        case {"tuple": entries}:
+            return tuple(_restored(inner, arrays) for inner in entries)
+        case _:
+            return value

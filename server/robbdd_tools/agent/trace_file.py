@@ -1,0 +1,114 @@
+"""Traces in MCAP, the robotics log format: the exact trace for us, and what viewers and plotters show of it.
+
+Topics: ``/trace`` (one message: the bytes of ``trace_codec``), ``/tf`` (foxglove.FrameTransforms), ``/scene``
+(foxglove.SceneUpdate), ``/joints``, ``/events`` and ``/verdicts`` (JSON with the schemas below). Times are simulated;
+nothing depends on the wall clock, so equal executions give equal files.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mcap.exceptions import McapError
+from mcap.reader import make_reader
+from mcap.writer import Writer
+
+from robbdd_tools.agent.trace_codec import Evidence, pack, unpack
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.protocol import ClauseJudged, ScenarioSpec
+
+TRACE, ENCODING = "/trace", "robbdd-trace-1"
+LIBRARY = "robbdd"
+NUMBER, TEXT = {"type": "number"}, {"type": "string"}
+
+
+def _object(**properties: Any) -> dict[str, Any]:
+    return {"type": "object", "properties": properties}
+
+
+def _list(items: Any) -> dict[str, Any]:
+    return {"type": "array", "items": items}
+
+
+_TIME = _object(sec={"type": "integer"}, nsec={"type": "integer"})
+_VECTOR, _TURN = _object(x=NUMBER, y=NUMBER, z=NUMBER), _object(x=NUMBER, y=NUMBER, z=NUMBER, w=NUMBER)
+_SOLID = _object(
+    pose=_object(position=_VECTOR, orientation=_TURN),
+    size=_VECTOR,
+    color=_object(r=NUMBER, g=NUMBER, b=NUMBER, a=NUMBER),
+)
+_FRAME = _object(timestamp=_TIME, parent_frame_id=TEXT, child_frame_id=TEXT, translation=_VECTOR, rotation=_TURN)
+_ENTITY = _object(
+    timestamp=_TIME,
+    frame_id=TEXT,
+    id=TEXT,
+    lifetime=_TIME,
+    frame_locked={"type": "boolean"},
+    cubes=_list(_SOLID),
+    spheres=_list(_SOLID),
+    cylinders=_list(_SOLID),
+)
+SCHEMAS: Mapping[str, tuple[str, dict[str, Any]]] = {
+    "/tf": ("foxglove.FrameTransforms", _object(transforms=_list(_FRAME))),
+    "/scene": ("foxglove.SceneUpdate", _object(entities=_list(_ENTITY))),
+    "/joints": ("robbdd.JointStates", {"type": "object", "additionalProperties": _object(), "description": "rad or m"}),
+    "/events": ("robbdd.Event", _object(name=TEXT, time=NUMBER)),
+    "/verdicts": (
+        "robbdd.Verdict",
+        _object(iri=TEXT, name=TEXT, role=TEXT, sentence=TEXT, verdict=TEXT, robustness=NUMBER, unit=TEXT, reason=TEXT),
+    ),
+}
+"""Topic to the name of its messages' type and the JSON schema of these."""
+
+View = tuple[float, str, Any]
+"""Something to be seen: simulated time (s), topic, message."""
+
+
+class UnreadableTrace(Exception):
+    """A file is no trace of ours; the message says why."""
+
+
+def write_trace(path: Path, evidence: Evidence, views: Iterable[View]) -> None:
+    """Write a trace and what is to be seen of it; raises ``OSError``, and ``TypeError`` as ``pack``."""
+    data = pack(evidence)
+    path.parent.mkdir(exist_ok=True)
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(library=LIBRARY)
+        channel = writer.register_channel(TRACE, ENCODING, writer.register_schema("robbdd.Trace", "", b""))
+        writer.add_message(channel, 0, data, 0)
+        channels: dict[str, int] = {}
+        for time, topic, message in views:
+            if topic not in channels:
+                name, schema = SCHEMAS[topic]
+                number = writer.register_schema(name, "jsonschema", json.dumps(schema).encode())
+                channels[topic] = writer.register_channel(topic, "json", number)
+            stamp = round(time * 1e9)
+            writer.add_message(channels[topic], stamp, json.dumps(message, ensure_ascii=False).encode(), stamp)
+        writer.finish()
+
+
+def read_trace(path: Path) -> Evidence:
+    """Restore a trace; raises ``UnreadableTrace``."""
+    try:
+        with path.open("rb") as file:
+            for _, _, message in make_reader(file).iter_messages(topics=[TRACE]):
+                return unpack(message.data)
+    except (OSError, McapError, ValueError, KeyError, TypeError) as error:
+        raise UnreadableTrace(f"{path} cannot be read: {error}") from error
+    raise UnreadableTrace(f"{path} holds no trace")
+
+
+def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:
+    """Yield the verdicts, each at its instant, or at the trace's end (s) where it has none."""
+    clauses = {clause.line: clause for clause in spec.clauses}
+    for one in judged:
+        clause = asdict(clauses[one.line])
+        del clause["line"]
+        details = {"verdict": one.verdict, "robustness": one.robustness, "unit": one.unit, "reason": one.reason}
+        yield (end if one.at is None else one.at), "/verdicts", {**clause, **details}

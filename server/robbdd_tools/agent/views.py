@@ -1,0 +1,114 @@
+"""What log viewers show of an execution: frames that move, the shapes in them, joints, events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.agent.engine import mujoco
+
+if TYPE_CHECKING:
+    from robbdd_tools.agent.simulation import Simulation
+    from robbdd_tools.agent.trace_file import View
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.trace import Trace
+
+EVERY = 4
+"""Samples between two pictures: about 16 per second are enough to look at; the exact trace has all of them."""
+WORLD = "world"
+DIGITS = 5
+"""Decimals of what is only looked at: hundredths of a millimetre."""
+
+
+def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
+    """Yield the views of an execution topic by topic; each is stamped with simulated time."""
+    for stamp in trace.events:
+        yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
+    model = simulation.model
+    solids = {body: shapes for body in range(model.nbody) if (shapes := _shapes(model, body))}
+    names = {body: str(model.body(body).name) or WORLD for body in solids}
+    names = {body: f"{WORLD}/solid" if name == WORLD else name for body, name in names.items()}
+    yield 0.0, "/scene", {"deletions": [], "entities": [_entity(names[body], solids[body]) for body in solids]}
+    scratch = mujoco.MjData(model)
+    states = simulation.recorder.states
+    moving = [body for body in solids if model.body_weldid[body] != 0]
+    for row in range(0, len(states), EVERY):
+        time = float(trace.times[row])
+        scratch.qpos[:] = states[row]
+        mujoco.mj_kinematics(model, scratch)
+        bodies = list(solids) if row == 0 else moving
+        places, turns = scratch.xpos[bodies].round(DIGITS).tolist(), scratch.xquat[bodies].round(DIGITS).tolist()
+        yield time, "/tf", {"transforms": _frames(time, [names[body] for body in bodies], places, turns)}
+        if simulation.robots:
+            yield time, "/joints", _joints(simulation, states[row])
+
+
+def _joints(simulation: Simulation, state: FloatArray) -> dict[str, dict[str, float]]:
+    return {
+        name: dict(zip(robot.model.joints, state[robot.joints].round(DIGITS).tolist(), strict=True))
+        for name, robot in simulation.robots.items()
+    }
+
+
+def _frames(
+    time: float, names: Sequence[str], places: Sequence[Sequence[float]], turns: Sequence[Sequence[float]]
+) -> list[dict[str, Any]]:
+    stamp = _stamp(time)
+    return [
+        {
+            "timestamp": stamp,
+            "parent_frame_id": WORLD,
+            "child_frame_id": name,
+            "translation": {"x": place[0], "y": place[1], "z": place[2]},
+            "rotation": {"x": turn[1], "y": turn[2], "z": turn[3], "w": turn[0]},
+        }
+        for name, place, turn in zip(names, places, turns, strict=True)
+    ]
+
+
+def _entity(name: str, shapes: dict[str, list[Any]]) -> dict[str, Any]:
+    forever = {"sec": 0, "nsec": 0}
+    nothing: dict[str, list[Any]] = {
+        kind: []
+        for kind in ("metadata", "arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "texts", "models")
+    }
+    head = {"timestamp": _stamp(0.0), "frame_id": name, "id": name, "lifetime": forever, "frame_locked": True}
+    return {**head, **nothing, **shapes}
+
+
+def _shapes(model: Any, body: int) -> dict[str, list[Any]]:
+    """Return the boxes, balls and cylinders of a body, by the names that viewers have for them; meshes are left out."""
+    found: dict[str, list[Any]] = {}
+    first = int(model.body_geomadr[body])
+    for geom in range(first, first + int(model.body_geomnum[body])):
+        half = model.geom_size[geom].tolist()
+        match int(model.geom_type[geom]):
+            case mujoco.mjtGeom.mjGEOM_BOX:
+                kind, size = "cubes", [2 * side for side in half]
+            case mujoco.mjtGeom.mjGEOM_SPHERE:
+                kind, size = "spheres", [2 * half[0]] * 3
+            case mujoco.mjtGeom.mjGEOM_CYLINDER | mujoco.mjtGeom.mjGEOM_CAPSULE:
+                kind, size = "cylinders", [2 * half[0], 2 * half[0], 2 * half[1]]
+            case _:
+                continue
+        found.setdefault(kind, []).append(_solid(model, geom, size))
+    return found
+
+
+def _solid(model: Any, geom: int, size: list[float]) -> dict[str, Any]:
+    material = int(model.geom_matid[geom])
+    color = model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]
+    place, turn = model.geom_pos[geom].tolist(), model.geom_quat[geom].tolist()
+    pose = {
+        "position": dict(zip("xyz", place, strict=True)),
+        "orientation": dict(zip("wxyz", turn, strict=True)),
+    }
+    shade = np.asarray(color, dtype=float).round(DIGITS).tolist()
+    return {"pose": pose, "size": dict(zip("xyz", size, strict=True)), "color": dict(zip("rgba", shade, strict=True))}
+
+
+def _stamp(time: float) -> dict[str, int]:
+    nanoseconds = round(time * 1e9)
+    return {"sec": nanoseconds // 10**9, "nsec": nanoseconds % 10**9}

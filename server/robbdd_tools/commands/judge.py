@@ -1,0 +1,92 @@
+"""``robbdd judge``: judge the traces of a stored run against the clauses of an edited model, without simulating."""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.commands import FAILED, FINDINGS, OK
+from robbdd_tools.commands.progress import Display
+from robbdd_tools.commands.requests import Choice, load_models, requests
+from robbdd_tools.commands.runs import store_at
+from robbdd_tools.gherkin.select import Wanted
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.launch import Agent, stop
+from robbdd_tools.run.prepare import prepare_all
+from robbdd_tools.run.protocol import LogLine, scenario_key
+from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.store import NoSuchRun
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.protocol import Manifest
+    from robbdd_tools.run.store import StoredRun
+
+
+@dataclass(frozen=True, slots=True)
+class JudgeOptions:
+    """The run (a number, ``latest`` or a folder), the edited model, where runs are kept, where results go."""
+
+    run: str
+    path: Path
+    store: Path | None = None
+    report: Path | None = None
+
+
+def judge(options: JudgeOptions) -> int:
+    """Print the verdicts of a model's clauses on stored traces; returns the exit code as ``robbdd run``."""
+    try:
+        stored = store_at(options.path, options.store).find(options.run)
+        manifest = stored.manifest()
+        stored.results()
+    except NoSuchRun as error:
+        return _failed(str(error))
+    models = load_models(options.path)
+    if models is None:
+        return FAILED
+    known = {scenario_key(spec) for spec in manifest.scenarios}
+    repeat = max(spec.repetition for spec in manifest.scenarios)
+    choice = Choice(
+        Wanted(seed=manifest.seed), repeat=repeat if repeat > 1 else None, only=lambda spec: scenario_key(spec) in known
+    )
+    found = requests(models, choice)
+    if isinstance(found, str):
+        return _failed(found)
+    with tempfile.TemporaryDirectory(prefix="robbdd-") as name:
+        judged = prepare_all(found, str(options.path), manifest.seed, Path(name))
+        if not judged.scenarios:
+            return _failed(f"no scenario of {options.path} has the values of one in run {options.run}")
+        results = _judged(Path(name), judged, stored)
+    if options.report is not None:
+        options.report.write_text(json.dumps(results.as_json(), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    if not results.complete:
+        return FAILED
+    return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS
+
+
+def _judged(folder: Path, manifest: Manifest, stored: StoredRun) -> RunResults:
+    results = RunResults(manifest)
+    agent = Agent(folder, module="robbdd_tools.agent.judge", arguments=[str(stored.folder)])
+    ending = ""
+    with Display(results) as display:
+        try:
+            for message in agent.messages():
+                results.apply(message)
+                display.watch(message)
+                display.show(message)
+                ending = message.text if isinstance(message, LogLine) else ending
+        finally:
+            stop([agent])
+        if not results.complete:
+            results.close(ending or agent.ending())
+            display.broken(ending or agent.ending())
+        display.summary()
+    return results
+
+
+def _failed(message: str) -> int:
+    print(f"robbdd: {message}", file=sys.stderr)
+    return FAILED

@@ -1,0 +1,106 @@
+"""``robbdd replay``: simulate a stored run again and prove that the traces are the same to the last bit."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
+from robbdd_tools.commands.execute import execute
+from robbdd_tools.commands.requests import digest, load_models
+from robbdd_tools.commands.runs import store_at
+from robbdd_tools.run.prepare import FEATURES
+from robbdd_tools.run.protocol import MANIFEST, trace_file
+from robbdd_tools.run.store import NoSuchRun
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.protocol import Manifest
+    from robbdd_tools.run.scheduler import Policy
+    from robbdd_tools.run.store import RunRecord, StoredRun
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayOptions:
+    """The run (a number, ``latest`` or a folder), the scenarios by name, where runs are kept, how to simulate."""
+
+    run: str
+    policy: Policy
+    names: Sequence[str] = ()
+    store: Path | None = None
+
+
+def replay(options: ReplayOptions) -> int:
+    """Print for each scenario whether its trace is the same; returns 0 when all are, 1 when one is not."""
+    try:
+        stored = store_at(Path(), options.store).find(options.run)
+        record, manifest = stored.record(), stored.manifest()
+    except NoSuchRun as error:
+        return _failed(str(error))
+    refusal = _refusal(stored, record)
+    if refusal:
+        return _failed(refusal)
+    indices = [
+        index
+        for index, spec in enumerate(manifest.scenarios)
+        if (not options.names or {spec.name, _local(spec.name), _local(spec.variant)} & set(options.names))
+        and trace_file(stored.folder, index).is_file()
+    ]
+    if not indices:
+        return _failed(f"run {options.run} keeps no trace of {' or '.join(options.names) or 'any scenario'}")
+    with tempfile.TemporaryDirectory(prefix="robbdd-") as name:
+        folder = Path(name)
+        shutil.copy(stored.folder / MANIFEST, folder)
+        shutil.copytree(stored.folder / FEATURES, folder / FEATURES)
+        _, simulator, interrupted = execute(folder, manifest, options.policy, indices)
+        if interrupted:
+            return INTERRUPTED
+        if record.simulator != simulator:
+            print(f"robbdd: the run was made with {record.simulator}, this is {simulator}", file=sys.stderr)
+        return _compare(stored, folder, manifest, indices)
+
+
+def _refusal(stored: StoredRun, record: RunRecord) -> str:
+    """Say why a run cannot be replayed; nothing when it can."""
+    path = (stored.folder / record.origin).resolve()
+    if not path.exists():
+        return f"the model of the run, {record.path}, is gone"
+    models = load_models(path)
+    if models is None:
+        return f"the model of the run, {record.path}, cannot be run as it is now"
+    if digest(models) != record.digest:
+        return (
+            f"{record.path} was changed since the run (its graph's digest is {digest(models)[:12]}, "
+            f"the run's {record.digest[:12]}): run it again, or judge the stored traces with 'robbdd judge'"
+        )
+    return ""
+
+
+def _compare(stored: StoredRun, folder: Path, manifest: Manifest, indices: Sequence[int]) -> int:
+    command = [sys.executable, "-m", "robbdd_tools.agent.compare", str(stored.folder), str(folder)]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
+    if done.returncode:
+        return _failed(f"the traces cannot be compared: {(done.stderr.strip().splitlines() or [''])[-1]}")
+    found = {entry["index"]: entry["difference"] for entry in map(json.loads, done.stdout.splitlines())}
+    same = 0
+    for index in indices:
+        difference = found.get(index, "it could not be simulated again")
+        same += not difference
+        print(f"{manifest.scenarios[index].name}: {difference or 'the same to the last bit'}")
+    print(f"{same} of {len(indices)} traces are the same")
+    return OK if same == len(indices) else FINDINGS
+
+
+def _local(name: str) -> str:
+    return name.replace("#", "/").rpartition("/")[2].rpartition(":")[2]
+
+
+def _failed(message: str) -> int:
+    print(f"robbdd: {message}", file=sys.stderr)
+    return FAILED
