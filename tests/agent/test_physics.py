@@ -109,6 +109,19 @@ def test_a_thing_is_placed_on_a_board_and_on_a_tray(agent: str, goal: str) -> No
     assert penetration(run) < PENETRATION
 
 
+@pytest.mark.parametrize("agent", ["env:panda", "env:kinova1", "env:ur10"])
+def test_a_tall_thing_is_lifted_above_a_high_board_before_it_travels(agent: str) -> None:
+    """What hangs under the tool reaches down to the board when the tool travels at its usual height."""
+    thing, goal = "env:bottle1", "env:shelf_upper_ws"
+    objects, places = (thing, "env:bench", "env:shelf"), {goal: ("env:shelf",)}
+    scene = replace(SCENE, objects=objects, agents=(agent,), workspaces=places, contains={})
+    trace = to_the_end(execution([pick_place(thing, goal, agent)], scene, seed=1))
+    assert not trace.remark
+    shelf, bottle = (trace.positions[:, trace.column(name)] for name in ("env:shelf", thing))
+    assert np.linalg.norm(shelf[-1] - shelf[0]) < 1e-3
+    assert bottle[-1, 2] == pytest.approx(TABLE_TOP + 0.12 + 0.04, abs=1e-3)
+
+
 def test_the_order_in_which_objects_are_declared_does_not_matter() -> None:
     straight = to_the_end(execution([pick_place(BALL)], CROWD))
     turned = to_the_end(execution([pick_place(BALL)], replace(CROWD, objects=CROWD.objects[::-1])))

@@ -32,7 +32,7 @@ REST = 1.0
 """Seconds between the end of the last behaviour and the end of the scenario, for things to come to rest."""
 TIMEOUT = 60.0
 """Seconds of simulated time after which an execution is stopped."""
-LOOK = 8
+LOOK = 16
 """Ticks after which an execution without any news is looked at again."""
 
 

@@ -6,6 +6,7 @@ It knows the object's pose when it begins and follows its plan from there, feeli
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 SLIPPED = 3
 """Ticks in a row without grip that count as a loss."""
+RISE = 1e-3
+"""Difference in height (m) from which on the tool first rises and then travels: on a slant it would hit the place."""
 RELEASE = 20
 """Ticks that the open gripper waits before it leaves."""
 
@@ -64,7 +67,10 @@ class PickPlace:
             raise BehaviourError(f"{self._robot.name} does not hold {name}")
         self._emit("place-start")
         down = self._choose_target(name, workspace, self._grasp)
-        yield from self.move(self._at_travel(down))
+        over, here = self._at_travel(down), present_pose(self._arm, self._joints)
+        if over.height > here.height + RISE:
+            yield from self.move(replace(here, height=over.height))
+        yield from self.move(over)
         yield from self.move(down)
         self._held = None
         yield from self._gripper.release(self)

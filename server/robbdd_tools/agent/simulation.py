@@ -82,6 +82,8 @@ class Simulation:
         # Views of the engine's memory, which stays where it is: to ask for them anew in every tick takes longer.
         self._qpos: FloatArray = self.data.qpos
         self._qvel: FloatArray = self.data.qvel
+        self._ctrl: FloatArray = self.data.ctrl
+        self._act: FloatArray = self.data.act
         motors = [robot.motors for robot in self.robots.values()]
         self._servos = np.concatenate([*motors, np.empty(0, dtype=int)]).astype(int)
         self._tools: list[tuple[FloatArray, FloatArray]] = [
@@ -178,9 +180,9 @@ class Simulation:
 
         A cup that leaks has no vacuum.
         """
-        self.data.ctrl[robot.motors] = (joints - self.data.act[robot.targets]) / TICK
+        self._ctrl[robot.motors] = (joints - self._act[robot.targets]) / TICK
         leaks = robot.name in self._grips.leaking
-        self.data.ctrl[robot.gripper] = robot.model.gripper_open if leaks else opening
+        self._ctrl[robot.gripper] = robot.model.gripper_open if leaks else opening
 
     def open_fingers(self, robot: Robot, data: Any) -> None:
         """Put a robot's fingers into the open position in ``data``: the start, or a state that is only tried."""
@@ -197,7 +199,7 @@ class Simulation:
             self._step_and_look(self.forces)
         self.stepping += perf_counter() - began
         # A target that nobody moves on stays where it is.
-        self.data.ctrl[self._servos] = 0.0
+        self._ctrl[self._servos] = 0.0
         if not isfinite(self._qvel @ self._qvel):
             raise SimulationError(f"the simulation became unstable at {self.time:.2f} s")
 
