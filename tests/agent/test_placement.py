@@ -15,6 +15,7 @@ from agent.worlds import BALL, BENCH_WS, BIN, BIN_WS, CUBE, OTHER_BIN, SCENE
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.placement import TABLE_TOP, Pose, arrange, footprint, mounts
 from robbdd_tools.agent.scene import PEDESTAL, cast_scene
+from robbdd_tools.agent.world import build_world
 from robbdd_tools.run.protocol import SceneSpec
 
 MANY = replace(SCENE, objects=(*SCENE.objects, *(f"env:cube{number}" for number in range(2, 6)), "env:ball2"))
@@ -23,7 +24,7 @@ MANY = replace(SCENE, objects=(*SCENE.objects, *(f"env:cube{number}" for number 
 def places(scene: SceneSpec, seed: int = 1) -> dict[str, Pose]:
     cast = cast_scene(scene)
     base = next(iter(mounts(cast).values()), Pose((0.0, 0.0, 0.0)))
-    return arrange(scene, cast, base, np.random.default_rng(seed))
+    return arrange(scene, cast, base, np.random.default_rng(seed)).poses
 
 
 def test_the_seed_decides() -> None:
@@ -99,3 +100,12 @@ def test_a_second_robot_faces_the_first_across_the_table() -> None:
 def test_a_scene_that_cannot_be_is_explained(scene: SceneSpec, message: str) -> None:
     with pytest.raises(SceneError, match=message):
         places(scene)
+
+
+def test_places_that_overlap_are_drawn_again_and_counted() -> None:
+    alone = replace(SCENE, objects=(CUBE, "env:bench"), workspaces={}, contains={})
+    crowd = replace(alone, objects=(*alone.objects, *(f"t:ball{number}" for number in range(12))))
+    assert build_world(alone, 1).resampled == 0
+    world = build_world(crowd, 1)
+    assert world.resampled > 0
+    assert build_world(crowd, 1).resampled == world.resampled

@@ -45,6 +45,14 @@ class Pose:
 
 
 @dataclass(frozen=True, slots=True)
+class Arrangement:
+    """The pose of every object's origin, and how often a random place overlapped with something and was drawn again."""
+
+    poses: dict[str, Pose]
+    resampled: int
+
+
+@dataclass(frozen=True, slots=True)
 class _Field:
     """A rectangle to draw positions from: centre and half edges (m, world frame), height of what lies there (m).
 
@@ -88,8 +96,8 @@ def mounts(cast: Cast) -> dict[str, Pose]:
     return poses
 
 
-def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) -> dict[str, Pose]:
-    """Return the pose of every object's origin, for an agent that acts from ``base``.
+def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) -> Arrangement:
+    """Lay the objects of a scene out for an agent that acts from ``base``.
 
     Raises ``SceneError`` when the scene asks for a place that does not exist or for more than there is room for.
     """
@@ -102,14 +110,16 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
             poses[name] = Pose((left + x, ahead + y, top + cast.objects[name].rest_height))
     bins = [name for name in poses if cast.objects[name].free]
     taken: list[_Disc] = []
+    resampled = 0
     for name, model in cast.objects.items():
         if not model.graspable:
             continue
         walls = [(poses[other], cast.objects[other]) for other in bins]
-        pose = _draw(name, model, list(_fields(scene, cast, poses, base, name)), base, taken, walls, rng)
+        pose, rejected = _draw(name, model, list(_fields(scene, cast, poses, base, name)), base, taken, walls, rng)
         taken.append(_Disc(pose.position[0], pose.position[1], footprint(model)))
         poses[name] = pose
-    return poses
+        resampled += rejected
+    return Arrangement(poses, resampled)
 
 
 def field_before(
@@ -207,8 +217,10 @@ def _draw(
     taken: list[_Disc],
     walls: list[tuple[Pose, ObjectModel]],
     rng: np.random.Generator,
-) -> Pose:
+) -> tuple[Pose, int]:
+    """Return a pose and how many others were rejected before; raises ``SceneError``."""
     radius = footprint(model)
+    rejected = 0
     for field in fields:
         wall_gap = field.wall_gap
         for _ in range(TRIES):
@@ -217,7 +229,8 @@ def _draw(
             clear = all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + field.gap for disc in taken)
             apart = wall_gap is None or all(_apart(x, y, radius + wall_gap, pose, other) for pose, other in walls)
             if clear and apart and abs(bearing(base, x, y)) <= BEARING:
-                return Pose((x, y, field.height + model.rest_height), turn * field.skew)
+                return Pose((x, y, field.height + model.rest_height), turn * field.skew), rejected
+            rejected += 1
     raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
 
 

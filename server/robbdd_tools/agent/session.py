@@ -81,6 +81,10 @@ class ScenarioRun:
             try:
                 calls = [call_of(doing) for doing in self._doings.values()]
                 self._execution = Execution(self._spec, calls, timing_of(self._clauses.values()))
+                again = self._execution.simulation.world.resampled
+                if again:
+                    text = f"{self._spec.name}: {again} initial places overlapped and were drawn again"
+                    self._channel.send(LogLine("info", text))
                 self._show(self._execution)
             except SceneError as error:
                 self._broken = str(error)

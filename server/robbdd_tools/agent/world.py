@@ -35,7 +35,8 @@ class World:
     """A compiled scene.
 
     ``model`` is the engine's; ``bases`` are the poses of the robots' bases, ``poses`` those of the objects before
-    they settle. ``seed`` is the one that decided everything random in it.
+    they settle. ``seed`` is the one that decided everything random in it; ``resampled`` counts the random places that
+    were drawn again because they overlapped or were out of reach.
     """
 
     model: Any
@@ -43,6 +44,7 @@ class World:
     bases: Mapping[str, Pose]
     poses: Mapping[str, Pose]
     seed: int
+    resampled: int
 
 
 def build_world(scene: SceneSpec, seed: int, actor: str | None = None) -> World:
@@ -57,8 +59,9 @@ def build_world(scene: SceneSpec, seed: int, actor: str | None = None) -> World:
         raise SceneError(f"the scene has no agent '{actor}'")
     base = bases[actor] if actor is not None else next(iter(bases.values()), Pose((0.0, 0.0, TABLE_TOP)))
     seed = seed if cast.seed is None else cast.seed
-    poses = arrange(scene, cast, base, np.random.default_rng(seed))
-    return World(_compile(cast, bases, poses), cast, bases, poses, seed)
+    arranged = arrange(scene, cast, base, np.random.default_rng(seed))
+    model = _compile(cast, bases, arranged.poses)
+    return World(model, cast, bases, arranged.poses, seed, arranged.resampled)
 
 
 def mjcf_path(robot: RobotModel) -> Path:

@@ -76,7 +76,7 @@ _EVERY = (
         count=4,
         words=(("normal", NORMAL), ("dense", DENSE)),
     ),
-    Setting("height_scale", "", "a bin, or its workspace", 0.2, 3.0, "height as a multiple of the catalog's"),
+    Setting("height_scale", "", "a bin, tray or shelf", 0.2, 3.0, "height as a multiple of the catalog's"),
     Setting("ee_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool along its planned path"),
     Setting("mass", "kg", "a loose object", 0.001, 50.0, "mass of the whole object"),
     Setting("friction", "", "an object", 0.01, 2.0, "coefficient of sliding friction"),
