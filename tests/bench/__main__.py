@@ -18,10 +18,11 @@ Written by `make bench`; compare figures within one run only, machines differ an
 def main() -> None:
     """Measure everything and write the page."""
     sys.path.insert(0, str(ROOT / "tests"))
-    from tests.bench import gherkin, language, running
+    from tests.bench import gherkin, language, running, shapes
 
     page = [HEAD, f"Measured with Python {platform.python_version()} on {platform.machine()}, {_processor()}.\n"]
     page += _section("Language", language.rows())
+    page += _section("Shapes and queries", shapes.rows())
     page += _section("Gherkin", gherkin.rows())
     page += _section("Runs", running.rows())
     PAGE.write_text("\n".join(page), encoding="utf-8")

@@ -1,0 +1,92 @@
+"""How long after an edit the shapes' findings are there, against validating the whole graph; engines for queries."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from tests.bench.models import model
+
+from kit import FOLDER, SCENE
+from robbdd_tools.graph.build import build_graph
+from robbdd_tools.graph.incremental import Validation
+from robbdd_tools.graph.query import ready_query
+from robbdd_tools.graph.validate import validate
+from robbdd_tools.names.project import Project
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+EDITS = 40
+TRIPLES = 100_000
+QUERIES = ("idle-events", "predicate-coverage", "variants", "clause-times")
+
+
+def rows() -> Iterator[tuple[str, str]]:
+    """Yield a name and a figure for each measurement."""
+    for lines in (100, 1000, 10_000):
+        yield _edits(lines)
+    yield from _engines()
+
+
+def _edits(lines: int) -> tuple[str, str]:
+    text, uri = model(lines), f"{FOLDER}bench.bdd"
+    project, validation = Project(), Validation()
+    project.open(f"{FOLDER}lab.scene", 1, SCENE)
+    project.open(uri, 1, text)
+    validation.run(project.snapshot(), uri)
+    place = text.index("0.5 seconds", len(text) // 2)
+    edits: list[float] = []
+    for number in range(EDITS):
+        edited = f"{text[:place]}0.{number + 10} seconds{text[place + len('0.5 seconds') :]}"
+
+        def validated(version: int = number + 2, edited: str = edited) -> None:
+            project.open(uri, version, edited)
+            validation.run(project.snapshot(), uri)
+
+        edits.append(_milliseconds(validated))
+    whole = _milliseconds(lambda: validate(build_graph(project.snapshot(), uri)))
+    hundredths = statistics.quantiles(edits, n=100, method="inclusive")
+    figures = f"p50 {hundredths[49]:.0f}, p95 {hundredths[94]:.0f} ms; the whole graph takes {whole:.0f} ms"
+    return f"edit to the shapes' findings, {text.count(chr(10))} lines", figures
+
+
+def _engines() -> Iterator[tuple[str, str]]:
+    """Compare rdflib's engine with that of Oxigraph, where it is installed, on one graph."""
+    graph = _large_graph()
+    native = _oxigraph(graph)
+    for name in QUERIES:
+        query = ready_query(name) or ""
+        ours = _milliseconds(lambda query=query: list(graph.query(query)))
+        theirs = None if native is None else _milliseconds(lambda query=query: native(query))
+        ratio = "" if theirs is None else f"; Oxigraph {theirs:.0f} ms, {ours / theirs:.0f} × as fast"
+        yield f"query {name}, {len(graph)} triples", f"{ours:.0f} ms{ratio}"
+
+
+def _large_graph() -> Graph:
+    uri, project = f"{FOLDER}bench.bdd", Project()
+    project.open(f"{FOLDER}lab.scene", 1, SCENE)
+    project.open(uri, 1, model(TRIPLES * 10_000 // 44_000))
+    return build_graph(project.snapshot(), uri).graph
+
+
+def _oxigraph(graph: Graph) -> Callable[[str], object] | None:
+    """Return what answers queries on a copy of a graph, ``None`` without pyoxigraph."""
+    from importlib import import_module
+    from importlib.util import find_spec
+    from typing import Any
+
+    if find_spec("pyoxigraph") is None:
+        return None
+    oxigraph: Any = import_module("pyoxigraph")
+    store = oxigraph.Store()
+    store.load(graph.serialize(format="nt").encode(), oxigraph.RdfFormat.N_TRIPLES)
+    return lambda query: list(store.query(query))
+
+
+def _milliseconds(work: Callable[[], object]) -> float:
+    start = time.perf_counter()
+    work()
+    return 1000.0 * (time.perf_counter() - start)
