@@ -119,7 +119,7 @@ obj set (ns=e) { object a }
     )
 
 
-def test_imports_in_a_circle_are_fine() -> None:
+def test_names_are_found_through_imports_in_a_circle() -> None:
     check(
         """//- a.bdd
 import "b.bdd"

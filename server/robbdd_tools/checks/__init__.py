@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.checks.catalog_entry import catalog_entry
 from robbdd_tools.checks.contradictory_order import contradictory_order
+from robbdd_tools.checks.cyclic_import import cyclic_import
 from robbdd_tools.checks.duplicate_iri import duplicate_iri
 from robbdd_tools.checks.empty_duration import empty_duration
 from robbdd_tools.checks.empty_set import empty_set
@@ -53,6 +54,7 @@ DECLARATION_RULES = (
 )
 FILE_RULES = (
     catalog_entry,
+    cyclic_import,
     duplicate_iri,
     model_file,
     namespace_iri,
