@@ -11,7 +11,8 @@ ROOT = Path(__file__).parent.parent.parent
 PAGE = ROOT / "docs" / "performance.md"
 HEAD = """# Performance
 
-Written by `make bench`; compare figures within one run only, machines differ and are noisy.
+Written by `make bench`; compare figures within one run only, machines differ and are noisy. Those of
+the language are processor time of one thread.
 """
 
 
