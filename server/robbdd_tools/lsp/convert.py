@@ -57,18 +57,20 @@ class Converter:
         if position.line >= len(document.line_starts):
             return len(document.text)
         line = document.line_text(position.line)
+        if line.isascii():
+            return document.line_starts[position.line] + min(position.character, len(line))
         units = 0
         for column, letter in enumerate(line):
             if units >= position.character:
                 return document.line_starts[position.line] + column
-            units += self._units(letter)
+            units += self.units(letter)
         return document.line_starts[position.line] + len(line)
 
     def position(self, document: Document, offset: int) -> types.Position:
         """Return the client position of a code-point offset."""
         place = document.position(offset)
         line = document.line_text(place.line)[: place.column]
-        return types.Position(line=place.line, character=sum(map(self._units, line)))
+        return types.Position(line=place.line, character=self.units(line))
 
     def range(self, document: Document, span: Span) -> types.Range:
         """Return the client range of a span."""
@@ -142,14 +144,13 @@ class Converter:
             changes.setdefault(edit.uri, []).append(self.edit(document_of(snapshot, edit.uri), edit))
         return types.WorkspaceEdit(changes=changes)
 
-    def _units(self, letter: str) -> int:
-        match self.encoding:
-            case types.PositionEncodingKind.Utf32:
-                return 1
-            case types.PositionEncodingKind.Utf8:
-                return len(letter.encode("utf-8", "surrogatepass"))
-            case _:
-                return 2 if ord(letter) > 0xFFFF else 1
+    def units(self, text: str) -> int:
+        """Return the length of a text in the client's units."""
+        if text.isascii() or self.encoding == types.PositionEncodingKind.Utf32:
+            return len(text)
+        if self.encoding == types.PositionEncodingKind.Utf8:
+            return len(text.encode("utf-8", "surrogatepass"))
+        return len(text.encode("utf-16-le", "surrogatepass")) // 2
 
 
 def document_of(snapshot: Snapshot, uri: str) -> Document:

@@ -124,7 +124,7 @@ def encoded(convert: Converter, document: Document, tokens: Sequence[Token]) -> 
     line, column = 0, 0
     for token in tokens:
         start = convert.position(document, token.span.start)
-        length = convert.position(document, token.span.end).character - start.character
+        length = convert.units(document.text[token.span.start : token.span.end])
         kind, modifiers = _NUMBERS[token.concept]
         if token.is_declaration:
             modifiers |= _MODIFIER_BITS[_DECLARATION]
