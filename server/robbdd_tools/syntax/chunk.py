@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from threading import Lock
 from typing import Any
 
 from robbdd_tools.base.data import data_file
@@ -44,6 +45,10 @@ class Parsed:
     trailing: int | None
 
 
+# Rules are compiled when they are first met; a second thread must not see one half done.
+_COMPILING = Lock()
+
+
 def parse_chunk(language: str, text: str) -> Parsed | Rejected:
     """Parse one chunk of a file whose name ends in ``language``; a ``scenario`` is parsed without its story."""
     parser = _parser(language)
@@ -51,7 +56,8 @@ def parse_chunk(language: str, text: str) -> Parsed | Rejected:
         from robbdd_tools.syntax.textx import parse_with_textx
 
         return parse_with_textx(language, text)
-    chunk, state = parser.parse(text)
+    with _COMPILING:
+        chunk, state = parser.parse(text)
     if chunk is None:
         return Rejected(state.furthest, _expectation(state))
     node: RawNode = chunk
