@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from lsprotocol import types
@@ -15,6 +15,13 @@ from robbdd_tools.base.files import path_to_uri
 PATIENCE = 60.0
 CLIENTS = pytest.mark.parametrize("client", ["visual-studio-code", "neovim", "emacs"], indirect=True)
 """For tests whose answer depends on what the client can do."""
+
+
+def plain(value: Any) -> Any:
+    """An object of the client, as the JSON that it was."""
+    if hasattr(value, "_asdict"):
+        return {name: plain(entry) for name, entry in value._asdict().items()}
+    return list(map(plain, cast(list[Any], value))) if isinstance(value, list) else value
 
 
 class Editor:

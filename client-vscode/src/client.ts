@@ -10,7 +10,7 @@ import {
   State,
   TransportKind,
 } from "vscode-languageclient/node";
-import { openFeatures } from "./features";
+import { openFiles } from "./written";
 import { type Lookup, findServer } from "./lookup";
 import type { ServerState } from "./presentation";
 import { RestartBudget } from "./restarts";
@@ -22,6 +22,8 @@ import { surroundings } from "./surroundings";
 export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
 /** Models, and what may hold a project's own rules about them. */
 const FILES = "**/{*.bdd,*.scene,*.scenex,*.bddx,*.ktree,*.ttl,robbdd.toml,pyproject.toml}";
+/** Commands of the server that run scenarios. */
+const RUNNING = new Set(["robbdd.run", "robbdd.rerunFailed", "robbdd.record"]);
 const STOP_TIMEOUT = 3000;
 
 /** Logs its errors and leaves it to us to speak to the user: two messages for one failure are one too many. */
@@ -83,15 +85,15 @@ export class Server implements vscode.Disposable {
     try {
       const params = { command, arguments: [argument] };
       const result: unknown = await client.sendRequest(ExecuteCommandRequest.type, params);
-      if (command === "robbdd.gherkin") {
-        await openFeatures(result);
+      if (command === "robbdd.gherkin" || command === "robbdd.steps") {
+        await openFiles(result);
       }
       return result;
     } catch (error) {
       this.refused(command, error);
       return undefined;
     } finally {
-      if (command === "robbdd.run" && hasUri(argument)) {
+      if (RUNNING.has(command) && hasUri(argument)) {
         // The answer comes after the last message. A cancelled or crashed run has not said that it ended.
         this.runs.end(argument.uri);
       }

@@ -62,8 +62,20 @@ test("a run reads from its start to its summary", () => {
   ]);
 });
 
+test("scenarios that are executed side by side are told one after the other", () => {
+  const { lines } = report(runStarted(3), started(0), started(1), judged(1, "holds"), judged(0, "holds"), finished(1));
+  const rest = report(runStarted(2), started(0), judged(0, "holds")).run.interrupt("Gone.");
+  assert.deepEqual(
+    lines.map((line) => line.trim().split(/[ :]/, 2).join(" ")),
+    ["▶ cell/fetch.bdd", "Scenario 2", "✔ cube", "passed after"],
+  );
+  assert.equal(rest.length, 4);
+  assert.ok(rest[0]?.startsWith("  Scenario 1 of 2"));
+});
+
 test("a margin is given in a unit that reads well, and only where it has one", () => {
-  const line = (robustness: number, unit: string) => report(judged(0, "holds", { robustness, unit })).lines[0];
+  const line = (robustness: number, unit: string) =>
+    report(started(0), judged(0, "holds", { robustness, unit }), finished(0)).lines[1];
   assert.equal(line(0.9994, "m"), "    ✔ cube is located at bin: holds by +999 mm");
   assert.equal(line(1.5, "m"), "    ✔ cube is located at bin: holds by +1.50 m");
   assert.equal(line(-0.25, "m/s"), "    ✔ cube is located at bin: holds by −0.250 m/s");
@@ -134,7 +146,7 @@ test("a notification of another shape is not taken for a run message", () => {
 // What the language server says for readers beside the fields of its protocol with the agent.
 const WORDS = ["name", "values", "sentence"];
 
-test("the messages have the fields of the server's protocol", () => {
+test("every field that is read is one of the server's protocol", () => {
   const protocol = readFileSync(join(process.cwd(), "..", "server", "robbdd_tools", "run", "protocol.py"), "utf8");
   const samples: RunMessage[] = [
     runStarted(1),
@@ -150,6 +162,7 @@ test("the messages have the fields of the server's protocol", () => {
     assert.ok(body !== undefined, `${type} is not in the protocol`);
     const declared = [...body.matchAll(/^ {4}(\w+): /gm)].map((match) => match[1]);
     const sent = Object.keys(fields).filter((name) => !WORDS.includes(name));
-    assert.deepEqual(sent.sort(), declared.sort(), type);
+    // The protocol may grow; what is read here has to be in it.
+    assert.deepEqual(sent.filter((name) => !declared.includes(name)), [], type);
   }
 });

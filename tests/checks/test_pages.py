@@ -15,7 +15,11 @@ PACKAGE = Path(robbdd_tools.__file__).parent
 PAGES = DOCS / "diagnostics"
 CODE_ARGUMENT = {"Diagnostic": 3, "Unreadable": 0, "finding": 3, "unused": 2}
 """Makers of findings → position of the code among their arguments."""
-FAMILIES = {"shacl-": {"shacl"}, "shape-": {"shape"}, "clause-": {"clause-violated", "clause-unknown"}}
+FAMILIES = {
+    "shacl-": {"shacl"},
+    "shape-": {"shape"},
+    "clause-": {"clause-violated", "clause-unknown", "clause-undefined"},
+}
 """Beginnings of codes that are put together at run time → their pages."""
 
 

@@ -1,29 +1,66 @@
-"""Results stand behind their clauses, aggregated over variations, until the clause is edited."""
+"""Results stand behind clauses and rows, aggregated over variations, and are marked when the text has changed."""
 
-from kit import MODEL, fixture
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from gherkin_kit import edited
+from kit import MODEL, Fixture, fixture
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.features.clause_results import (
-    ClauseResult,
-    JudgedClause,
-    clause_diagnostics,
-    clause_hints,
-    clause_text,
+from robbdd_tools.features.clause_results import clause_diagnostics, clause_hints, pass_rate, row_hints
+from robbdd_tools.features.results import (
+    Findings,
+    JudgedScenario,
+    Judgement,
+    Results,
+    as_json,
+    digests_of,
+    from_json,
+)
+from robbdd_tools.features.scenarios import number_of_scenarios
+from robbdd_tools.names.variants import variants_of
+
+NS = "https://example.org/t/"
+IRI = f"{NS}in-tray"
+HOLDS = Judgement("in-tray", "holds", "+31 mm", 2e6, "✔ +31 mm", "")
+VIOLATED = Judgement("in-tray", "violated", "−12 mm", -0.012, "✗ −12 mm at 3.40 s", "")
+WORSE = Judgement("in-tray", "violated", "−40 mm", -0.040, "✗ −40 mm at 2.00 s", "")
+UNKNOWN = Judgement("in-tray", "unknown", "", 1e6, "? unknown: event never occurred", "")
+UNDEFINED = Judgement("in-tray", "undefined", "", 1e6, "? unknown: no step definition for 'x'", "")
+TABLE = edited(
+    """var <fetch.part>: obj set <parts>
+                var <fetch.robot>: { <arms.panda> }
+                var <fetch.goal>: { <places.bench_ws>, <places.tray_ws> }""",
+    """| <fetch.part> | <fetch.robot> | <fetch.goal> |
+                |---|---|---|
+                | <parts.bolt> | <arms.panda> | <places.tray_ws> |
+                | <parts.nut> | <arms.ur10> | <places.tray_ws> |""",
 )
 
-IRI = "https://example.org/t/in-tray"
-HOLDS = ClauseResult("holds", "✔ +31 mm", "part = bolt: ✔ +31 mm", 2.03)
-VIOLATED = ClauseResult("violated", "✗ −12 mm at 3.40 s", "part = nut: ✗ −12 mm at 3.40 s", -0.012)
-UNKNOWN = ClauseResult("unknown", "? unknown", "part = nut: ? unknown: event never occurred", 1.0)
+
+def judged(case: Fixture, *judgements: Judgement, iri: str = IRI) -> Findings:
+    """Findings of a run of the text as it is now, one scenario per judgement."""
+    digests, variant = digests_of(case.snapshot, case.uri), f"{NS}bench-to-tray"
+    results = Results()
+    for number, judgement in enumerate(judgements, start=1):
+        row = digests.rows.get((variant, number), "")
+        scenario = JudgedScenario(case.uri, variant, number, f"part = {number}", digests.variants[variant], row)
+        scenario.judge(iri, replace(judgement, digest=digests.clauses[iri]))
+        scenario.finished = True
+        results.add([scenario])
+    return results.findings()
 
 
-def hints(*results: ClauseResult, text: str = MODEL) -> list[str]:
+def hints(*judgements: Judgement, text: str = MODEL) -> list[str]:
+    """The hints of a text that was run as ``MODEL``."""
     case = fixture(MODEL)
-    judged = {IRI: JudgedClause(clause_text(case.snapshot, IRI, [case.uri]) or "", results)}
+    findings = judged(case, *judgements)
     case.project.open(case.uri, 2, text)
-    source = case.project.texts()[case.uri][1]
     return [
-        f"{source[: hint.span.end].rsplit(':', 2)[-2][-7:]} {hint.label}"
-        for hint in clause_hints(case.snapshot, case.uri, judged)
+        f"{text[hint.span.start : hint.span.end].partition(':')[0]} {hint.label}"
+        for hint in clause_hints(case.snapshot, case.uri, findings)
     ]
 
 
@@ -32,23 +69,150 @@ def test_one_result_is_shown_as_it_is() -> None:
 
 
 def test_several_results_show_the_worst_and_how_many_hold() -> None:
-    assert hints(HOLDS, VIOLATED, HOLDS) == ["in-tray ✗ 2/3  worst −12 mm at 3.40 s"]
+    assert hints(HOLDS, VIOLATED, HOLDS) == ["in-tray ✗ 2/3  worst −12 mm"]
+    assert hints(VIOLATED, WORSE) == ["in-tray ✗ 0/2  worst −40 mm"]
+    assert hints(HOLDS, UNKNOWN) == ["in-tray ? 1/2"]
+    assert hints(UNDEFINED, UNDEFINED) == ["in-tray ? 0/2 no step"]
 
 
-def test_an_edit_elsewhere_keeps_the_result() -> None:
-    assert hints(HOLDS, text="// note\n" + MODEL) == ["in-tray ✔ +31 mm"]
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("ns t =", "// note\nns t ="),
+        ("0.5 seconds after", "0.5   seconds /* */ after".replace("/* */", "// why\n           ")),
+        ("var part\n", "var part\n    var spare\n"),
+    ],
+)
+def test_an_edit_elsewhere_or_of_layout_keeps_the_result(old: str, new: str) -> None:
+    assert hints(HOLDS, text=edited(old, new)) == ["in-tray ✔ +31 mm"]
 
 
-def test_an_edited_clause_has_no_result() -> None:
-    assert hints(HOLDS, text=MODEL.replace("0.5 seconds after", "0.6 seconds after")) == []
-
-
-def test_what_does_not_hold_is_a_diagnostic() -> None:
+def test_the_result_of_an_edited_clause_is_stale_until_the_edit_is_undone() -> None:
+    changed = edited("0.5 seconds after", "0.6 seconds after")
+    assert hints(HOLDS, VIOLATED, text=changed) == ["in-tray ✗ 1/2  worst −12 mm (stale)"]
     case = fixture(MODEL)
-    text = clause_text(case.snapshot, IRI, [case.uri])
-    assert text is not None
-    for result, severity in ((VIOLATED, Severity.ERROR), (UNKNOWN, Severity.WARNING)):
-        (found,) = clause_diagnostics(case.snapshot, case.uri, {IRI: JudgedClause(text, (HOLDS, result))})
-        assert found.severity is severity
-        assert result.detail in found.message
-    assert clause_diagnostics(case.snapshot, case.uri, {IRI: JudgedClause(text, (HOLDS,))}) == []
+    findings = judged(case, VIOLATED)
+    case.project.open(case.uri, 2, changed)
+    (hint,) = clause_hints(case.snapshot, case.uri, findings)
+    assert hint.tooltip.startswith("The text has changed since this was judged")
+    assert clause_diagnostics(case.snapshot, case.uri, findings) == []
+    case.project.open(case.uri, 3, MODEL)
+    (hint,) = clause_hints(case.snapshot, case.uri, findings)
+    assert not hint.stale
+
+
+def test_a_url_in_a_string_is_no_comment() -> None:
+    text = edited("holds(<part> is located at <goal>, 0.5", "holds(pred('see http://a {p}', p=<part>), 0.5")
+    case = fixture(text)
+    findings = judged(case, HOLDS)
+    case.project.open(case.uri, 2, text.replace("http://a {p}", "http://b {p}"))
+    (hint,) = clause_hints(case.snapshot, case.uri, findings)
+    assert hint.stale
+
+
+@pytest.mark.parametrize(
+    ("result", "severity", "code"),
+    [
+        (VIOLATED, Severity.ERROR, "clause-violated"),
+        (UNKNOWN, Severity.WARNING, "clause-unknown"),
+        (UNDEFINED, Severity.WARNING, "clause-undefined"),
+    ],
+)
+def test_what_does_not_hold_is_a_diagnostic_that_names_variation_and_instant(
+    result: Judgement, severity: Severity, code: str
+) -> None:
+    case = fixture(MODEL)
+    (found,) = clause_diagnostics(case.snapshot, case.uri, judged(case, HOLDS, result))
+    assert (found.severity, found.code) == (severity, code)
+    assert f"part = 2: {result.said}" in found.message
+    assert "part = 1" not in found.message
+    assert clause_diagnostics(case.snapshot, case.uri, judged(case, HOLDS)) == []
+
+
+def test_many_variations_are_told_in_short() -> None:
+    case = fixture(MODEL)
+    findings = judged(case, *[VIOLATED] * 30)
+    (found,) = clause_diagnostics(case.snapshot, case.uri, findings)
+    assert found.message.count("\n") == 6
+    assert found.message.endswith("… and 25 more")
+    (hint,) = clause_hints(case.snapshot, case.uri, findings)
+    assert hint.tooltip.endswith("… and 10 more")
+
+
+def test_a_row_says_which_clauses_failed_and_moves_with_its_text() -> None:
+    case = fixture(TABLE)
+    findings = judged(case, HOLDS, VIOLATED)
+
+    def rows(text: str) -> list[str]:
+        case.project.open(case.uri, 2, text)
+        found = row_hints(case.snapshot, case.uri, findings)
+        return [f"{text[hint.span.start : hint.span.end].split('>')[0][2:]} {hint.label}" for hint in found]
+
+    assert rows(TABLE) == ["<parts.bolt ✔", "<parts.nut ✗ in-tray"]
+    bolt, nut = (line for line in TABLE.split("\n") if line.strip().startswith(("| <parts.b", "| <parts.n")))
+    assert rows(TABLE.replace(f"{bolt}\n{nut}", f"{nut}\n{bolt}")) == ["<parts.nut ✗ in-tray", "<parts.bolt ✔"]
+    assert rows(TABLE.replace("ur10", "panda")) == ["<parts.bolt ✔", "<parts.nut ✗ in-tray (stale)"]
+    case.project.open(case.uri, 3, TABLE)
+    (found,) = clause_diagnostics(case.snapshot, case.uri, findings)
+    assert [TABLE[place.span.start : place.span.end].strip() for place in found.related] == [nut.strip()]
+
+
+def test_clauses_of_every_kind_have_results() -> None:
+    text = edited(
+        "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)",
+        "((in-tray: holds(<part> is located at <goal>, after <end>) or 'lamp' after <end>) and 'bell' after <end>)",
+    )
+    case = fixture(text)
+    for iri in (f"{NS}or-fetch.then.0", f"{NS}text-fetch.then.1", f"{NS}when-bhv-fetch.when"):
+        (hint,) = clause_hints(case.snapshot, case.uri, judged(case, HOLDS, iri=iri))
+        assert hint.label == "✔ +31 mm"
+
+
+def test_a_pass_rate_goes_stale_with_its_variant_and_its_template() -> None:
+    case = fixture(MODEL)
+    findings = judged(case, HOLDS, VIOLATED, UNKNOWN)
+
+    def rate(text: str) -> str:
+        case.project.open(case.uri, 2, text)
+        (variant,) = variants_of(case.snapshot, case.uri)
+        found = pass_rate(case.snapshot, variant, findings)
+        assert found is not None
+        return found.label
+
+    assert rate(MODEL) == "1/3 passed"
+    assert rate("// x\n" + MODEL) == "1/3 passed"
+    assert rate(edited("picks <part> and places at <goal>", "picks <part>")) == "1/3 passed (stale)"
+    assert rate(edited("{ <arms.panda> }", "{ <arms.ur10> }")) == "1/3 passed (stale)"
+    (variant,) = variants_of(case.snapshot, case.uri)
+    assert pass_rate(case.snapshot, variant, Results().findings()) is None
+
+
+def test_the_number_of_scenarios_is_told_from_the_text() -> None:
+    for text, number in ((MODEL, 4), (TABLE, 2), (MODEL.replace("obj set <parts>", "obj set <gone>"), None)):
+        case = fixture(text)
+        (variant,) = variants_of(case.snapshot, case.uri)
+        assert number_of_scenarios(variant) == number
+
+
+def test_a_scenario_that_is_run_again_replaces_its_result() -> None:
+    results = Results()
+    scenarios = [JudgedScenario("m", "v", number, "", "", "") for number in (1, 1, 2)]
+    results.add(scenarios)
+    assert list(results) == scenarios
+    results.drop("v", 1)
+    assert list(results) == scenarios[2:]
+    results.drop_others("v", {1})
+    assert list(results) == []
+
+
+def test_a_clause_repeated_in_a_scenario_is_as_good_as_its_worst() -> None:
+    scenario = JudgedScenario("m", "v", 1, "", "", "")
+    for judgement in (VIOLATED, WORSE, HOLDS):
+        scenario.judge(IRI, judgement)
+    assert scenario.clauses == {IRI: WORSE}
+    assert scenario.outcome == "violated"
+
+
+def test_a_scenario_comes_back_from_plain_data() -> None:
+    scenario = JudgedScenario("m", "v", 1, "part = 1", "d", "r", {IRI: VIOLATED}, True)
+    assert from_json(as_json(scenario)) == scenario

@@ -6,14 +6,14 @@ import pytest
 
 from kit import MODEL, SCENE, fixture
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.features.clause_results import ClauseResult, JudgedClause
 from robbdd_tools.features.describe import describe_path, describe_words
 from robbdd_tools.features.hover import hover
+from robbdd_tools.features.results import NOTHING, Findings, JudgedScenario, Judgement, Results, digests_of
 
 
-def shown(text: str, judged: dict[str, JudgedClause] | None = None) -> str:
+def shown(text: str, findings: Findings = NOTHING) -> str:
     case = fixture(text)
-    found = hover(case.snapshot, case.uri, case.cursor, judged)
+    found = hover(case.snapshot, case.uri, case.cursor, findings)
     return "" if found is None else found.markdown
 
 
@@ -76,15 +76,19 @@ def test_a_time_constraint_tells_when_it_is_judged(old: str, new: str, meaning: 
 
 
 def test_the_last_results_of_a_clause_are_shown_worst_first() -> None:
-    text = "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)"
-    results = (
-        ClauseResult("holds", "✔ 12 mm", "part = nut: holds by 12 mm", 2.0),
-        ClauseResult("violated", "✗ -3 mm", "part = bolt: violated by 3 mm", 0.0),
-    )
-    judged = {"https://example.org/t/in-tray": JudgedClause(text, results)}
-    found = shown(MODEL.replace("in-tray: holds", "in-$0tray: holds"), judged)
-    assert "Last results:\n\n- part = bolt: violated by 3 mm\n- part = nut: holds by 12 mm" in found
-    edited = shown(MODEL.replace("in-tray: holds", "in-$0tray:  holds"), judged)
+    case = fixture(MODEL)
+    iri = "https://example.org/t/in-tray"
+    told = digests_of(case.snapshot, case.uri).clauses[iri]
+    held = Judgement("in-tray", "holds", "+12 mm", 2.0, "✔ +12 mm", told)
+    failed = Judgement("in-tray", "violated", "−3 mm", 0.0, "✗ −3 mm at 2.00 s", told)
+    scenarios = [
+        JudgedScenario(case.uri, "v", number, f"part = {part}", "", "", {iri: judgement}, True)
+        for number, (part, judgement) in enumerate((("nut", held), ("bolt", failed)))
+    ]
+    findings = Results(scenarios).findings()
+    found = shown(MODEL.replace("in-tray: holds", "in-$0tray: holds"), findings)
+    assert "Last results:\n\n- part = bolt: ✗ −3 mm at 2.00 s\n- part = nut: ✔ +12 mm" in found
+    edited = shown(MODEL.replace("in-tray: holds", "in-$0tray: holds").replace("0.5 seconds", "0.6 seconds"), findings)
     assert "of the text before it was edited" in edited
 
 

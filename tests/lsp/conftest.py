@@ -20,7 +20,7 @@ from robbdd_tools.base.files import path_to_uri
 
 @pytest.fixture
 def run_messages() -> list[Any]:
-    """What the server says about runs, in order."""
+    """The notifications of runs, in order."""
     return []
 
 
@@ -34,10 +34,11 @@ async def client(
     def ignore(*_: object) -> None:
         return None
 
-    def keep(message: Any) -> None:
-        run_messages.append(message.message)
+    def keep(notification: Any) -> None:
+        run_messages.append(notification)
 
     lsp_client.feature(types.WORKSPACE_INLAY_HINT_REFRESH)(ignore)
+    lsp_client.feature(types.WORKSPACE_CODE_LENS_REFRESH)(ignore)
     lsp_client.feature(types.CLIENT_REGISTER_CAPABILITY)(ignore)
     lsp_client.feature("robbdd/runMessage")(keep)
     shutil.copytree(EXAMPLES / "pickplace", tmp_path / "pickplace")

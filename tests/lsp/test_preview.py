@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, cast
+from typing import Any
 
 from kit import schema_errors
-from lsp_kit import CLIENTS, Editor
+from lsp_kit import CLIENTS, Editor, plain
 
 
 async def preview_of(editor: Editor, **more: object) -> Any:
@@ -44,10 +44,3 @@ async def test_a_preview_of_nothing_says_so(editor: Editor) -> None:
 async def test_the_answer_to_a_preview_is_as_documented(editor: Editor) -> None:
     editor.open()
     assert schema_errors("preview.schema.json", plain(await preview_of(editor))) == []
-
-
-def plain(value: Any) -> Any:
-    """An object of the client, as the JSON that it was."""
-    if hasattr(value, "_asdict"):
-        return {name: plain(entry) for name, entry in value._asdict().items()}
-    return list(map(plain, cast(list[Any], value))) if isinstance(value, list) else value

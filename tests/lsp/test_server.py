@@ -131,62 +131,6 @@ async def test_gherkin_is_written_beside_the_model(editor: Editor) -> None:
     assert (editor.path.parent / "features" / "tidy-bench.feature").is_file()
 
 
-@CLIENTS
-@pytest.mark.physics
-async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(
-    editor: Editor, run_messages: list[Any]
-) -> None:
-    editor.open(editor.text.replace("<cubes.cube0>, <balls.ball0>", "<cubes.cube0>").replace(", <places.right_ws>", ""))
-    await editor.diagnostics()
-    lenses = await editor.client.text_document_code_lens_async(
-        types.CodeLensParams(text_document=types.TextDocumentIdentifier(uri=editor.uri))
-    )
-    assert lenses is not None
-    command = lenses[0].command
-    assert command is not None
-    assert command.title == "Run scenario part-to-bin"
-    params = types.ExecuteCommandParams(command=command.command, arguments=command.arguments)
-    await editor.client.workspace_execute_command_async(params)
-    hints = await editor.client.text_document_inlay_hint_async(
-        types.InlayHintParams(text_document=types.TextDocumentIdentifier(uri=editor.uri), range=editor.everything())
-    )
-    assert hints is not None
-    verdicts = [hint for hint in hints if hint.kind is None]
-    shown = {editor.text.split("\n")[hint.position.line].split(":")[0].strip(): str(hint.label) for hint in verdicts}
-    assert set(shown) == {"at-source", "in-hand", "at-goal", "goal-untouched"}
-    assert all(label.startswith("✔") for label in shown.values()), shown
-    assert "mm" in shown["at-goal"]
-    started = next(message for message in run_messages if message.type == "ScenarioStarted")
-    assert (started.name, started.values.split(",")[0]) == ("crit:part-to-bin -- 1", "thing = cube0")
-    sentences = [message.sentence for message in run_messages if message.type == "ClauseJudged"]
-    assert "cube0 is located at left_ws after evt-place-end" in sentences
-    assert (run_messages[-1].type, run_messages[-1].ok) == ("RunFinished", True)
-
-
-@pytest.mark.physics
-async def test_a_cancelled_run_leaves_its_open_clauses_unknown(editor: Editor, run_messages: list[Any]) -> None:
-    editor.open()
-    await editor.diagnostics()
-    params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
-    running = asyncio.ensure_future(editor.client.workspace_execute_command_async(params))
-    async with asyncio.timeout(PATIENCE):
-        while not any(message.type == "ScenarioFinished" for message in run_messages):
-            await asyncio.sleep(0.01)
-    await editor.client.workspace_execute_command_async(types.ExecuteCommandParams(command="robbdd.cancel"))
-    await running
-    assert (run_messages[-1].type, run_messages[-1].ok) == ("RunFinished", False)
-    judged = [message for message in run_messages if message.type == "ClauseJudged"]
-    assert {message.verdict for message in judged if message.reason == "the run was cancelled"} == {"unknown"}
-    assert len(judged) == 20
-
-
-async def test_a_run_of_a_broken_model_says_why_it_cannot_run(editor: Editor) -> None:
-    editor.open(editor.text.replace("task: <pick-place-task>", "task <pick-place-task>"))
-    params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
-    await editor.client.workspace_execute_command_async(params)
-    assert any("the model has errors" in message.message for message in editor.client.messages)
-
-
 @pytest.mark.parametrize("text", ["", "\0\1\2", "}" * 50, '"', "Scenario Template", "import 'gone.bdd'\n" * 3])
 async def test_any_text_is_answered(editor: Editor, text: str) -> None:
     editor.open(text)

@@ -39,6 +39,12 @@ export interface ClauseJudged {
   readonly reason: string;
 }
 
+export interface MarginRanges {
+  readonly type: "MarginRanges";
+  readonly index: number;
+  readonly line: number;
+}
+
 export interface ScenarioFinished {
   readonly type: "ScenarioFinished";
   readonly index: number;
@@ -66,6 +72,7 @@ export type RunMessage =
   | ScenarioStarted
   | ClauseStarted
   | ClauseJudged
+  | MarginRanges
   | ScenarioFinished
   | LogLine
   | RunFinished;
@@ -96,6 +103,7 @@ const FIELDS: Record<RunMessage["type"], Record<string, Check>> = {
     at: isNumberOrNull,
     reason: isText,
   },
+  MarginRanges: { index: isNumber, line: isNumber },
   ScenarioFinished: { index: isNumber, simulated: isNumber, wall: isNumber, stepping: isNumber },
   LogLine: { level: isText, text: isText },
   RunFinished: { ok: (value) => typeof value === "boolean" },

@@ -19,6 +19,8 @@ export class RunReport {
   private total = 0;
   private ended = false;
   private readonly verdicts = new Map<number, ClauseJudged["verdict"][]>();
+  /** Scenarios that are executed side by side are told one after the other, each when it has ended. */
+  private readonly told = new Map<number, string[]>();
   private readonly outcomes = new Map<number, Outcome>();
 
   constructor(private readonly name: string) {}
@@ -41,19 +43,24 @@ export class RunReport {
         return [`▶ ${this.name}: ${scenarios(message.total)}, ${message.simulator}`];
       case "ScenarioStarted":
         this.verdicts.set(message.index, []);
-        return [`  Scenario ${message.index + 1} of ${this.total}: ${message.name}  ${message.values}`.trimEnd()];
+        this.told.set(message.index, [
+          `  Scenario ${message.index + 1} of ${this.total}: ${message.name}  ${message.values}`.trimEnd(),
+        ]);
+        return [];
       case "ClauseStarted":
+      case "MarginRanges":
         return [];
       case "ClauseJudged":
         this.verdicts.get(message.index)?.push(message.verdict);
-        return [`    ${describeClause(message)}`];
+        this.told.get(message.index)?.push(`    ${describeClause(message)}`);
+        return [];
       case "ScenarioFinished":
-        return [this.finishScenario(message.index, message.simulated, message.wall)];
+        return [...this.open(message.index), this.finishScenario(message.index, message.simulated, message.wall)];
       case "LogLine":
         return message.text.split(/\r?\n/).map((line) => `    ${message.level}: ${line}`);
       case "RunFinished":
         this.ended = true;
-        return [message.ok ? `■ ${this.summary()}` : `■ The run ended early. ${this.summary()}`, ""];
+        return [...this.openAll(), message.ok ? `■ ${this.summary()}` : `■ The run ended early. ${this.summary()}`, ""];
     }
   }
 
@@ -63,7 +70,7 @@ export class RunReport {
       return [];
     }
     this.ended = true;
-    return [`■ ${reason} ${this.summary()}`, ""];
+    return [...this.openAll(), `■ ${reason} ${this.summary()}`, ""];
   }
 
   /** One line for the status item. */
@@ -81,6 +88,17 @@ export class RunReport {
       parts.push(`${open} not finished`);
     }
     return `${this.name}: ${parts.join(", ")}.`;
+  }
+
+  /** What is to be told of a scenario and was not yet. */
+  private open(index: number): string[] {
+    const lines = this.told.get(index) ?? [];
+    this.told.delete(index);
+    return lines;
+  }
+
+  private openAll(): string[] {
+    return [...this.told.keys()].flatMap((index) => this.open(index));
   }
 
   private finishScenario(index: number, simulated: number, wall: number): string {

@@ -15,6 +15,7 @@ from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import After, Before, During, NoWindow, TimeConstraint, window
 from robbdd_tools.monitor.vacuity import Range, joined
 from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation, unknown
+from robbdd_tools.run.protocol import NO_STEP
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Arguments, Slot
@@ -35,7 +36,7 @@ def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[s
             verdicts = [decide(operand, trace, regions, events) for operand in operands]
             return conjunction(verdicts) if operator == "and" else disjunction(verdicts)
         case Unmatched(text):
-            return unknown(f"no step definition for '{text}'")
+            return unknown(f"{NO_STEP} for '{text}'")
 
 
 def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:

@@ -22,6 +22,7 @@ from robbdd_tools.agent.views import views
 from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.protocol import (
+    NO_STEP,
     VIEWER,
     ClauseJudged,
     ClauseStarted,
@@ -116,7 +117,7 @@ class ScenarioRun:
 
         def verdict(execution: Execution) -> Verdict:
             if index is None:
-                return unknown(f"no step definition for '{text}'")
+                return unknown(f"{NO_STEP} for '{text}'")
             if execution.run_behaviour(index):
                 return Verdict(Outcome.HOLDS)
             return Verdict(Outcome.VIOLATED, reason=execution.trace.remark)
@@ -141,7 +142,7 @@ class ScenarioRun:
     def finish(self) -> None:
         """Report what was left open as unknown, and the scenario as finished."""
         for line, sentence in list(self._open.items()):
-            self._report(line, unknown(self._broken or f"no step definition for '{sentence}'"))
+            self._report(line, unknown(self._broken or f"{NO_STEP} for '{sentence}'"))
         execution = self._execution
         if self._viewer is not None:
             self._viewer.close()

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools import __version__
 from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.execute import execute
-from robbdd_tools.commands.pictures import NoPictures, no_display, render_moments, render_videos
 from robbdd_tools.commands.requests import Choice, digest, load_models, requests
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.pictures import NoPictures, no_display, render_moments, render_videos
 from robbdd_tools.run.prepare import prepare_all
 from robbdd_tools.run.protocol import VIEWER
 from robbdd_tools.run.store import NoSuchRun, RunRecord, RunStore, StoredRun, origin, shown_path, store_beside

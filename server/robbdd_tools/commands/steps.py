@@ -12,7 +12,7 @@ from robbdd_tools.commands.models import sound_model
 
 def write_steps(path: Path, target: Path | None) -> int:
     """Print the skeleton, or add to ``target`` what it lacks; returns the exit code."""
-    from robbdd_tools.gherkin.skeleton import patterns, skeleton
+    from robbdd_tools.gherkin.skeleton import add_steps, patterns, skeleton
     from robbdd_tools.graph.build import build_graph
     from robbdd_tools.graph.read import read_model
 
@@ -21,14 +21,10 @@ def write_steps(path: Path, target: Path | None) -> int:
         return FAILED
     wanted = patterns(read_model(build_graph(snapshot, path_to_uri(path)).graph))
     try:
-        existing = target.read_text(encoding="utf-8") if target is not None and target.exists() else None
-        text, new = skeleton(wanted, existing, path.name)
         if target is None:
-            sys.stdout.write(text)
+            sys.stdout.write(skeleton(wanted, None, path.name)[0])
             return OK
-        if new:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text, encoding="utf-8", newline="\n")
+        new = add_steps(wanted, target, path.name)
     except SyntaxError as error:
         print(f"robbdd: {target}:{error.lineno or 1}: {error.msg}: mend the file first", file=sys.stderr)
         return FAILED

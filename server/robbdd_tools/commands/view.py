@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
-from robbdd_tools.commands.pictures import NoPictures, render_scene
+from robbdd_tools.run.pictures import NoPictures, render_scene
 from robbdd_tools.run.prepare import RunRequest, prepare
 
 if TYPE_CHECKING:

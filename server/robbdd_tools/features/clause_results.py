@@ -1,99 +1,174 @@
-"""Results of clauses, aggregated over the variations of a run and put where the clauses stand."""
+"""Results of runs, aggregated over variations and put where clauses and rows of tables stand."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Diagnostic, Severity
-from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.features.results import digest, variant_digest
+from robbdd_tools.names.clauses import clauses_in
+from robbdd_tools.names.variants import variants_of
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.features.results import Findings, Judged, JudgedScenario
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.variants import PlacedVariant
+
+SIGNS = {"holds": "✔", "violated": "✗", "unknown": "?", "undefined": "?"}
+STALE = "(stale)"
+_CHANGED = "The text has changed since this was judged: run it again."
+_BADNESS = ("violated", "undefined", "unknown", "holds")
+MOST_LINES = 20
+"""Variations that a tooltip lists."""
+MOST_TOLD = 5
+"""Variations that a diagnostic lists."""
 
 
 @dataclass(frozen=True, slots=True)
-class ClauseResult:
-    """One judgement in words: ``outcome`` as in ``monitor.verdict.Outcome``, ``label`` its short form.
+class ResultHint:
+    """What to show behind a clause or row at ``span`` (absolute); ``lines`` tell of variations, the worst first.
 
-    ``rank`` orders results by badness, the worst being the smallest; ``detail`` names variation and instant.
+    ``outcome`` is the worst one; ``stale`` tells that the text has changed since. ``failing`` are the verdicts on a
+    clause that did not hold, the worst first.
     """
-
-    outcome: str
-    label: str
-    detail: str
-    rank: float
-
-
-@dataclass(frozen=True, slots=True)
-class JudgedClause:
-    """The results of one clause and the text that they are about; edited text has no result."""
-
-    text: str
-    results: Sequence[ClauseResult]
-
-
-@dataclass(frozen=True, slots=True)
-class ClauseHint:
-    """What to show behind a clause: ``offset`` is absolute, ``lines`` one per variation."""
 
     span: Span
     label: str
     outcome: str
     lines: tuple[str, ...]
+    stale: bool = False
+    failing: tuple[Judged, ...] = ()
+
+    @property
+    def tooltip(self) -> str:
+        """Everything that is known, shortened where there are many variations."""
+        shown = _shortened(self.lines, MOST_LINES)
+        return "\n".join((_CHANGED, *shown) if self.stale else shown)
 
 
-def clause_text(snapshot: Snapshot, iri: str, uris: Sequence[str]) -> str | None:
-    """Return the present text of the clause with an IRI, looked for in some files."""
-    for uri in uris:
-        for found in _clauses(snapshot, uri):
-            if found.iri == iri:
-                return _text(snapshot, found)
-    return None
+@dataclass(frozen=True, slots=True)
+class PassRate:
+    """How many scenarios of a variant passed of those that were run."""
+
+    passed: int
+    run: int
+    stale: bool
+
+    @property
+    def label(self) -> str:
+        """The rate as it is shown."""
+        return f"{self.passed}/{self.run} passed" + (f" {STALE}" if self.stale else "")
 
 
-def clause_hints(snapshot: Snapshot, uri: str, judged: Mapping[str, JudgedClause]) -> list[ClauseHint]:
-    """Return a hint for each clause of a file that has results and still says what they judged."""
-    hints: list[ClauseHint] = []
-    for found in _clauses(snapshot, uri):
-        clause = judged.get(found.iri or "")
-        if clause is not None and clause.results and clause.text == _text(snapshot, found):
-            hints.append(_hint(found.extent, clause.results))
+def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHint]:
+    """Return a hint for each clause of a file that has results."""
+    hints: list[ResultHint] = []
+    for clause in clauses_in(snapshot, uri) if findings.clauses else ():
+        judged = findings.clauses.get(clause.iri, ())
+        now = digest(snapshot, uri, clause.span) if judged else ""
+        fresh = [entry for entry in judged if entry[1].digest == now]
+        if judged:
+            hints.append(_clause_hint(clause.span, fresh or judged, stale=not fresh))
     return hints
 
 
-def clause_diagnostics(snapshot: Snapshot, uri: str, judged: Mapping[str, JudgedClause]) -> list[Diagnostic]:
-    """Return a diagnostic for each clause that was violated (error) or unknown (warning) in some variation."""
+def row_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHint]:
+    """Return a hint for each row of a table whose scenario was run: which clauses failed."""
+    hints: list[ResultHint] = []
+    for variant in variants_of(snapshot, uri) if findings.variants else ():
+        scenarios = findings.variants.get(variant.iri, ())
+        for number, row in enumerate(variant.rows if scenarios else (), start=1):
+            now = digest(snapshot, uri, row)
+            fresh = [scenario for scenario in scenarios if scenario.row == now]
+            shown = fresh or [scenario for scenario in scenarios if scenario.variation == number]
+            if shown:
+                hints.append(_row_hint(row, shown, stale=not fresh))
+    return hints
+
+
+def pass_rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> PassRate | None:
+    """Return the pass rate of a variant's last runs, ``None`` when it was never run."""
+    finished = [scenario for scenario in findings.variants.get(variant.iri, ()) if scenario.finished]
+    if not finished:
+        return None
+    now = variant_digest(snapshot, variant)
+    stale = any(scenario.digest != now for scenario in finished)
+    return PassRate(sum(scenario.outcome == "holds" for scenario in finished), len(finished), stale)
+
+
+def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings) -> list[Diagnostic]:
+    """Return a finding for each clause that did not hold in some variation; none where the text has changed since.
+
+    It names the worst variations with the instants, and leads to the rows of their tables.
+    """
+    rows = _rows(snapshot, uri) if findings.clauses else {}
     found: list[Diagnostic] = []
-    for hint in clause_hints(snapshot, uri, judged):
-        if hint.outcome != "holds":
+    for hint in clause_hints(snapshot, uri, findings):
+        if hint.failing and not hint.stale:
+            lines = _shortened([_line(entry) for entry in hint.failing], MOST_TOLD)
             severity = Severity.ERROR if hint.outcome == "violated" else Severity.WARNING
-            message = f"{hint.label}\n" + "\n".join(hint.lines)
-            found.append(Diagnostic(uri, hint.span, severity, f"clause-{hint.outcome}", message))
+            related = tuple(
+                Related(uri, rows[scenario.variant, scenario.row], _line((scenario, judgement)))
+                for scenario, judgement in hint.failing[:MOST_TOLD]
+                if (scenario.variant, scenario.row) in rows
+            )
+            message = "\n".join((hint.label, *lines))
+            found.append(Diagnostic(uri, hint.span, severity, f"clause-{hint.outcome}", message, related))
     return found
 
 
-def _clauses(snapshot: Snapshot, uri: str) -> Iterator[Definition]:
-    analysis = snapshot.file(uri)
-    for found in analysis.definitions.values() if analysis is not None else ():
-        if found.kind is SymbolKind.FLUENT:
-            yield found
+def _rows(snapshot: Snapshot, uri: str) -> dict[tuple[str, str], Span]:
+    """Return where the rows of a file stand, by variant and digest."""
+    return {
+        (variant.iri, digest(snapshot, uri, row)): row for variant in variants_of(snapshot, uri) for row in variant.rows
+    }
 
 
-def _text(snapshot: Snapshot, found: Definition) -> str:
-    analysis = snapshot.file(found.uri)
-    return "" if analysis is None else analysis.document.text[found.extent.start : found.extent.end]
+def _line(judged: Judged) -> str:
+    scenario, judgement = judged
+    return f"{scenario.values}: {judgement.said}"
 
 
-def _hint(span: Span, results: Sequence[ClauseResult]) -> ClauseHint:
-    worst = min(results, key=lambda result: result.rank)
-    lines = tuple(result.detail for result in sorted(results, key=lambda result: result.rank))
-    if len(results) == 1:
-        return ClauseHint(span, worst.label, worst.outcome, lines)
-    sign, _, margin = worst.label.partition(" ")
-    holding = sum(result.outcome == "holds" for result in results)
-    label = f"{sign} {holding}/{len(results)}" + (f"  worst {margin}" if margin else "")
-    return ClauseHint(span, label, worst.outcome, lines)
+def _clause_hint(span: Span, judged: Sequence[Judged], *, stale: bool) -> ResultHint:
+    ranked = sorted(judged, key=lambda entry: entry[1].rank)
+    worst = ranked[0][1]
+    failing = tuple(entry for entry in ranked if entry[1].outcome != "holds")
+    sign = SIGNS[worst.outcome]
+    if len(judged) == 1:
+        label = worst.said.partition(":")[0]
+    else:
+        holding = sum(judgement.outcome == "holds" for _, judgement in judged)
+        label = f"{sign} {holding}/{len(judged)}" + (f"  worst {worst.margin}" if worst.margin else "")
+    if worst.outcome == "undefined":
+        label += " no step"
+    shown = f"{label} {STALE}" if stale else label
+    return ResultHint(span, shown, worst.outcome, tuple(map(_line, ranked)), stale, failing)
+
+
+def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -> ResultHint:
+    outcome = _worst(scenario.outcome for scenario in scenarios)
+    failed = dict.fromkeys(
+        judgement.name
+        for scenario in scenarios
+        for judgement in scenario.clauses.values()
+        if judgement.outcome != "holds"
+    )
+    label = " ".join((SIGNS[outcome], ", ".join(failed))).strip()
+    lines = tuple(
+        f"{scenario.values}: {judgement.name} {judgement.said}"
+        for scenario in scenarios
+        for judgement in sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)
+    )
+    return ResultHint(span, f"{label} {STALE}" if stale else label, outcome, lines, stale)
+
+
+def _worst(outcomes: Iterable[str]) -> str:
+    return min(outcomes, key=_BADNESS.index)
+
+
+def _shortened(lines: Sequence[str], most: int) -> tuple[str, ...]:
+    kept = tuple(lines[:most])
+    return (*kept, f"… and {len(lines) - most} more") if len(lines) > most else kept

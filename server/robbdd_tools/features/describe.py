@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.references import uses
+from robbdd_tools.features.results import NOTHING
 from robbdd_tools.features.sentences import clause_sentence, time_meaning, word_meaning, word_of
 from robbdd_tools.names.elements import elements_of, scene_members, site_of
 from robbdd_tools.names.roles import ROLE_KINDS
@@ -18,7 +20,7 @@ from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
-    from robbdd_tools.features.clause_results import JudgedClause
+    from robbdd_tools.features.results import Findings
     from robbdd_tools.names.analysis import Definition
     from robbdd_tools.names.elements import Element, Site
     from robbdd_tools.names.project import Snapshot
@@ -27,13 +29,13 @@ MOST_LISTED = 8
 """Members or results that are listed one by one."""
 
 
-def describe(snapshot: Snapshot, definition: Definition, judged: Mapping[str, JudgedClause] | None = None) -> str:
+def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NOTHING) -> str:
     """Describe a name: kind, type, what its author wrote above it, IRI, contents, sentence, results, uses."""
     site = site_of(snapshot, definition)
     parts = [_title(snapshot, definition), *_comment(site, definition)]
     if site is not None:
         parts += _contents(site, definition)
-    parts += _results(snapshot, definition, judged or {})
+    parts += _results(snapshot, definition, findings)
     if definition.iri is not None and definition.kind is not SymbolKind.NAMESPACE:
         parts.append(f"`<{definition.iri}>`")
     parts.append(_used(snapshot, definition))
@@ -143,15 +145,13 @@ def _members(members: tuple[Element, ...] | None) -> Iterator[str]:
         yield f"{len(members)} element{'' if len(members) == 1 else 's'}: {', '.join(names)}{more}"
 
 
-def _results(snapshot: Snapshot, definition: Definition, judged: Mapping[str, JudgedClause]) -> Iterator[str]:
-    clause = judged.get(definition.iri or "")
-    if clause is None or not clause.results or definition.kind is not SymbolKind.FLUENT:
+def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> Iterator[str]:
+    if definition.kind is not SymbolKind.FLUENT:
         return
-    file = snapshot.file(definition.uri)
-    text = "" if file is None else file.document.text[definition.extent.start : definition.extent.end]
-    worst = sorted(clause.results, key=lambda result: result.rank)[:MOST_LISTED]
-    age = "Last results" if text == clause.text else "Last results, of the text before it was edited"
-    yield f"{age}:\n\n" + "\n".join(f"- {result.detail}" for result in worst)
+    for hint in clause_hints(snapshot, definition.uri, findings):
+        if hint.span == definition.extent:
+            age = "Last results, of the text before it was edited" if hint.stale else "Last results"
+            yield f"{age}:\n\n" + "\n".join(f"- {line}" for line in hint.lines[:MOST_LISTED])
 
 
 def _used(snapshot: Snapshot, definition: Definition) -> str:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.definition import symbol_at
 from robbdd_tools.features.describe import describe
+from robbdd_tools.features.results import NOTHING
 from robbdd_tools.features.sentences import time_meaning, word_meaning, word_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
-    from robbdd_tools.features.clause_results import JudgedClause
+    from robbdd_tools.features.results import Findings
     from robbdd_tools.names.project import Snapshot
 
 
@@ -26,14 +26,14 @@ class Hover:
     span: Span
 
 
-def hover(snapshot: Snapshot, uri: str, offset: int, judged: Mapping[str, JudgedClause] | None = None) -> Hover | None:
+def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHING) -> Hover | None:
     """Describe the name under a cursor, else the phrase or time constraint around it.
 
-    ``judged`` are the last results of clauses by their IRIs.
+    ``findings`` are the last results of clauses.
     """
     found = symbol_at(snapshot, uri, offset)
     if found is not None:
-        return Hover(describe(snapshot, found[1], judged), found[0])
+        return Hover(describe(snapshot, found[1], findings), found[0])
     analysis = snapshot.file(uri)
     for placed in analysis.declarations if analysis is not None else ():
         root = placed.declaration.tree

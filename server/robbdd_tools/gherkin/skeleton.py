@@ -7,6 +7,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from keyword import iskeyword
+from pathlib import Path
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin import text
@@ -69,6 +70,30 @@ def patterns(model: AcceptanceModel) -> list[Pattern]:
     return list(found)
 
 
+def free_patterns(model: AcceptanceModel) -> list[Pattern]:
+    """Return the distinct sentences of a model that are free text: nothing in the catalog can judge them."""
+    clauses = (
+        c
+        for story in model.stories
+        for variant in story.variants
+        for c in (*variant.template.clauses, *variant.clauses)
+    )
+    return list(dict.fromkeys(_all(clauses, free_only=True)))
+
+
+def add_steps(wanted: Collection[Pattern], target: Path, name: str) -> int:
+    """Add what a file of steps lacks, making it where it is missing; return how many functions are new.
+
+    Raises ``OSError``, ``UnicodeDecodeError``, and ``SyntaxError`` when the file is not Python.
+    """
+    existing = target.read_text(encoding="utf-8") if target.exists() else None
+    text, new = skeleton(wanted, existing, name)
+    if new:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(text, encoding="utf-8", newline="\n")
+    return new
+
+
 def skeleton(wanted: Iterable[Pattern], existing: str | None, name: str) -> tuple[str, int]:
     """Return the text of a file of steps and how many functions are new in it.
 
@@ -85,15 +110,15 @@ def skeleton(wanted: Iterable[Pattern], existing: str | None, name: str) -> tupl
     return "\n\n".join((head, *functions)), len(functions)
 
 
-def _all(clauses: Iterable[Clause]) -> Iterator[Pattern]:
+def _all(clauses: Iterable[Clause], *, free_only: bool = False) -> Iterator[Pattern]:
     for clause in clauses:
         match clause:
-            case ForAll():
-                yield from _all(clause.clauses)
-            case Exists():
-                yield from _all(clause.clauses)
+            case ForAll() | Exists():
+                yield from _all(clause.clauses, free_only=free_only)
             case Junction(operator="and"):
-                yield from _all(clause.operands)
+                yield from _all(clause.operands, free_only=free_only)
+            case Junction() | EventClause() | BehaviourClause() | Fluent() if free_only:
+                pass
             case Junction(operator="not"):
                 yield Pattern(clause.role, "not ( {clause} )", (("clause", "str"),))
             case Junction():

@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from lsprotocol import types
 
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.fixes import imports_from_disk
-from robbdd_tools.features.scenarios import RunnableScenario, runnable_scenarios
+from robbdd_tools.lsp.commands import register_commands, source_actions, step_fixes
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.editing import refactorings, register_editing
 from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.projects import register_projects
 from robbdd_tools.lsp.reading import register_reading
-from robbdd_tools.lsp.runs import cancel_run, generate_gherkin, start_run
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.settings import follow_settings, register_settings
 from robbdd_tools.lsp.tokens import register_tokens
 from robbdd_tools.lsp.ways import register_ways
 from robbdd_tools.names.project import Snapshot
-
-RUN, GHERKIN, CANCEL = "robbdd.run", "robbdd.gherkin", "robbdd.cancel"
 
 
 def create_server() -> RobbddServer:
@@ -33,7 +29,7 @@ def create_server() -> RobbddServer:
     register_reading(server)
     register_editing(server)
     _register_actions(server)
-    _register_commands(server)
+    register_commands(server)
     register_settings(server)
     register_navigation(server)
     register_tokens(server)
@@ -48,6 +44,7 @@ def _register_documents(server: RobbddServer) -> None:
     async def initialized(ls: RobbddServer, _: types.InitializedParams) -> None:
         ls.convert = Converter(ls.workspace.position_encoding or types.PositionEncodingKind.Utf16)
         ls.spawn(follow_settings(ls))
+        await ls.load_results()
 
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     async def did_open(ls: RobbddServer, params: types.DidOpenTextDocumentParams) -> None:
@@ -84,53 +81,15 @@ def _register_actions(server: RobbddServer) -> None:
             actions: list[types.CodeAction] = []
             if _asked(only, types.CodeActionKind.QuickFix):
                 actions += _quick_fixes(ls, snapshot, params)
+                actions += step_fixes(ls, snapshot, params)
             selected = ls.convert.span(document_of(snapshot, uri), params.range)
             found = refactorings(ls, snapshot, uri, selected)
             actions += (action for action in found if not only or any(_is(action.kind, kind) for kind in only))
             if _asked(only, types.CodeActionKind.Source):
-                span = ls.convert.span(document_of(snapshot, uri), params.range)
-                actions += [
-                    _source_action(command)
-                    for scenario in runnable_scenarios(snapshot, uri)
-                    if scenario.extent.start <= span.end and span.start <= scenario.extent.end
-                    for command in [_run_command(uri, scenario)]
-                ]
-                if runnable_scenarios(snapshot, uri):
-                    actions.append(_source_action(_gherkin_command(uri)))
+                actions += source_actions(snapshot, uri, selected)
             return actions
 
         return await ls.analyse(find)
-
-    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
-    async def code_lens(ls: RobbddServer, params: types.CodeLensParams) -> list[types.CodeLens]:
-        def find(snapshot: Snapshot) -> list[types.CodeLens]:
-            document = document_of(snapshot, params.text_document.uri)
-            return [
-                types.CodeLens(range=ls.convert.range(document, scenario.span), command=command)
-                for scenario in runnable_scenarios(snapshot, document.uri)
-                for command in (_run_command(document.uri, scenario), _gherkin_command(document.uri))
-            ]
-
-        return await ls.analyse(find)
-
-
-def _register_commands(server: RobbddServer) -> None:
-    @server.command(RUN)
-    async def run(ls: RobbddServer, target: dict[str, Any]) -> None:
-        await start_run(ls, str(target["uri"]), target.get("variant"))
-
-    @server.command(GHERKIN)
-    async def gherkin(ls: RobbddServer, target: dict[str, Any]) -> dict[str, list[str]]:
-        return {"files": await generate_gherkin(ls, str(target["uri"]))}
-
-    @server.command(CANCEL)
-    def cancel(ls: RobbddServer, _: dict[str, Any] | None = None) -> None:
-        cancel_run(ls)
-
-    @server.feature(types.WINDOW_WORK_DONE_PROGRESS_CANCEL)
-    def cancel_progress(ls: RobbddServer, params: types.WorkDoneProgressCancelParams) -> None:
-        if ls.run is not None and ls.run.token == params.token:
-            cancel_run(ls)
 
 
 def _asked(only: Sequence[types.CodeActionKind | str] | None, kind: types.CodeActionKind) -> bool:
@@ -165,16 +124,3 @@ def _quick_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionP
                 )
             )
     return found
-
-
-def _source_action(command: types.Command) -> types.CodeAction:
-    return types.CodeAction(title=command.title, kind=types.CodeActionKind.Source, command=command)
-
-
-def _run_command(uri: str, scenario: RunnableScenario) -> types.Command:
-    target = {"uri": uri, "variant": scenario.iri}
-    return types.Command(title=f"Run scenario {scenario.name}", command=RUN, arguments=[target])
-
-
-def _gherkin_command(uri: str) -> types.Command:
-    return types.Command(title="Generate Gherkin", command=GHERKIN, arguments=[{"uri": uri}])

@@ -6,7 +6,7 @@ from typing import Any, cast
 
 from lsprotocol import types
 
-from robbdd_tools.features.clause_results import clause_hints
+from robbdd_tools.features.clause_results import clause_hints, row_hints
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe import describe_path, describe_words
 from robbdd_tools.features.hover import hover
@@ -64,7 +64,7 @@ def _register_hover(server: RobbddServer) -> None:
     async def show_hover(ls: RobbddServer, params: types.HoverParams) -> types.Hover | None:
         def find(snapshot: Snapshot) -> types.Hover | None:
             document = document_of(snapshot, params.text_document.uri)
-            found = hover(snapshot, document.uri, ls.convert.offset(document, params.position), ls.judged)
+            found = hover(snapshot, document.uri, ls.convert.offset(document, params.position), ls.findings)
             if found is None:
                 return None
             client = ls.client_capabilities.text_document
@@ -86,10 +86,11 @@ def _register_hints(server: RobbddServer) -> None:
                     types.InlayHint(
                         position=ls.convert.position(document, hint.span.end),
                         label=hint.label,
-                        tooltip="\n".join(hint.lines),
+                        tooltip=hint.tooltip,
                         padding_left=True,
                     )
-                    for hint in clause_hints(snapshot, document.uri, ls.judged)
+                    for find_hints in (clause_hints, row_hints)
+                    for hint in find_hints(snapshot, document.uri, ls.findings)
                     if wanted.contains(hint.span.end)
                 ]
                 + [

@@ -1,4 +1,4 @@
-"""Runs and Gherkin from the editor: progress, cancelling, results as they come."""
+"""Runs from the editor: progress, cancelling, results as they come."""
 
 from __future__ import annotations
 
@@ -6,93 +6,81 @@ import asyncio
 import logging
 import shutil
 import tempfile
-from dataclasses import asdict, dataclass, field
+from collections import Counter
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 
-from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.base.files import path_to_uri, uri_to_path
-from robbdd_tools.features.clause_results import ClauseResult, JudgedClause, clause_text
-from robbdd_tools.features.diagnostics import all_diagnostics
-from robbdd_tools.gherkin.files import FeaturePlan, write_features
-from robbdd_tools.graph.model import AcceptanceModel, Iri
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.features.results import JudgedScenario, Judgement
+from robbdd_tools.lsp.kept_results import FOLDER, save_results
+from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
+from robbdd_tools.lsp.run_plan import ModelError, RunOptions, RunPlan, plan_run
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.names.project import Snapshot
-from robbdd_tools.run.prepare import RunRequest, prepare
+from robbdd_tools.run.pictures import NoPictures, render_moments
+from robbdd_tools.run.prepare import prepare
 from robbdd_tools.run.protocol import (
+    NO_STEP,
     ClauseJudged,
-    ClauseSpec,
-    ClauseStarted,
     RunFinished,
     RunMessage,
+    RunStarted,
     ScenarioFinished,
     ScenarioStarted,
 )
-from robbdd_tools.run.report import plain_sentence, values_words, verdict_words
+from robbdd_tools.run.report import margin, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import Scheduler
+from robbdd_tools.run.scheduler import CANCELLED, Scheduler
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
 
-RUN_MESSAGE = "robbdd/runMessage"
+PICTURES = "pictures"
 _LOG = logging.getLogger(__name__)
 _BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 
 
 @dataclass
 class ActiveRun:
-    """A run in progress: the files that its clauses may stand in, and the results so far by clause IRI."""
+    """A run from the moment it is asked for; ``judged`` are its scenarios by their number in the manifest."""
 
-    uri: str
-    token: str
-    uris: tuple[str, ...]
-    results: RunResults
-    scheduler: Scheduler
-    found: dict[str, list[ClauseResult]] = field(default_factory=dict[str, list[ClauseResult]])
-    texts: dict[str, str] = field(default_factory=dict[str, str])
+    options: RunOptions
+    id: str
+    scheduler: Scheduler | None = None
+    cancelled: bool = False
+    judged: dict[int, JudgedScenario] = field(default_factory=dict[int, JudgedScenario])
 
     def cancel(self) -> None:
-        """Stop the agents; the loop that reads their messages then ends by itself."""
-        self.scheduler.cancel()
+        """Stop the agents, or what prepares the run; what waits for it then ends by itself."""
+        self.cancelled = True
+        if self.scheduler is not None:
+            self.scheduler.cancel()
 
 
-class ModelError(Exception):
-    """The model cannot be run as it is; the message says why, for the user."""
-
-
-async def generate_gherkin(ls: RobbddServer, uri: str) -> list[str]:
-    """Write the features of a model, with their line maps, beside it in ``features/``, and return their URIs."""
-    path = uri_to_path(uri)
-    if path is None:
-        _tell(ls, "save the model first: its features are written beside it")
-        return []
-    try:
-        plan = await ls.analyse(lambda snapshot: _plan(snapshot, uri))
-        written = await asyncio.to_thread(write_features, plan, path.parent / "features")
-    except (ModelError, OSError) as error:
-        _tell(ls, str(error))
-        return []
-    return [path_to_uri(file) for file in written]
-
-
-async def start_run(ls: RobbddServer, uri: str, variant: str | None) -> None:
-    """Run a model's scenarios (one variant's where given) to their end, showing results as they come."""
+async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) -> dict[str, Any]:
+    """Run scenarios to their end, showing results as they come; returns how it went, ``{}`` when nothing was run."""
     if ls.run is not None:
-        _tell(ls, "a run is going on: cancel it first")
-        return
+        ls.tell("a run is going on: cancel it first")
+        return {}
     folder = Path(tempfile.mkdtemp(prefix="robbdd-"))
     try:
-        model = await ls.analyse(lambda snapshot: _sound_model(snapshot, uri))
-        request = RunRequest(model, uri, variants=None if variant is None else {Iri(variant)})
-        manifest = await asyncio.to_thread(prepare, request, folder)
-        uris = await ls.analyse(lambda snapshot: tuple(file.document.uri for file in snapshot.scope(uri).files))
-        ls.run = ActiveRun(uri, f"robbdd-run-{folder.name}", uris, RunResults(manifest), Scheduler(folder, manifest))
-        await _follow(ls, ls.run)
+        options = RunOptions.of({**argument, **more})
+        ls.run = run = ActiveRun(options, folder.name)
+        failed = [(known.variant, known.variation) for known in ls.results if known.outcome != "holds"]
+        plan = await ls.in_background(lambda snapshot: plan_run(snapshot, ls.convert, options, failed))
+        manifest = await asyncio.to_thread(prepare, plan.request, folder)
+        follower = _Follower(ls, run, plan, RunResults(manifest))
+        run.scheduler = Scheduler(folder, manifest, watch=follower.hear)
+        if run.cancelled:
+            run.scheduler.cancel()
+        await follower.follow()
+        pictures = await _record(ls, run, folder) if options.record else []
+        return {**follower.summary(), "pictures": pictures}
     except (ModelError, OSError) as error:
-        _tell(ls, str(error))
+        ls.tell(str(error))
+        return {}
     finally:
         ls.run = None
         await asyncio.to_thread(shutil.rmtree, folder, True)
@@ -104,102 +92,133 @@ def cancel_run(ls: RobbddServer) -> None:
         ls.run.cancel()
 
 
-async def _follow(ls: RobbddServer, run: ActiveRun) -> None:
-    """Hand every message of the run on, keep its results, and report progress."""
-    await _begin_progress(ls, run)
-    messages = run.scheduler.messages()
-    while (message := await asyncio.to_thread(next, messages, None)) is not None:
-        await _take(ls, run, message)
-    if not run.results.complete:
-        for judged in run.results.close(run.scheduler.ending):
-            await _take(ls, run, judged)
-        ls.protocol.notify(RUN_MESSAGE, _for_client(run, RunFinished(False)))
-    holding = run.results.count(Outcome.HOLDS)
-    summary = f"{holding} of {len(run.results.scenarios)} scenarios hold"
-    ls.work_done_progress.end(run.token, types.WorkDoneProgressEnd(message=summary))
-    await ls.publish_results(run.uris)
+class _Follower:
+    """Takes what the agents of one run say, at once and in the event loop, whichever of them says it."""
+
+    def __init__(self, ls: RobbddServer, run: ActiveRun, plan: RunPlan, results: RunResults) -> None:
+        self._ls = ls
+        self._run = run
+        self._plan = plan
+        self._results = results
+        self._loop = asyncio.get_running_loop()
+        self._begun: dict[str, set[int]] = {}
+
+    def hear(self, message: RunMessage) -> None:
+        """Take a message from a thread of the scheduler."""
+        self._loop.call_soon_threadsafe(self._take, message)
+
+    async def follow(self) -> None:
+        """Follow the run to its end."""
+        await self._begin_progress()
+        scheduler = self._run.scheduler
+        assert scheduler is not None
+
+        def listen() -> None:
+            for message in scheduler.messages():
+                # All others have been heard when they came.
+                if isinstance(message, RunStarted):
+                    self.hear(message)
+
+        await asyncio.to_thread(listen)
+        for judged in self._results.close(scheduler.ending):
+            self._take(judged)
+        if self._run.options.is_whole and not scheduler.ending:
+            for variant, begun in self._begun.items():
+                self._ls.results.drop_others(variant, begun)
+        self._take(RunFinished(not scheduler.ending))
+        self._ls.work_done_progress.end(self._run.id, types.WorkDoneProgressEnd(message=self._told()))
+        self._ls.show_results(self._plan.uris)
+        await self._ls.show_changed()
+        await asyncio.to_thread(save_results, self._ls.folders(), list(self._ls.results))
+
+    def summary(self) -> dict[str, Any]:
+        """Return how the run went, for the client that asked for it."""
+        outcomes = Counter(str(scenario.verdict) for scenario in self._results.scenarios)
+        counts = {outcome: outcomes[outcome] for outcome in ("holds", "violated", "unknown")}
+        return {"run": self._run.id, "total": len(self._results.scenarios), "cancelled": self._run.cancelled, **counts}
+
+    def _take(self, message: RunMessage) -> None:
+        self._results.apply(message)
+        match message:
+            case ScenarioStarted(index):
+                self._scenario(index)
+            case ClauseJudged():
+                self._judge(message)
+            case ScenarioFinished(index):
+                self._scenario(index).finished = True
+                self._report_progress()
+            case _:
+                pass
+        self._ls.protocol.notify(RUN_MESSAGE, for_client(self._run.id, self._plan, self._results, message))
+
+    def _scenario(self, index: int) -> JudgedScenario:
+        found = self._run.judged.get(index)
+        if found is None:
+            spec, digests = self._results.scenarios[index].spec, self._plan.digests
+            found = self._run.judged[index] = JudgedScenario(
+                self._plan.request.name,
+                spec.variant,
+                spec.variation,
+                values_words(spec),
+                digests.variants.get(spec.variant, ""),
+                digests.rows.get((spec.variant, spec.variation), ""),
+            )
+            begun = self._begun.setdefault(spec.variant, set())
+            if spec.variation not in begun:
+                # Until it is executed again, a scenario keeps the result that it had.
+                begun.add(spec.variation)
+                self._ls.results.drop(spec.variant, spec.variation)
+            self._ls.results.add([found])
+        return found
+
+    def _judge(self, message: ClauseJudged) -> None:
+        clause = clause_at(self._results, message.index, message.line)
+        # What a cancelled run left open is unknown in its report, but no result worth keeping.
+        if clause is None or (message.reason == CANCELLED and message.index not in self._run.judged):
+            return
+        outcome = Outcome(message.verdict)
+        undefined = outcome is Outcome.UNKNOWN and message.reason.startswith(NO_STEP)
+        judgement = Judgement(
+            clause.name,
+            "undefined" if undefined else str(outcome),
+            margin(message.robustness, message.unit),
+            _BADNESS[outcome] + (message.robustness or 0.0),
+            verdict_words(message),
+            self._plan.digests.clauses.get(clause.iri, ""),
+        )
+        self._scenario(message.index).judge(clause.iri, judgement)
+        self._ls.show_results(self._plan.uris)
+
+    async def _begin_progress(self) -> None:
+        window = self._ls.client_capabilities.window
+        if window is not None and window.work_done_progress:
+            # pygls leaves the type of the client's (empty) answer open.
+            await self._ls.work_done_progress.create_async(self._run.id)  # pyright: ignore[reportUnknownMemberType]
+        begin = types.WorkDoneProgressBegin(title="RobBDD run", cancellable=True, percentage=0)
+        self._ls.work_done_progress.begin(self._run.id, begin)
+
+    def _report_progress(self) -> None:
+        finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
+        failed = sum(scenario.verdict is not Outcome.HOLDS for scenario in finished)
+        done, total = len(finished), len(self._results.scenarios)
+        told = f"{done}/{total} scenarios" + (f", {failed} not passed" if failed else "")
+        report = types.WorkDoneProgressReport(message=told, percentage=100 * done // total)
+        self._ls.work_done_progress.report(self._run.id, report)
+
+    def _told(self) -> str:
+        return f"{self._results.count(Outcome.HOLDS)} of {len(self._results.scenarios)} scenarios hold"
 
 
-async def _take(ls: RobbddServer, run: ActiveRun, message: RunMessage) -> None:
-    run.results.apply(message)
-    ls.protocol.notify(RUN_MESSAGE, _for_client(run, message))
-    if isinstance(message, ClauseJudged):
-        await _judged(ls, run, message)
-    elif isinstance(message, ScenarioFinished):
-        done = sum(scenario.finished is not None for scenario in run.results.scenarios)
-        total = len(run.results.scenarios)
-        report = types.WorkDoneProgressReport(message=f"{done}/{total} scenarios", percentage=100 * done // total)
-        ls.work_done_progress.report(run.token, report)
-
-
-def _for_client(run: ActiveRun, message: RunMessage) -> dict[str, Any]:
-    """Return a message with the words that a reader needs beside its numbers."""
-    fields: dict[str, Any] = {"type": type(message).__name__, **asdict(message)}
-    match message:
-        case ScenarioStarted(index):
-            spec = run.results.scenarios[index].spec
-            fields |= {"name": spec.name, "values": values_words(spec)}
-        case ClauseStarted(index, line) | ClauseJudged(index, line):
-            clause = _clause(run, index, line)
-            if clause is not None:
-                fields |= {"clause": clause.iri, "sentence": plain_sentence(clause.sentence)}
-        case _:
-            pass
-    return {"uri": run.uri, "message": fields}
-
-
-def _clause(run: ActiveRun, index: int, line: int) -> ClauseSpec | None:
-    clauses = run.results.scenarios[index].spec.clauses
-    return next((clause for clause in clauses if clause.line == line), None)
-
-
-async def _judged(ls: RobbddServer, run: ActiveRun, message: ClauseJudged) -> None:
-    """Put a judgement where its clause stands."""
-    clause = _clause(run, message.index, message.line)
-    if clause is None:
-        return
-    spec = run.results.scenarios[message.index].spec
-    outcome = Outcome(message.verdict)
-    rank = _BADNESS[outcome] + (message.robustness or 0.0)
-    label = verdict_words(message).partition(":")[0]
-    detail = f"{values_words(spec)}: {verdict_words(message)}"
-    run.found.setdefault(clause.iri, []).append(ClauseResult(outcome, label, detail, rank))
-    if clause.iri not in run.texts:
-        text = await ls.analyse(lambda snapshot: clause_text(snapshot, clause.iri, run.uris))
-        run.texts[clause.iri] = text or ""
-    ls.judged[clause.iri] = JudgedClause(run.texts[clause.iri], tuple(run.found[clause.iri]))
-    await ls.publish_results(run.uris)
-
-
-async def _begin_progress(ls: RobbddServer, run: ActiveRun) -> None:
-    window = ls.client_capabilities.window
-    if window is not None and window.work_done_progress:
-        # pygls leaves the type of the client's (empty) answer open.
-        await ls.work_done_progress.create_async(run.token)  # pyright: ignore[reportUnknownMemberType]
-    begin = types.WorkDoneProgressBegin(title="RobBDD run", cancellable=True, percentage=0)
-    ls.work_done_progress.begin(run.token, begin)
-
-
-def _sound_model(snapshot: Snapshot, uri: str) -> AcceptanceModel:
-    """Return the acceptance model of a file without errors; raises ``ModelError``."""
-    return _plan(snapshot, uri).model
-
-
-def _plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
-    """Return what to write of a file without errors; raises ``ModelError``."""
-    from robbdd_tools.gherkin.files import clause_origins, whole_plan
-    from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.places import placed_model
-
-    errors = [found for found in all_diagnostics(snapshot, uri) if found.severity is Severity.ERROR]
-    if errors:
-        raise ModelError(f"the model has errors, the first: {errors[0].message}")
-    built = build_graph(snapshot, uri)
-    model = placed_model(built, snapshot)
-    if not any(story.variants for story in model.stories):
-        raise ModelError("the model has no scenario to run")
-    return whole_plan(model, clause_origins(built, snapshot, model))
-
-
-def _tell(ls: RobbddServer, message: str) -> None:
-    ls.window_show_message(types.ShowMessageParams(type=types.MessageType.Error, message=message))
+async def _record(ls: RobbddServer, run: ActiveRun, folder: Path) -> list[str]:
+    """Picture the violations of a run into the workspace's folder and return the pictures' URIs."""
+    target = next((place for place in ls.folders(run.options.uri)), None)
+    if target is None:
+        ls.tell("there are no pictures: the model lies in no folder of the workspace")
+        return []
+    pictures = target / FOLDER / PICTURES / run.id
+    try:
+        await asyncio.to_thread(render_moments, folder, pictures)
+    except NoPictures as error:
+        ls.tell(f"there are no pictures: {error}")
+        return []
+    return [path_to_uri(path) for path in sorted(pictures.glob("*.png"))]

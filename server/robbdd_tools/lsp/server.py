@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import count
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from lsprotocol import types
@@ -13,10 +14,13 @@ from pygls.lsp.server import LanguageServer
 
 from robbdd_tools import __version__
 from robbdd_tools.base.diagnostic import Diagnostic
-from robbdd_tools.features.clause_results import JudgedClause, clause_diagnostics
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.results import NOTHING, Results
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.kept_results import load_results
 from robbdd_tools.lsp.settings import Settings
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.worker import Answer, Request
@@ -26,6 +30,8 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.runs import ActiveRun
 
 Result = TypeVar("Result")
+GATHERING = 0.03
+"""Seconds that results wait for others that come right behind them."""
 
 
 class RobbddServer(LanguageServer):
@@ -41,7 +47,9 @@ class RobbddServer(LanguageServer):
         self.project = Project()
         self.convert = Converter()
         self.settings = Settings()
-        self.judged: dict[str, JudgedClause] = {}
+        self.results = Results()
+        self.findings = NOTHING
+        """What runs have found, as it is shown."""
         self.run: ActiveRun | None = None
         self._shapes: dict[str, tuple[Diagnostic, ...]] = {}
         self._shaped_texts: dict[str, dict[str, str]] = {}
@@ -54,6 +62,7 @@ class RobbddServer(LanguageServer):
         self.when_closed: list[Callable[[str], None]] = []
         """Called with the URI of each document that the client closes."""
         self._tasks: set[asyncio.Task[None]] = set()
+        self._changed: dict[str, None] = {}
 
     async def analyse(self, work: Callable[[Snapshot], Result]) -> Result:
         """Run ``work`` on the newest snapshot in the analysis thread."""
@@ -118,15 +127,47 @@ class RobbddServer(LanguageServer):
         texts = {index.document.uri: index.document.text for index in snapshot.scope(uri).files}
         return Request(next(self._requests), uri, self.project.texts(), self.settings.shapes(uri)), texts
 
-    async def publish_results(self, uris: Sequence[str]) -> None:
-        """Show new results of clauses: diagnostics again, and the client asks for its hints anew."""
-        for uri in uris:
+    async def load_results(self) -> None:
+        """Show what earlier runs have found in the workspace."""
+        self.results = Results(await asyncio.to_thread(load_results, self.folders()))
+        self.show_results(list(self._opened))
+
+    def show_results(self, uris: Sequence[str]) -> None:
+        """Show new results of clauses in some files soon; many at a time are shown at once."""
+        if not self._changed:
+            self.spawn(self._show_changed())
+        self._changed |= dict.fromkeys(uris)
+
+    async def _show_changed(self) -> None:
+        await asyncio.sleep(GATHERING)
+        await self.show_changed()
+
+    async def show_changed(self) -> None:
+        """Show now what is waiting to be shown."""
+        changed, self._changed = self._changed, {}
+        self.findings = self.results.findings()
+        for uri in changed:
             if uri in self._opened:
                 await self._publish_one(uri)
         capabilities = self.client_capabilities.workspace
         hints = capabilities.inlay_hint if capabilities else None
+        lenses = capabilities.code_lens if capabilities else None
         if hints is not None and hints.refresh_support:
             self.workspace_inlay_hint_refresh(None)
+        if lenses is not None and lenses.refresh_support:
+            self.workspace_code_lens_refresh(None)
+
+    def folders(self, uri: str | None = None) -> list[Path]:
+        """Return the workspace folders, with ``uri`` those that hold a file, the innermost first."""
+        paths = [path for folder in self.workspace.folders if (path := uri_to_path(folder)) is not None]
+        file = None if uri is None else uri_to_path(uri)
+        if uri is not None:
+            paths = [path for path in paths if file is not None and file.is_relative_to(path)]
+        return sorted(paths, key=lambda path: -len(path.parts))
+
+    def tell(self, message: str) -> None:
+        """Tell the user why something was not done."""
+        self.window_show_message(types.ShowMessageParams(type=types.MessageType.Error, message=message))
 
     def stop(self) -> None:
         """End what runs beside the server."""
@@ -139,7 +180,7 @@ class RobbddServer(LanguageServer):
     async def _publish_one(self, uri: str) -> None:
         def find(snapshot: Snapshot) -> tuple[int, list[types.Diagnostic]]:
             found = [*fast_diagnostics(snapshot, uri), *self._valid_shapes(snapshot, uri)]
-            found += clause_diagnostics(snapshot, uri, self.judged)
+            found += clause_diagnostics(snapshot, uri, self.findings)
             document = document_of(snapshot, uri)
             return document.version, [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
 

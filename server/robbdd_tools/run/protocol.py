@@ -19,6 +19,8 @@ from robbdd_tools.monitor.policy import Policy
 MANIFEST = "manifest.json"
 VIEWER = "ROBBDD_VIEWER"
 """Environment variable of the agent: when it is set, a window shows each scenario in real time."""
+NO_STEP = "no step definition"
+"""How the reason begins why a clause is unknown that nothing can judge."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,176 @@
+"""What runs have found, scenario by scenario, with digests of the text that they judged."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.base.plain import from_plain
+from robbdd_tools.names.clauses import clauses_in
+from robbdd_tools.names.variants import variants_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.variants import PlacedVariant
+
+_TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|//[^\n]*|\s+|.", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """One verdict on a clause.
+
+    ``outcome`` is ``holds``, ``violated``, ``unknown`` or ``undefined`` (no step can judge it); ``margin`` and ``said``
+    are words, the latter with instant and reason; of several the one of the smallest ``rank`` is the worst. ``digest``
+    is that of the clause's text at the time.
+    """
+
+    name: str
+    outcome: str
+    margin: str
+    rank: float
+    said: str
+    digest: str
+
+
+@dataclass(slots=True)
+class JudgedScenario:
+    """A scenario that was run: number ``variation`` of a variant, its values in words, its clauses by IRI.
+
+    ``digest`` is that of the text of the variant and its template, ``row`` that of its row in a table (empty without).
+    """
+
+    model: str
+    variant: str
+    variation: int
+    values: str
+    digest: str
+    row: str
+    clauses: dict[str, Judgement] = field(default_factory=dict[str, Judgement])
+    finished: bool = False
+
+    @property
+    def outcome(self) -> str:
+        """Violated if a clause is, else unknown if one is or nothing was judged, else holds."""
+        outcomes = {judgement.outcome for judgement in self.clauses.values()}
+        if "violated" in outcomes:
+            return "violated"
+        return "holds" if self.finished and outcomes == {"holds"} else "unknown"
+
+    def judge(self, iri: str, judgement: Judgement) -> None:
+        """Take a verdict; a clause that is repeated within the scenario is as good as its worst one."""
+        known = self.clauses.get(iri)
+        if known is None or judgement.rank < known.rank:
+            self.clauses[iri] = judgement
+
+
+Judged = tuple[JudgedScenario, Judgement]
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """Results as they are at one moment: verdicts by clause, scenarios by variant."""
+
+    clauses: Mapping[str, tuple[Judged, ...]]
+    variants: Mapping[str, tuple[JudgedScenario, ...]]
+
+
+NOTHING = Findings({}, {})
+
+
+class Results:
+    """The newest result of every scenario; a scenario that is run again replaces what was known of it."""
+
+    def __init__(self, scenarios: Iterable[JudgedScenario] = ()) -> None:
+        self._scenarios: dict[tuple[str, int], list[JudgedScenario]] = {}
+        self.add(scenarios)
+
+    def __iter__(self) -> Iterator[JudgedScenario]:
+        """Go through all scenarios."""
+        return (scenario for several in self._scenarios.values() for scenario in several)
+
+    def add(self, scenarios: Iterable[JudgedScenario]) -> None:
+        """Add scenarios beside those that are there; one may be executed several times."""
+        for scenario in scenarios:
+            self._scenarios.setdefault((scenario.variant, scenario.variation), []).append(scenario)
+
+    def drop(self, variant: str, variation: int) -> None:
+        """Forget a scenario."""
+        self._scenarios.pop((variant, variation), None)
+
+    def drop_others(self, variant: str, kept: Collection[int]) -> None:
+        """Forget the scenarios of a variant that it does not have any more."""
+        for key in [key for key in self._scenarios if key[0] == variant and key[1] not in kept]:
+            del self._scenarios[key]
+
+    def findings(self) -> Findings:
+        """Return what is known now."""
+        clauses: dict[str, list[Judged]] = {}
+        variants: dict[str, list[JudgedScenario]] = {}
+        for scenario in self:
+            variants.setdefault(scenario.variant, []).append(scenario)
+            for iri, judgement in scenario.clauses.items():
+                clauses.setdefault(iri, []).append((scenario, judgement))
+        return Findings(
+            {iri: tuple(judged) for iri, judged in clauses.items()},
+            {iri: tuple(scenarios) for iri, scenarios in variants.items()},
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Digests:
+    """What the text says that a run is about: of clauses and variants by IRI, of rows by variant and number."""
+
+    clauses: Mapping[str, str]
+    variants: Mapping[str, str]
+    rows: Mapping[tuple[str, int], str]
+
+
+def digests_of(snapshot: Snapshot, uri: str) -> Digests:
+    """Return the digests of a file and what it imports."""
+    clauses: dict[str, str] = {}
+    variants: dict[str, str] = {}
+    rows: dict[tuple[str, int], str] = {}
+    for file in snapshot.closure(uri):
+        name = file.document.uri
+        clauses |= {clause.iri: digest(snapshot, name, clause.span) for clause in clauses_in(snapshot, name)}
+        for variant in variants_of(snapshot, name):
+            variants[variant.iri] = variant_digest(snapshot, variant)
+            for number, row in enumerate(variant.rows, start=1):
+                rows[variant.iri, number] = digest(snapshot, name, row)
+    return Digests(clauses, variants, rows)
+
+
+def digest(snapshot: Snapshot, uri: str, span: Span) -> str:
+    """Return the digest of a part of a file; comments and layout do not count."""
+    file = snapshot.file(uri)
+    return "" if file is None else _digest(file.document.text[span.start : span.end])
+
+
+def variant_digest(snapshot: Snapshot, variant: PlacedVariant) -> str:
+    """Return the digest of a variant and its template."""
+    parts: tuple[Definition | None, ...] = (variant.definition, variant.template)
+    return " ".join(digest(snapshot, part.uri, part.extent) for part in parts if part is not None)
+
+
+@lru_cache(maxsize=20_000)
+def _digest(text: str) -> str:
+    tokens = (match[0] for match in _TOKEN.finditer(text))
+    words = ("" if token.startswith("//") or token.isspace() else token for token in tokens)
+    return hashlib.sha256("\0".join(word for word in words if word).encode("utf-8", "surrogatepass")).hexdigest()[:16]
+
+
+def as_json(scenario: JudgedScenario) -> dict[str, Any]:
+    """Return a scenario as plain data."""
+    return asdict(scenario)
+
+
+def from_json(data: object) -> JudgedScenario:
+    """Return the scenario of plain data; raises ``KeyError``, ``TypeError`` or ``AttributeError`` for other data."""
+    return from_plain(JudgedScenario, data)

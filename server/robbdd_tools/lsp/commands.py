@@ -1,0 +1,168 @@
+"""Commands of the server, and the code lenses and actions that offer them.
+
+All take one object with the ``uri`` of a model; those that run take the options of ``run_plan.RunOptions`` too.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from lsprotocol import types
+
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.features.clause_results import clause_diagnostics, pass_rate
+from robbdd_tools.features.scenarios import number_of_scenarios
+from robbdd_tools.gherkin.files import write_features
+from robbdd_tools.gherkin.skeleton import add_steps, free_patterns
+from robbdd_tools.lsp.convert import document_of
+from robbdd_tools.lsp.run_plan import ModelError, feature_plan
+from robbdd_tools.lsp.runs import cancel_run, start_run
+from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.names.variants import PlacedVariant, variants_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.project import Snapshot
+
+RUN, RERUN, RECORD, CANCEL = "robbdd.run", "robbdd.rerunFailed", "robbdd.record", "robbdd.cancel"
+GHERKIN, STEPS = "robbdd.gherkin", "robbdd.steps"
+STEPS_FOLDER = "steps"
+"""Folder beside a model for step functions of its own."""
+_UNDEFINED = "clause-undefined"
+
+
+def register_commands(server: RobbddServer) -> None:
+    """Add the commands and their code lenses to a server."""
+    _register_runs(server)
+    _register_writing(server)
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
+    async def code_lens(ls: RobbddServer, params: types.CodeLensParams) -> list[types.CodeLens]:
+        def find(snapshot: Snapshot) -> list[types.CodeLens]:
+            document = document_of(snapshot, params.text_document.uri)
+            return [
+                types.CodeLens(range=ls.convert.range(document, variant.definition.span), command=command)
+                for variant in variants_of(snapshot, document.uri)
+                for command in _lenses(ls, snapshot, variant)
+            ]
+
+        return await ls.analyse(find)
+
+
+def _register_runs(server: RobbddServer) -> None:
+    @server.command(RUN)
+    async def run(ls: RobbddServer, target: dict[str, Any]) -> dict[str, Any]:
+        return await start_run(ls, target)
+
+    @server.command(RERUN)
+    async def rerun(ls: RobbddServer, target: dict[str, Any]) -> dict[str, Any]:
+        return await start_run(ls, target, failed=True)
+
+    @server.command(RECORD)
+    async def record(ls: RobbddServer, target: dict[str, Any]) -> dict[str, Any]:
+        return await start_run(ls, target, record=True)
+
+    @server.command(CANCEL)
+    def cancel(ls: RobbddServer, _: dict[str, Any] | None = None) -> None:
+        cancel_run(ls)
+
+    @server.feature(types.WINDOW_WORK_DONE_PROGRESS_CANCEL)
+    def cancel_progress(ls: RobbddServer, params: types.WorkDoneProgressCancelParams) -> None:
+        if ls.run is not None and ls.run.id == params.token:
+            cancel_run(ls)
+
+
+def _register_writing(server: RobbddServer) -> None:
+    @server.command(GHERKIN)
+    async def gherkin(ls: RobbddServer, target: dict[str, Any]) -> dict[str, list[str]]:
+        return {"files": await _write_gherkin(ls, str(target["uri"]))}
+
+    @server.command(STEPS)
+    async def steps(ls: RobbddServer, target: dict[str, Any]) -> dict[str, list[str]]:
+        return {"files": await _write_steps(ls, str(target["uri"]))}
+
+
+def source_actions(snapshot: Snapshot, uri: str, span: Span) -> Iterator[types.CodeAction]:
+    """Yield what can be done with the scenarios in a part of a file, and with the file."""
+    variants = list(variants_of(snapshot, uri))
+    touched = [
+        one for one in variants if one.definition.extent.start <= span.end and span.start <= one.definition.extent.end
+    ]
+    commands = [_command(f"Run scenario {one.definition.symbol.name}", RUN, one) for one in touched]
+    commands += [_command("Generate Gherkin", GHERKIN, one) for one in variants[:1]]
+    for command in commands:
+        yield types.CodeAction(title=command.title, kind=types.CodeActionKind.Source, command=command)
+
+
+def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionParams) -> Iterator[types.CodeAction]:
+    """Yield the fix of a clause that no step can judge."""
+    uri = params.text_document.uri
+    span = ls.convert.span(document_of(snapshot, uri), params.range)
+    for found in clause_diagnostics(snapshot, uri, ls.findings):
+        if found.code == _UNDEFINED and found.span.start <= span.end and span.start <= found.span.end:
+            title = "Write a step skeleton"
+            yield types.CodeAction(
+                title=title,
+                kind=types.CodeActionKind.QuickFix,
+                diagnostics=[ls.convert.diagnostic(snapshot, found)],
+                command=types.Command(title=title, command=STEPS, arguments=[{"uri": uri}]),
+                is_preferred=True,
+            )
+
+
+def _lenses(ls: RobbddServer, snapshot: Snapshot, variant: PlacedVariant) -> Iterator[types.Command]:
+    yield _command(f"Run scenario {variant.definition.symbol.name}", RUN, variant)
+    rate = pass_rate(snapshot, variant, ls.findings)
+    if rate is not None and rate.passed < rate.run:
+        yield _command(f"Rerun {rate.run - rate.passed} failed", RERUN, variant)
+    yield _command("Record", RECORD, variant)
+    yield _command("Generate Gherkin", GHERKIN, variant)
+    number = number_of_scenarios(variant)
+    # A lens without a command is but a text.
+    if number is not None:
+        yield types.Command(title=f"{number:,} scenario{'' if number == 1 else 's'}", command="")
+    if rate is not None:
+        yield types.Command(title=rate.label, command="")
+
+
+def _command(title: str, command: str, variant: PlacedVariant) -> types.Command:
+    target: dict[str, Any] = {"uri": variant.definition.uri}
+    if command != GHERKIN:
+        target["scenario"] = variant.iri
+    return types.Command(title=title, command=command, arguments=[target])
+
+
+async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
+    """Write the features of a model, with their line maps, beside it in ``features/``, and return their URIs."""
+    path = uri_to_path(uri)
+    if path is None:
+        ls.tell("save the model first: its features are written beside it")
+        return []
+    try:
+        plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
+        written = await asyncio.to_thread(write_features, plan, path.parent / "features")
+    except (ModelError, OSError) as error:
+        ls.tell(str(error))
+        return []
+    return [path_to_uri(file) for file in written]
+
+
+async def _write_steps(ls: RobbddServer, uri: str) -> list[str]:
+    """Add functions for the clauses that the catalog cannot judge to a file beside the model; return its URI."""
+    path = uri_to_path(uri)
+    if path is None:
+        ls.tell("save the model first: its steps are written beside it")
+        return []
+    target = path.parent / STEPS_FOLDER / f"{path.stem.replace('-', '_')}_steps.py"
+    try:
+        plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
+        await asyncio.to_thread(add_steps, free_patterns(plan.model), target, path.name)
+    except SyntaxError as error:
+        ls.tell(f"{target}:{error.lineno or 1}: {error.msg}: mend the file first")
+        return []
+    except (ModelError, OSError, UnicodeDecodeError) as error:
+        ls.tell(f"{target}: {error}")
+        return []
+    return [path_to_uri(target)]

@@ -1,0 +1,67 @@
+"""Results that survive a restart: one file in ``.robbdd/`` of each workspace folder."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.features.results import JudgedScenario, as_json, from_json
+
+FOLDER = ".robbdd"
+FILE = "results.json"
+VERSION = 1
+_LOG = logging.getLogger(__name__)
+
+
+def load_results(folders: Iterable[Path]) -> list[JudgedScenario]:
+    """Return what is kept in some workspace folders; what cannot be read is as if it were not there."""
+    return [scenario for folder in folders for scenario in _read(folder / FOLDER / FILE)]
+
+
+def save_results(folders: Iterable[Path], scenarios: Iterable[JudgedScenario]) -> None:
+    """Keep each scenario in the innermost workspace folder that holds its model; where that fails, nowhere."""
+    every = list(scenarios)
+    for folder, own in _by_folder(sorted(folders, key=lambda path: -len(path.parts)), every):
+        text = json.dumps({"version": VERSION, "scenarios": [as_json(entry) for entry in own]}, ensure_ascii=False)
+        try:
+            _write(folder / FOLDER, text)
+        except OSError as error:
+            _LOG.info("results are not kept in %s: %s", folder, error)
+
+
+def _by_folder(folders: list[Path], scenarios: list[JudgedScenario]) -> Iterator[tuple[Path, list[JudgedScenario]]]:
+    for folder in folders:
+        own = [scenario for scenario in scenarios if _lies_in(scenario.model, folder)]
+        scenarios = [scenario for scenario in scenarios if scenario not in own]
+        yield folder, own
+
+
+def _lies_in(uri: str, folder: Path) -> bool:
+    path = uri_to_path(uri)
+    return path is not None and path.is_relative_to(folder)
+
+
+def _read(path: Path) -> list[JudgedScenario]:
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        return [from_json(entry) for entry in data["scenarios"]] if data["version"] == VERSION else []
+    except FileNotFoundError:
+        return []
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        _LOG.info("results in %s cannot be read: %s", path, error)
+        return []
+
+
+def _write(folder: Path, text: str) -> None:
+    """Replace the file as a whole, so that a reader never sees a half; nothing is made where nothing was run."""
+    folder.mkdir(exist_ok=True)
+    ignored = folder / ".gitignore"
+    if not ignored.exists():
+        ignored.write_text("*\n", encoding="utf-8")
+    fresh = folder / f"{FILE}.{os.getpid()}"
+    fresh.write_text(text, encoding="utf-8")
+    fresh.replace(folder / FILE)

@@ -1,0 +1,61 @@
+"""The notification ``robbdd/runMessage``: what a run says, with the words and places that a client needs.
+
+It is described by ``docs/schemas/runmessage.schema.json``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    ClauseSpec,
+    ClauseStarted,
+    RunMessage,
+    ScenarioFinished,
+    ScenarioStarted,
+)
+from robbdd_tools.run.report import plain_sentence, values_words
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.run_plan import RunPlan
+    from robbdd_tools.run.results import RunResults
+
+RUN_MESSAGE = "robbdd/runMessage"
+
+
+def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage) -> dict[str, Any]:
+    """Return the parameters of the notification about a message of run ``run``."""
+    fields: dict[str, Any] = {"type": type(message).__name__, **asdict(message)}
+    match message:
+        case ScenarioStarted(index):
+            spec = results.scenarios[index].spec
+            fields |= {
+                "name": spec.name,
+                "values": values_words(spec),
+                "variant": spec.variant,
+                "variation": spec.variation,
+                "source": plan.places.get(spec.variant),
+                "row": plan.rows.get((spec.variant, spec.variation)),
+            }
+        case ClauseStarted(index, line) | ClauseJudged(index, line):
+            clause = clause_at(results, index, line)
+            if clause is not None:
+                fields |= {
+                    "clause": clause.iri,
+                    "name": clause.name,
+                    "role": clause.role,
+                    "sentence": plain_sentence(clause.sentence),
+                    "source": plan.places.get(clause.iri),
+                }
+        case ScenarioFinished(index):
+            fields["verdict"] = str(results.scenarios[index].verdict)
+        case _:
+            pass
+    return {"run": run, "uri": plan.request.name, "message": fields}
+
+
+def clause_at(results: RunResults, index: int, line: int) -> ClauseSpec | None:
+    """Return the clause of a scenario that stands on a feature line."""
+    return next((clause for clause in results.scenarios[index].spec.clauses if clause.line == line), None)

@@ -1,0 +1,211 @@
+"""Runs from an editor: results where the clauses stand, as they come, again after a restart, stale after an edit."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+from lsprotocol import types
+from pytest_lsp import client_capabilities, make_test_lsp_client
+
+from kit import schema_errors
+from lsp_kit import CLIENTS, PATIENCE, Editor, plain
+from robbdd_tools.base.files import path_to_uri
+
+LAMP = "            and\n            'the lamp is green' after <evt-end>\n        )"
+
+
+async def execute(editor: Editor, command: str, **options: object) -> Any:
+    target = {"uri": editor.uri, **options}
+    params = types.ExecuteCommandParams(command=f"robbdd.{command}", arguments=[target])
+    return await editor.client.workspace_execute_command_async(params)
+
+
+async def hints(editor: Editor) -> dict[str, str]:
+    """The results that are shown, by the beginnings of their lines."""
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    params = types.InlayHintParams(text_document=document, range=editor.everything())
+    found = await editor.client.text_document_inlay_hint_async(params) or []
+    results = [hint for hint in found if hint.kind is None]
+    return {editor.text.split("\n")[hint.position.line].split(":")[0].strip(): str(hint.label) for hint in results}
+
+
+async def lenses(editor: Editor) -> list[types.Command]:
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    found = await editor.client.text_document_code_lens_async(types.CodeLensParams(text_document=document))
+    return [lens.command for lens in found or [] if lens.command is not None]
+
+
+def short(editor: Editor) -> str:
+    """The example with one scenario."""
+    return editor.text.replace("<cubes.cube0>, <balls.ball0>", "<cubes.cube0>").replace(", <places.right_ws>", "")
+
+
+@CLIENTS
+@pytest.mark.physics
+async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(
+    editor: Editor, run_messages: list[Any]
+) -> None:
+    editor.open(short(editor))
+    await editor.diagnostics()
+    command = (await lenses(editor))[0]
+    assert command.title == "Run scenario part-to-bin"
+    params = types.ExecuteCommandParams(command=command.command, arguments=command.arguments)
+    answer: Any = await editor.client.workspace_execute_command_async(params)
+    assert {name: answer[name] for name in ("total", "holds", "violated", "unknown", "cancelled")} == {
+        "total": 1,
+        "holds": 1,
+        "violated": 0,
+        "unknown": 0,
+        "cancelled": False,
+    }
+    shown = await hints(editor)
+    assert set(shown) == {"at-source", "in-hand", "at-goal", "goal-untouched", "}"}
+    assert all(label.startswith("✔") for label in shown.values()), shown
+    assert "mm" in shown["at-goal"]
+    messages = [notification.message for notification in run_messages]
+    started = next(message for message in messages if message.type == "ScenarioStarted")
+    assert (started.name, started.values.split(",")[0]) == ("crit:part-to-bin -- 1", "thing = cube0")
+    sentences = [message.sentence for message in messages if message.type == "ClauseJudged"]
+    assert "cube0 is located at left_ws after evt-place-end" in sentences
+    assert (messages[-1].type, messages[-1].ok) == ("RunFinished", True)
+    assert {notification.run for notification in run_messages} == {answer["run"]}
+
+
+@pytest.mark.physics
+async def test_messages_are_as_documented_and_lead_to_the_text(editor: Editor, run_messages: list[Any]) -> None:
+    editor.open("// 😀\n" + short(editor).replace("\n        )\n", f"\n{LAMP}\n", 1))
+    await execute(editor, "run")
+    for notification in run_messages:
+        assert schema_errors("runmessage.schema.json", plain(notification)) == [], notification
+    assert {entry.message.type for entry in run_messages} >= {"RunStarted", "ClauseStarted", "ScenarioFinished"}
+    written = editor.text.split("\n")
+    for message in (entry.message for entry in run_messages if entry.message.type == "ClauseJudged"):
+        start = message.source.range.start
+        line = written[int(start.line)][int(start.character) :]
+        assert line.startswith((f"{message.name}:", "Behaviour (ns=crit) carry", "'the lamp is green'")), line
+
+
+@pytest.mark.physics
+async def test_results_survive_a_restart_and_are_stale_after_an_edit(editor: Editor, tmp_path: Path) -> None:
+    editor.open(short(editor))
+    await execute(editor, "run")
+    before = await hints(editor)
+    assert [command.title for command in await lenses(editor)][-2:] == ["1 scenario", "1/1 passed"]
+    restarted = make_test_lsp_client()
+    # The type of its further arguments is left open.
+    start = cast(Any, restarted).start_io
+    await start(sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
+    folder = types.WorkspaceFolder(uri=path_to_uri(tmp_path), name="test")
+    await restarted.initialize_session(
+        types.InitializeParams(capabilities=client_capabilities("neovim"), workspace_folders=[folder])
+    )
+    later = Editor(restarted, tmp_path)
+    later.open(editor.text)
+    async with asyncio.timeout(PATIENCE):
+        while await hints(later) != before:
+            await asyncio.sleep(0.02)
+    later.change("<thing> is located at <goal>", "<thing>  is located at <source>")
+    changed = await hints(later)
+    assert changed.pop("at-goal") == f"{before['at-goal']} (stale)"
+    assert changed == {name: label for name, label in before.items() if name != "at-goal"}
+    assert [command.title for command in await lenses(later)][-1] == "1/1 passed (stale)"
+    await restarted.shutdown_session()
+
+
+@pytest.mark.physics
+async def test_a_clause_without_a_step_is_reported_with_a_fix_that_writes_one(editor: Editor) -> None:
+    editor.open(short(editor).replace("\n        )\n", f"\n{LAMP}\n", 1))
+    await execute(editor, "run")
+    (found,) = await editor.diagnostics("clause-undefined")
+    assert "no step definition for 'the lamp is green after event" in found.message
+    context = types.CodeActionContext(diagnostics=[found], only=[types.CodeActionKind.QuickFix])
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    params = types.CodeActionParams(text_document=document, range=found.range, context=context)
+    (action,) = await editor.client.text_document_code_action_async(params) or []
+    # The test client takes an action that is but a command for a command.
+    assert action.title == "Write a step skeleton"
+    assert "robbdd.steps" in str(action.command)
+    answer = await execute(editor, "steps")
+    written = editor.path.parent / "steps" / "pickplace_steps.py"
+    assert answer == {"files": [path_to_uri(written)]}
+    assert written.read_text(encoding="utf-8").count("\ndef ") == 2
+    assert "@then('the lamp is green after event \"{event:Quoted}\"')" in written.read_text(encoding="utf-8")
+    again = written.read_bytes()
+    await execute(editor, "steps")
+    assert written.read_bytes() == again
+
+
+@pytest.mark.physics
+async def test_a_failed_scenario_is_run_again_alone_and_others_keep_their_results(
+    editor: Editor, run_messages: list[Any]
+) -> None:
+    # The second one cannot be carried out: nothing is there to be picked.
+    table = """                | <pick-place.thing> | <pick-place.robot> | <pick-place.source> | <pick-place.goal> |
+                |---|---|---|---|
+                | <cubes.cube0> | <arms.panda> | <places.table_ws> | <places.left_ws> |
+                | <cubes.cube0> | <arms.panda> | <places.right_ws> | <places.left_ws> |
+"""
+    head, _, _ = editor.text.partition("                var <pick-place.thing>:")
+    editor.open(head + table + "        }\n}\n")
+    answer = await execute(editor, "run", seed=3)
+    failed = answer["total"] - answer["holds"]
+    rows = [label for line, label in (await hints(editor)).items() if line.startswith("|")]
+    assert len(rows) == answer["total"] == 2
+    assert sum(not label.startswith("✔") for label in rows) == failed
+    titles = [command.title for command in await lenses(editor)]
+    assert (f"Rerun {failed} failed" in titles) == (failed > 0)
+    assert f"{answer['holds']}/2 passed" in titles
+    run_messages.clear()
+    again = await execute(editor, "run", variation=1)
+    assert again["total"] == 1
+    assert [entry.message.variation for entry in run_messages if entry.message.type == "ScenarioStarted"] == [1]
+    assert f"{answer['holds']}/2 passed" in [command.title for command in await lenses(editor)]
+    repeated = await execute(editor, "rerunFailed")
+    assert repeated.get("total", 0) == failed
+
+
+@pytest.mark.physics
+async def test_a_cancelled_run_leaves_its_open_clauses_unknown(editor: Editor, run_messages: list[Any]) -> None:
+    editor.open()
+    await editor.diagnostics()
+    running = asyncio.ensure_future(execute(editor, "run"))
+    async with asyncio.timeout(PATIENCE):
+        while not any(entry.message.type == "ScenarioFinished" for entry in run_messages):
+            await asyncio.sleep(0.01)
+    await editor.client.workspace_execute_command_async(types.ExecuteCommandParams(command="robbdd.cancel"))
+    assert (await running)["cancelled"]
+    messages = [entry.message for entry in run_messages]
+    assert (messages[-1].type, messages[-1].ok) == ("RunFinished", False)
+    judged = [message for message in messages if message.type == "ClauseJudged"]
+    assert {message.verdict for message in judged if message.reason == "the run was cancelled"} == {"unknown"}
+    assert len(judged) == 20
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"scenario": "none"}, "there is no scenario 'none'"),
+        ({"variation": 9}, "no scenario fits the selection"),
+        ({"where": "thing="}, "--where, column 7: expected a value"),
+        ({"where": "thing=none"}, "no scenario fits the selection"),
+        ({"failed": True}, "no scenario failed"),
+        ({"seed": "seven"}, "no usable 'seed'"),
+    ],
+)
+async def test_options_that_cannot_be_followed_are_answered(
+    editor: Editor, options: dict[str, object], words: str
+) -> None:
+    editor.open()
+    assert await execute(editor, "run", **options) == {}
+    assert any(words in message.message for message in editor.client.messages), editor.client.messages
+
+
+async def test_a_run_of_a_broken_model_says_why_it_cannot_run(editor: Editor) -> None:
+    editor.open(editor.text.replace("task: <pick-place-task>", "task <pick-place-task>"))
+    params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
+    await editor.client.workspace_execute_command_async(params)
+    assert any("the model has errors" in message.message for message in editor.client.messages)
