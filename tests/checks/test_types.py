@@ -74,7 +74,7 @@ def test_a_text_takes_anything_and_a_target_any_element() -> None:
     clause = (
         "Then: ( also: holds(pred('{g}', g=<fetch.goal>), after <end>)\n"
         " and safe: holds(<fetch.robot> does not collide <fetch.goal>, from <start> until <end>)\n"
-        " and set-up: holds(<fetch.robot> has config speed = <fetch.part>, before <start>) )\n variation:"
+        " and set-up: holds(<fetch.robot> has config ee_speed = <fetch.part>, before <start>) )\n variation:"
     )
     check(MODEL.replace("variation:", clause))
 
