@@ -9,5 +9,9 @@ class BehaviourError(Exception):
     """The agent cannot go on with its behaviour; the message says why, with the time where one is known."""
 
 
+class UserError(Exception):
+    """The user's own code is broken; the message names its file and line. Nothing can be concluded from the run."""
+
+
 class SimulationError(Exception):
     """The simulation itself broke down."""

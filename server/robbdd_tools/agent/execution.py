@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import ceil
 from time import perf_counter
@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.configuration import read_back
 from robbdd_tools.agent.engine import TICK
-from robbdd_tools.agent.errors import BehaviourError, SceneError, SimulationError
+from robbdd_tools.agent.errors import BehaviourError, SceneError, SimulationError, UserError
+from robbdd_tools.agent.frames import at
 from robbdd_tools.agent.outline import outline_of
 from robbdd_tools.agent.pick_place import PickPlace
 from robbdd_tools.agent.quantities import wanting
 from robbdd_tools.agent.reach import ReachSampler
 from robbdd_tools.agent.simulation import Simulation
+from robbdd_tools.agent.user_behaviour import AgentWorld, run_user_behaviour
 from robbdd_tools.agent.world import build_world
 from robbdd_tools.monitor.time import Window, window
 from robbdd_tools.monitor.trace import EventStamp, Trace
@@ -23,6 +25,7 @@ from robbdd_tools.monitor.trace import EventStamp, Trace
 if TYPE_CHECKING:
     from robbdd_tools.agent.sentences import Clause
     from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.catalog.executable import Implementation
     from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.run.protocol import ScenarioSpec
 
@@ -56,7 +59,8 @@ class Timing:
 class Execution:
     """A scenario in execution: the world, settled, at time 0, and the behaviours that will be executed in turn.
 
-    ``completed`` counts the behaviours that went through; ``simulation`` is for those who want to look at the world.
+    ``completed`` counts the behaviours that went through; ``broken`` says what is wrong with the user's code, if
+    anything is, so that nothing can be concluded. ``simulation`` is for those who want to look at the world.
     Raises ``SceneError`` when the scene cannot be set up.
     """
 
@@ -67,7 +71,10 @@ class Execution:
         self._last = ceil(self._timing.timeout / TICK - 1e-9)
         self._names = _names_of(spec.events)
         actor = self._calls[0].arguments.get("agent") if self._calls else None
-        world = build_world(spec.scene, spec.seed, actor)
+        how = spec.execution
+        self._implementation = None if how is None else how.implementation
+        _check_implementation(self._implementation, self._calls)
+        world = build_world(spec.scene, spec.seed, actor, None if how is None else how.scene)
         self.simulation = Simulation(world)
         self._reaches = ReachSampler(self.simulation)
         self._controllers: dict[str, PickPlace] = {}
@@ -76,6 +83,7 @@ class Execution:
         self._finished = False
         self._muted = False
         self.completed = 0
+        self.broken = ""
         self.regions: Regions = world.cast.regions
         self._settings = read_back(self.simulation, spec.scene)
         self._outlines = {name: outline_of(model) for name, model in world.cast.objects.items()}
@@ -157,6 +165,10 @@ class Execution:
         except StopIteration:
             self._finished = True
             return
+        except UserError as error:
+            self._finished = True
+            self._remark = self.broken = str(error)
+            return
         except SimulationError as error:
             self._finished = True
             self._remark = str(error)
@@ -173,16 +185,23 @@ class Execution:
                 yield from self._behaviour(call)
             except BehaviourError as error:
                 self._note(str(error))
-                yield from self._controller(call).withdraw()
+                if not self._is_users():
+                    yield from self._controller(call).withdraw()
                 break
             self.completed += 1
         yield from _idle(REST)
         self._emit(END)
         yield from _idle(self._timing.tail)
 
+    def _is_users(self) -> bool:
+        return self._implementation is not None and self._implementation.kind == "python"
+
     def _behaviour(self, call: Call) -> Iterator[None]:
         controller = self._controller(call)
         arguments = call.arguments
+        if self._implementation is not None and self._is_users():
+            world = AgentWorld(self.simulation, arguments["agent"], self._emit)
+            return run_user_behaviour(self._implementation, world, call.behaviour, arguments)
         match call.behaviour:
             case "pick":
                 return controller.pick(arguments["object"])
@@ -228,6 +247,19 @@ class Execution:
 
     def _note(self, remark: str) -> None:
         self._remark = self._remark or remark
+
+
+def _check_implementation(implementation: Implementation | None, calls: Iterable[Call]) -> None:
+    """Raise ``SceneError`` when the implementation cannot execute the behaviours in simulation."""
+    if implementation is None or implementation.kind == "python":
+        return
+    place = at(implementation.origin)
+    if implementation.kind == "ros-action":
+        message = f"the ROS action '{implementation.name}' is not available in simulation"
+        raise SceneError(f'{place}{message}: name a behaviour of the catalog or "py {{ module: …, attr: … }}"')
+    for call in calls:
+        if implementation.name not in (call.behaviour, "pick-place"):
+            raise SceneError(f"{place}'{implementation.name}' of the catalog does not execute '{call.behaviour}'")
 
 
 def _names_of(events: Mapping[str, str]) -> dict[str, list[str]]:

@@ -8,6 +8,7 @@ from math import atan2, cos, hypot, pi, sin
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.pose import Pose as Pose
 from robbdd_tools.agent.scene import carriers
 from robbdd_tools.catalog.api import ObjectModel, ShapeKind, Vector
 from robbdd_tools.catalog.settings import NORMAL
@@ -34,14 +35,6 @@ BIN_SKEW = 0.2
 BIN_ROOM = 0.03
 """Half edge (m) of the square in a bin's middle that a hand can work in."""
 TRIES = 400
-
-
-@dataclass(frozen=True, slots=True)
-class Pose:
-    """Position (m, world frame) and rotation about the vertical (rad)."""
-
-    position: Vector
-    yaw: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,16 +76,18 @@ def footprint(model: ObjectModel) -> float:
 def mounts(cast: Cast) -> dict[str, Pose]:
     """Return where each agent's base stands; raises ``SceneError`` for more than two agents.
 
-    The first stands at its model's mount, the second across the table and faces it.
+    One whose place the scene does not tell stands at its model's mount if it is the first, else across the table.
     """
-    if len(cast.agents) > 2:
+    placed = {name: pose for name in cast.agents if (pose := cast.base(name)) is not None}
+    if len(cast.agents) > 2 and len(placed) < len(cast.agents):
         raise SceneError(f"there is room for two agents at the table, the scene has {len(cast.agents)}")
     table = next(cast.objects[name] for name in cast.tables)
     across = 2 * table.places[0][0]
     poses: dict[str, Pose] = {}
     for index, (name, robot) in enumerate(cast.agents.items()):
         x, y, z = robot.mount
-        poses[name] = Pose((x, y, z)) if index == 0 else Pose((across - x, -y, z), pi)
+        standard = Pose((x, y, z)) if index == 0 else Pose((across - x, -y, z), pi)
+        poses[name] = placed.get(name, standard)
     return poses
 
 
@@ -102,11 +97,15 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
     Raises ``SceneError`` when the scene asks for a place that does not exist or for more than there is room for.
     """
     poses: dict[str, Pose] = {}
-    for name, (x, y, _) in _at_places(cast, cast.tables, "the room"):
+    # What can be grasped may be told where to lie by a configuration as well, which goes first.
+    fixed = {name: cast.pose(name) for name in cast.objects if name not in cast.ranges}
+    placed = {name: pose for name, pose in fixed.items() if pose is not None}
+    poses |= {name: pose for name, pose in placed.items() if not cast.objects[name].graspable}
+    for name, (x, y, _) in _at_places(cast, tuple(name for name in cast.tables if name not in placed), "the room"):
         poses[name] = Pose((x, y, TABLE_TOP))
     for table, names in _stands_on(scene, cast).items():
         left, ahead, top = poses[table].position
-        for name, (x, y, _) in _at_places(cast, names, table):
+        for name, (x, y, _) in _at_places(cast, tuple(name for name in names if name not in placed), table):
             poses[name] = Pose((left + x, ahead + y, top + cast.objects[name].rest_height))
     bins = [name for name in poses if cast.objects[name].free]
     taken: list[_Disc] = []
@@ -115,11 +114,28 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
         if not model.graspable:
             continue
         walls = [(poses[other], cast.objects[other]) for other in bins]
-        pose, rejected = _draw(name, model, list(_fields(scene, cast, poses, base, name)), base, taken, walls, rng)
+        if name in placed:
+            pose, rejected = _apart_from(cast, name, placed[name], taken)
+        else:
+            pose, rejected = _draw(name, model, list(_fields(scene, cast, poses, base, name)), base, taken, walls, rng)
         taken.append(_Disc(pose.position[0], pose.position[1], footprint(model)))
         poses[name] = pose
         resampled += rejected
     return Arrangement(poses, resampled)
+
+
+def _apart_from(cast: Cast, name: str, first: Pose, taken: list[_Disc]) -> tuple[Pose, int]:
+    """Return where the scene has an object, drawn anew while it lies on another one, and how often it was."""
+    radius, pose = footprint(cast.objects[name]), first
+    for attempt in range(1, TRIES):
+        x, y, _ = pose.position
+        if all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + TOUCHING for disc in taken):
+            return pose, attempt - 1
+        again = cast.pose(name, attempt)
+        if again is None or again == pose:
+            return pose, attempt - 1
+        pose = again
+    raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
 
 
 def field_before(

@@ -13,6 +13,8 @@ from robbdd_tools.catalog.registry import load_catalog
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from robbdd_tools.agent.pose import Pose
+    from robbdd_tools.agent.staging import Staging
     from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel
     from robbdd_tools.catalog.settings import Numbers
     from robbdd_tools.run.protocol import SceneSpec
@@ -38,6 +40,17 @@ class Cast:
     seed: int | None
     judged: Mapping[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
 
+    staging: Staging | None = None
+    """What an executable scene says of the elements, if there is one."""
+
+    def pose(self, name: str, attempt: int = 0) -> Pose | None:
+        """Return where an executable scene has an object; raises ``SceneError``."""
+        return None if self.staging is None else self.staging.pose(name, attempt)
+
+    def base(self, name: str) -> Pose | None:
+        """Return where an executable scene has an agent's base; raises ``SceneError``."""
+        return None if self.staging is None else self.staging.base(name)
+
     @property
     def tables(self) -> tuple[str, ...]:
         """The fixed objects, which everything else stands on."""
@@ -49,8 +62,8 @@ def local_name(curie: str) -> str:
     return curie.rpartition(":")[2]
 
 
-def cast_scene(scene: SceneSpec) -> Cast:
-    """Choose the models of a scene and configure them.
+def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
+    """Choose the models of a scene, as an executable one says, else by name, and configure them.
 
     Raises ``SceneError`` for a name that no model stands for and for a configuration that cannot be.
     """
@@ -58,13 +71,16 @@ def cast_scene(scene: SceneSpec) -> Cast:
     objects: dict[str, ObjectModel] = {}
     # Sorted: what happens must not depend on the order in which a model declares its objects.
     for name in sorted(scene.objects):
-        model = catalog.object_for(local_name(name))
+        carrying = any(name in own for own in scene.workspaces.values())
+        model = None if staging is None else staging.object_model(name, carrying)
+        model = model or catalog.object_for(local_name(name))
         if model is None:
             raise SceneError(_no_model("object", name, (m.prefixes for m in catalog.objects.values())))
         objects[name] = model
     agents: dict[str, RobotModel] = {}
     for name in scene.agents:
-        robot = catalog.robot_for(local_name(name))
+        robot = None if staging is None else staging.robot(name)
+        robot = robot or catalog.robot_for(local_name(name))
         if robot is None:
             raise SceneError(_no_model("agent", name, (m.prefixes for m in catalog.robots.values())))
         agents[name] = robot
@@ -72,7 +88,7 @@ def cast_scene(scene: SceneSpec) -> Cast:
         objects[PEDESTAL] = catalog.objects["table"]
     found = Configured(objects, agents)
     configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
-    return Cast(objects, agents, _regions(scene, objects), found.ranges, found.seed, found.judged)
+    return Cast(objects, agents, _regions(scene, objects), found.ranges, found.seed, found.judged, staging)
 
 
 def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:

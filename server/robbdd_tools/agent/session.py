@@ -107,6 +107,8 @@ class ScenarioRun:
         def verdict(execution: Execution) -> Verdict:
             events = self._spec.events.keys()
             trace = execution.advance_until(lambda trace: is_closed(clause, trace, events))
+            if execution.broken:
+                return unknown(execution.broken)
             return decide(clause, execution.measured(clause, trace), execution.regions, events)
 
         return self._judged(line, verdict)
@@ -120,6 +122,8 @@ class ScenarioRun:
                 return unknown(f"{NO_STEP} for '{text}'")
             if execution.run_behaviour(index):
                 return Verdict(Outcome.HOLDS)
+            if execution.broken:
+                return unknown(execution.broken)
             return Verdict(Outcome.VIOLATED, reason=execution.trace.remark)
 
         return self._judged(line, verdict)

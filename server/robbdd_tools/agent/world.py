@@ -14,12 +14,15 @@ import numpy as np
 
 from robbdd_tools.agent.engine import TIMESTEP, mujoco
 from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.model_files import prepared_robot
 from robbdd_tools.agent.placement import TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.agent.scene import Cast, cast_scene
+from robbdd_tools.agent.staging import Staging
 from robbdd_tools.catalog.api import ObjectModel, RobotModel, Shape, ShapeKind
 from robbdd_tools.catalog.objects.table import HEIGHT
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.run.protocol import SceneSpec
 
 FLOOR = TABLE_TOP - HEIGHT
@@ -47,13 +50,14 @@ class World:
     resampled: int
 
 
-def build_world(scene: SceneSpec, seed: int, actor: str | None = None) -> World:
+def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance: SceneInstance | None = None) -> World:
     """Build the world of a scene; everything random in it follows from ``seed``, or from that of its configuration.
 
-    ``actor`` is the agent that objects are laid out for, by default the first. Raises ``SceneError`` when an element
-    has no model, a place does not exist or there is no room.
+    ``actor`` is the agent that objects are laid out for, by default the first; ``instance`` says what elements are
+    and where. Raises ``SceneError`` when an element has no model, a place does not exist or there is no room.
     """
-    cast = cast_scene(scene)
+    staging = None if instance is None else Staging(instance, _seed_of(scene, seed))
+    cast = cast_scene(scene, staging)
     bases = mounts(cast)
     if actor is not None and actor not in bases:
         raise SceneError(f"the scene has no agent '{actor}'")
@@ -62,6 +66,12 @@ def build_world(scene: SceneSpec, seed: int, actor: str | None = None) -> World:
     arranged = arrange(scene, cast, base, np.random.default_rng(seed))
     model = _compile(cast, bases, arranged.poses)
     return World(model, cast, bases, arranged.poses, seed, arranged.resampled)
+
+
+def _seed_of(scene: SceneSpec, seed: int) -> int:
+    """Return the seed that the scene is configured with, if any."""
+    written = next((config.value for config in scene.config if config.name == "seed"), "")
+    return int(written) if written.isdecimal() else seed
 
 
 def mjcf_path(robot: RobotModel) -> Path:
@@ -77,6 +87,9 @@ def mjcf_path(robot: RobotModel) -> Path:
 
 def load_robot(robot: RobotModel) -> Any:
     """Return the engine's editable description of a robot; raises ``SceneError`` when its file is broken."""
+    prepared = prepared_robot(robot.mjcf)
+    if prepared is not None:
+        return prepared.copy()
     try:
         return _read(str(mjcf_path(robot))).copy()
     except ValueError as error:
@@ -92,6 +105,8 @@ def _compile(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -
     spec = mujoco.MjSpec()
     _set_options(spec)
     _add_room(spec)
+    for number, scenery in enumerate(() if cast.staging is None else cast.staging.scenery):
+        _add_scenery(spec, scenery, f"scenery{number}/", len(bases))
     for name, model in cast.objects.items():
         _add_object(spec, name, model, poses[name], len(bases))
     for index, (name, robot) in enumerate(cast.agents.items()):
@@ -128,7 +143,7 @@ def _add_room(spec: Any) -> None:
 
 
 def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: int) -> None:
-    turn = [cos(pose.yaw / 2), 0.0, 0.0, sin(pose.yaw / 2)]
+    turn = list(pose.rotation) or [cos(pose.yaw / 2), 0.0, 0.0, sin(pose.yaw / 2)]
     body = spec.worldbody.add_body(name=name, pos=list(pose.position), quat=turn)
     if model.free:
         body.add_freejoint()
@@ -141,6 +156,16 @@ def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: in
         geom.rgba = list(model.color)
         geom.contype = THINGS
         geom.conaffinity = THINGS | sum(2 << index for index in range(robots))
+
+
+def _add_scenery(spec: Any, scenery: Any, prefix: str, robots: int) -> None:
+    """Add what a model of the whole scene has beside the elements."""
+    child = scenery.copy()
+    for geom in child.geoms:
+        if geom.contype or geom.conaffinity:
+            geom.contype = THINGS
+            geom.conaffinity = THINGS | sum(2 << index for index in range(robots))
+    spec.attach(child, prefix=prefix, frame=spec.worldbody.add_frame())
 
 
 def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, count: int) -> None:

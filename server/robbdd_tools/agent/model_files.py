@@ -1,0 +1,366 @@
+"""Model files that an executable scene names: found, read, and turned into what a simulated world is made of."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.agent.engine import mujoco
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.frames import at
+from robbdd_tools.agent.user_code import UserCodeError, attribute
+from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, Shape, ShapeKind
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robbdd_tools.catalog.api import FloatArray, Vector
+    from robbdd_tools.catalog.executable import ModelSource
+
+SPACE = 0.15
+"""Height (m) of the workspace above an object whose file has no site 'workspace'."""
+SITE = "workspace"
+ALIGNED = 1e-6
+SPEED = 1.0
+"""Speed limit (rad/s) of an arm's joints where neither the file nor the model states one."""
+STIFFNESS, DAMPING = 2000.0, 100.0
+"""Gains (N m/rad, N m s/rad) of the servos of an arm whose file has none."""
+GRIP_STIFFNESS, GRIP_DAMPING, GRIP_FORCE = 3000.0, 60.0, 15.0
+"""Gains (N/m, N s/m) and force limit (N) of a gripper whose file has no servo."""
+_KINDS = {
+    int(mujoco.mjtGeom.mjGEOM_BOX): ShapeKind.BOX,
+    int(mujoco.mjtGeom.mjGEOM_SPHERE): ShapeKind.SPHERE,
+    int(mujoco.mjtGeom.mjGEOM_CYLINDER): ShapeKind.CYLINDER,
+}
+_prepared: dict[str, Any] = {}
+
+
+def prepared_robot(key: str) -> Any | None:
+    """Return the engine's description of an arm that ``robot_from`` has prepared."""
+    return _prepared.get(key)
+
+
+def usable(models: Sequence[ModelSource], element: str) -> ModelSource | None:
+    """Return the model of an element that can be simulated, ``None`` without any; raises ``SceneError`` for USD."""
+    found = next((model for model in models if model.format != "usd"), None)
+    if found is None and models:
+        message = f"'{element}' has a USD model only, which this simulator cannot load: name an MJCF or URDF model too"
+        raise SceneError(at(models[0].origin) + message)
+    return found
+
+
+def load(source: ModelSource) -> Any:
+    """Return the engine's editable description of a model; raises ``SceneError``."""
+    if source.kind == "python":
+        return _from_code(source)
+    path = _path(source)
+    if not path.is_file():
+        raise SceneError(f"{at(source.origin)}there is no model file {path}")
+    try:
+        spec = _read(str(path)).copy()
+    except (ValueError, OSError) as error:
+        raise SceneError(f"{at(source.origin)}the model file {path} cannot be read: {error}") from error
+    # Links that are fixed to others keep their names: they may be the tool, or what a body is mapped to.
+    spec.compiler.fusestatic = False
+    return spec
+
+
+@cache
+def _read(path: str) -> Any:
+    return mujoco.MjSpec.from_file(path)
+
+
+def _path(source: ModelSource) -> Path:
+    path = Path(source.name).expanduser()
+    if source.kind == "ros":
+        prefixes = [Path(entry) for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
+        shares = [prefix / "share" / source.package for prefix in prefixes]
+        found = next((share / path for share in shares if share.is_dir()), None)
+        if found is None:
+            where = "AMENT_PREFIX_PATH is not set" if not prefixes else "it is not in AMENT_PREFIX_PATH"
+            raise SceneError(f"{at(source.origin)}the ROS package '{source.package}' cannot be found: {where}")
+        return found
+    return path if source.origin is None else Path(source.origin.file).parent / path
+
+
+def _from_code(source: ModelSource) -> Any:
+    """Call the code, which returns MJCF text, the path of a file, or the engine's own description."""
+    folder = None if source.origin is None else Path(source.origin.file).parent
+    try:
+        made = attribute(source.name, folder)()
+    except UserCodeError as error:
+        raise SceneError(f"{at(source.origin)}{error}") from error
+    except Exception as error:
+        raise SceneError(f"{at(source.origin)}{source.name} failed: {type(error).__name__}: {error}") from error
+    try:
+        if isinstance(made, str) and made.lstrip().startswith("<"):
+            return mujoco.MjSpec.from_string(made)
+        return mujoco.MjSpec.from_file(str(made)) if isinstance(made, str | Path) else made.copy()
+    except (ValueError, AttributeError) as error:
+        raise SceneError(f"{at(source.origin)}{source.name} made no model: {error}") from error
+
+
+@dataclass(frozen=True, slots=True)
+class FromFile:
+    """An object as its file has it; ``position`` (m) and ``rotation`` (quaternion) are its pose in the file."""
+
+    model: ObjectModel
+    position: FloatArray
+    rotation: FloatArray
+
+
+def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -> FromFile:
+    """Return the object that a body of a file is, the first one without a name; raises ``SceneError``.
+
+    It consists of the collision shapes of the body and of what is fixed to it: boxes, spheres and cylinders in line
+    with the body as they are, any other by the box around it. It can move if the file gives it a free joint or, in
+    URDF, a mass. Its workspace, if it ``carries`` one, is the box site 'workspace', else the space above it.
+    """
+    model = _compiled(spec, source)
+    body = _body(model, source, body_name)
+    data: Any = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    own = [index for index in range(model.nbody) if _belongs(model, index, body)]
+    geoms = [
+        g
+        for g in range(model.ngeom)
+        if model.geom_bodyid[g] in own and model.geom_contype[g] | model.geom_conaffinity[g]
+    ]
+    if not geoms:
+        raise SceneError(f"{at(source.origin)}the body '{model.body(body).name}' has no shape that can be touched")
+    shapes = tuple(_shape(model, data, geom, body) for geom in geoms)
+    low, high = _bounds(shapes)
+    joint = int(model.body_jntadr[body])
+    free = joint >= 0 and int(model.jnt_type[joint]) == int(mujoco.mjtJoint.mjJNT_FREE)
+    if source.format == "urdf":
+        free = float(model.body_mass[body]) > 0
+    region = _workspace(model, data, own, body, low, high) if carries else None
+    chosen = ObjectModel(
+        name=source.iri,
+        prefixes=(),
+        shapes=shapes,
+        mass=max(float(model.body_subtreemass[body]), 1e-3),
+        friction=float(model.geom_friction[geoms[0], 0]),
+        free=free,
+        graspable=free and not carries,
+        rest_height=-float(low[2]),
+        color=_color(model.geom_rgba[geoms[0]]),
+        doc=f"from {source.name}",
+        region=region,
+    )
+    return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy())
+
+
+def _compiled(spec: Any, source: ModelSource) -> Any:
+    try:
+        return spec.copy().compile()
+    except ValueError as error:
+        raise SceneError(f"{at(source.origin)}the model {source.name} does not compile: {error}") from error
+
+
+def _body(model: Any, source: ModelSource, name: str) -> int:
+    names = [str(model.body(index).name) for index in range(1, model.nbody)]
+    if not names:
+        raise SceneError(f"{at(source.origin)}the model {source.name} has no body")
+    if name and name not in names:
+        raise SceneError(f"{at(source.origin)}{source.name} has no body '{name}'; it has {', '.join(names)}")
+    return names.index(name) + 1 if name else 1
+
+
+def _belongs(model: Any, index: int, body: int) -> bool:
+    while index > 0 and index != body:
+        index = int(model.body_parentid[index])
+    return index == body
+
+
+def _shape(model: Any, data: Any, geom: int, body: int) -> Shape:
+    """Return a collision shape in the frame of a body."""
+    frame = data.xmat[body].reshape(3, 3)
+    mujoco.mj_kinematics(model, data)
+    turn = frame.T @ data.geom_xmat[geom].reshape(3, 3)
+    center = frame.T @ (data.geom_xpos[geom] - data.xpos[body])
+    kind = _KINDS.get(int(model.geom_type[geom]))
+    size = model.geom_size[geom]
+    upright = np.abs(turn - np.eye(3)).max() < ALIGNED
+    if kind is ShapeKind.SPHERE:
+        return Shape(kind, (float(size[0]), 0.0, 0.0), _vector(center))
+    if kind is ShapeKind.CYLINDER and (upright or abs(turn[2, 2]) > 1 - ALIGNED):
+        return Shape(kind, (float(size[0]), float(size[1]), 0.0), _vector(center))
+    if kind is ShapeKind.BOX and upright:
+        return Shape(kind, _vector(size), _vector(center))
+    box = model.geom_aabb[geom]
+    half = np.abs(turn) @ box[3:]
+    return Shape(ShapeKind.BOX, _vector(half), _vector(center + turn @ box[:3]))
+
+
+def _bounds(shapes: tuple[Shape, ...]) -> tuple[FloatArray, FloatArray]:
+    lows: list[FloatArray] = []
+    highs: list[FloatArray] = []
+    for shape in shapes:
+        a, b, _ = shape.size
+        match shape.kind:
+            case ShapeKind.SPHERE:
+                half = np.array([a, a, a])
+            case ShapeKind.CYLINDER:
+                half = np.array([a, a, b])
+            case ShapeKind.BOX:
+                half = np.array(shape.size)
+        lows.append(np.array(shape.position) - half)
+        highs.append(np.array(shape.position) + half)
+    return np.min(lows, axis=0), np.max(highs, axis=0)
+
+
+def _workspace(model: Any, data: Any, own: list[int], body: int, low: FloatArray, high: FloatArray) -> Region:
+    for site in range(model.nsite):
+        if str(model.site(site).name).endswith(SITE) and model.site_bodyid[site] in own:
+            frame = data.xmat[body].reshape(3, 3)
+            center = frame.T @ (data.site_xpos[site] - data.xpos[body])
+            return Region(_vector(center), _vector(model.site_size[site]))
+    middle, half = (low + high) / 2, (high - low) / 2
+    top = float(high[2])
+    center = (float(middle[0]), float(middle[1]), top + SPACE / 2)
+    return Region(center, (float(half[0]), float(half[1]), SPACE / 2))
+
+
+def _vector(numbers: Any) -> Vector:
+    x, y, z = (float(number) for number in numbers)
+    return (x, y, z)
+
+
+def _color(numbers: Any) -> tuple[float, float, float, float]:
+    red, green, blue, opacity = (float(number) for number in numbers)
+    return (red, green, blue, opacity)
+
+
+def robot_from(source: ModelSource, name: str) -> RobotModel:
+    """Return the arm that a file is, with servos and names added where it has none; raises ``SceneError``."""
+    arm = source.arm
+    if arm is None:
+        wanted = "'tool: \"…\" gripper { … }' in its model block"
+        raise SceneError(f"{at(source.origin)}'{name}' cannot pick without a tool and a gripper: add {wanted}")
+    spec = load(source)
+    tool = _tool_site(spec, source, arm.tool)
+    joints = _chain(spec, source, tool)
+    pads = tuple(_pad(spec, source, pad) for pad in arm.pads)
+    _servos(spec, source, joints)
+    _gripper_servo(spec, source, arm.actuator)
+    for body in spec.bodies:
+        # Arms hold themselves up, as their own controllers do.
+        body.gravcomp = 1.0 if body.name != "world" else 0.0
+    model = _compiled(spec, source)
+    home = arm.home or _home(model, joints)
+    for what, numbers in (("home", home), ("velocity", arm.velocity or (SPEED,) * len(joints))):
+        if len(numbers) != len(joints):
+            counted = f"the arm has {len(joints)} joints ({', '.join(joints)}), '{what}' has {len(numbers)} numbers"
+            raise SceneError(at(source.origin) + counted)
+    key = f"{source.iri}#{name}"
+    _prepared[key] = spec
+    limits = [
+        float(model.joint(joint).actfrcrange[1]) if hasattr(model.joint(joint), "actfrcrange") else 0.0
+        for joint in joints
+    ]
+    return RobotModel(
+        name=name,
+        prefixes=(),
+        mjcf=key,
+        joints=joints,
+        home=tuple(home),
+        velocity_limits=tuple(arm.velocity or (SPEED,) * len(joints)),
+        torque_limits=tuple(limits),
+        tool_site=tool,
+        gripper_actuator=arm.actuator,
+        gripper_open=arm.open,
+        gripper_closed=arm.closed,
+        pads=pads,
+        mount=(0.0, 0.0, 0.15),
+        stroke=arm.stroke,
+        doc=f"from {source.name}",
+        source=source.name,
+    )
+
+
+def _names(things: Any) -> str:
+    return ", ".join(str(thing.name) for thing in things if thing.name) or "none"
+
+
+def _tool_site(spec: Any, source: ModelSource, name: str) -> str:
+    """Return the tool's site; a body of that name gets one."""
+    if spec.site(name) is not None:
+        return name
+    body = spec.body(name)
+    if body is None:
+        known = f"it has the sites {_names(spec.sites)} and the bodies {_names(spec.bodies[1:])}"
+        raise SceneError(f"{at(source.origin)}{source.name} has no site or body '{name}' for the tool; {known}")
+    body.add_site(name=name)
+    return name
+
+
+def _chain(spec: Any, source: ModelSource, tool: str) -> tuple[str, ...]:
+    """Return the hinges between the arm's base and its tool."""
+    body = spec.site(tool).parent
+    joints: list[str] = []
+    while body is not None and body.name != "world":
+        hinges = [joint.name for joint in body.joints if joint.type == mujoco.mjtJoint.mjJNT_HINGE]
+        joints = hinges + joints
+        body = body.parent
+    if not joints:
+        raise SceneError(f"{at(source.origin)}no joint leads to the tool '{tool}' of {source.name}")
+    return tuple(joints)
+
+
+def _pad(spec: Any, source: ModelSource, name: str) -> str:
+    """Return a gripping face; a body of that name gives its first shape."""
+    if spec.geom(name) is not None:
+        return name
+    body = spec.body(name)
+    touching = [] if body is None else [geom for geom in body.geoms if geom.contype or geom.conaffinity]
+    if not touching:
+        known = f"it has the geoms {_names(spec.geoms)} and the bodies {_names(spec.bodies[1:])}"
+        raise SceneError(f"{at(source.origin)}{source.name} has no gripping face '{name}'; {known}")
+    face = touching[0]
+    face.name = name
+    # URDF says nothing of contacts: that of a gripping face is stiff and rough like rubber, or light things slip out.
+    face.priority, face.condim, face.friction = 1, 4, [0.9, 0.01, 0.001]
+    face.solref, face.solimp = [0.005, 1.0], [0.95, 0.99, 0.001, 0.5, 2.0]
+    return name
+
+
+def _servos(spec: Any, source: ModelSource, joints: tuple[str, ...]) -> None:
+    """Give each joint a position servo, unless it has one."""
+    driven = {str(actuator.target): actuator for actuator in spec.actuators}
+    for joint in joints:
+        actuator = driven.get(joint)
+        if actuator is None:
+            _add_servo(spec, joint, joint, STIFFNESS, DAMPING)
+        elif actuator.biastype != mujoco.mjtBias.mjBIAS_AFFINE or actuator.gainprm[0] <= 0:
+            message = f"the joint '{joint}' of {source.name} is not driven by a position servo"
+            raise SceneError(f"{at(source.origin)}{message}: use <position>, or leave its actuator out")
+
+
+def _gripper_servo(spec: Any, source: ModelSource, name: str) -> None:
+    if spec.actuator(name) is not None:
+        return
+    if spec.joint(name) is None:
+        known = f"it has the actuators {_names(spec.actuators)} and the joints {_names(spec.joints)}"
+        raise SceneError(f"{at(source.origin)}{source.name} has no actuator or joint '{name}' for the gripper; {known}")
+    servo = _add_servo(spec, name, name, GRIP_STIFFNESS, GRIP_DAMPING)
+    servo.forcerange = [-GRIP_FORCE, GRIP_FORCE]
+    servo.forcelimited = True
+
+
+def _add_servo(spec: Any, name: str, joint: str, stiffness: float, damping: float) -> Any:
+    servo = spec.add_actuator(name=name, target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+    servo.set_to_position(kp=stiffness, kv=damping)
+    return servo
+
+
+def _home(model: Any, joints: tuple[str, ...]) -> tuple[float, ...]:
+    """Return the joint positions of the first key frame, else the middle of each joint's range."""
+    if model.nkey:
+        return tuple(float(model.key_qpos[0, model.joint(joint).qposadr[0]]) for joint in joints)
+    return tuple(float(sum(model.joint(joint).range)) / 2 for joint in joints)
