@@ -9,8 +9,9 @@ import numpy as np
 
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.frames import Frames, at
-from robbdd_tools.agent.model_files import FromFile, load, object_from, robot_from, usable
+from robbdd_tools.agent.model_files import FromFile, load, object_from, usable
 from robbdd_tools.agent.pose import Pose
+from robbdd_tools.agent.robot_files import robot_from
 from robbdd_tools.catalog.registry import load_catalog
 
 if TYPE_CHECKING:

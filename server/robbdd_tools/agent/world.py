@@ -14,8 +14,8 @@ import numpy as np
 
 from robbdd_tools.agent.engine import TIMESTEP, mujoco
 from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.agent.model_files import prepared_robot
 from robbdd_tools.agent.placement import TABLE_TOP, Pose, arrange, mounts
+from robbdd_tools.agent.robot_files import prepared_robot
 from robbdd_tools.agent.scene import Cast, cast_scene
 from robbdd_tools.agent.staging import Staging
 from robbdd_tools.catalog.api import ObjectModel, RobotModel, Shape, ShapeKind
