@@ -238,7 +238,7 @@ def test_a_body_of_a_world_file_is_the_element_of_its_name(tmp_path: Path) -> No
         ({"bodies": (("x:g.cube", "brick"),)}, "thing.xml has no body 'brick'; it has plate, block"),
         ({"format": "usd"}, "'env:cube1' has a USD model only"),
         ({"kind": "ros", "package": "parts"}, "the ROS package 'parts' cannot be found: AMENT_PREFIX_PATH is not set"),
-        ({"kind": "python", "name": "no_such_module:make"}, "no_such_module:make cannot be imported: ModuleNotFound"),
+        ({"kind": "python", "name": "no_such_module:make"}, "no_such_module:make failed: ModuleNotFound"),
     ],
 )
 def test_a_model_that_cannot_be_had_is_an_error(

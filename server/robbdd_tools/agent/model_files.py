@@ -13,7 +13,7 @@ import numpy as np
 from robbdd_tools.agent.engine import mujoco
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.frames import at
-from robbdd_tools.agent.user_code import UserCodeError, attribute
+from robbdd_tools.agent.user_code import UserCodeError, called, load_attribute
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 
 if TYPE_CHECKING:
@@ -78,13 +78,11 @@ def _path(source: ModelSource) -> Path:
 
 def _from_code(source: ModelSource) -> Any:
     """Call the code, which returns MJCF text, the path of a file, or the engine's own description."""
-    folder = None if source.origin is None else Path(source.origin.file).parent
+    model = "" if source.origin is None else source.origin.file
     try:
-        made = attribute(source.name, folder)()
+        made = called(source.name, load_attribute(source.name, model))
     except UserCodeError as error:
         raise SceneError(f"{at(source.origin)}{error}") from error
-    except Exception as error:
-        raise SceneError(f"{at(source.origin)}{source.name} failed: {type(error).__name__}: {error}") from error
     try:
         if isinstance(made, str) and made.lstrip().startswith("<"):
             return mujoco.MjSpec.from_string(made)

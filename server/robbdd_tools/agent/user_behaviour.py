@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +11,7 @@ from robbdd_tools.agent.errors import BehaviourError, UserError
 from robbdd_tools.agent.frames import at
 from robbdd_tools.agent.kinematics import arm_of
 from robbdd_tools.agent.motion import frame_of, tool_pose
-from robbdd_tools.agent.user_code import UserCodeError, attribute, told
+from robbdd_tools.agent.user_code import UserCodeError, called, load_attribute
 from robbdd_tools.catalog.own_behaviour import BehaviourFailed, UserBehaviour
 
 if TYPE_CHECKING:
@@ -93,15 +92,13 @@ def run_user_behaviour(
     Raises ``BehaviourError`` when it says that it has failed, and ``UserError`` for any other exception in it.
     """
     name = implementation.name
-    folder = None if implementation.origin is None else Path(implementation.origin.file).parent
+    model = "" if implementation.origin is None else implementation.origin.file
     try:
-        own: UserBehaviour = attribute(name, folder)()
-        own.reset(world, behaviour, arguments)
-        while not own.step():
+        own: UserBehaviour = called(name, load_attribute(name, model))
+        called(name, lambda: own.reset(world, behaviour, arguments))
+        while not called(name, own.step):
             yield
     except UserCodeError as error:
-        raise UserError(f"{at(implementation.origin)}{error}") from error
-    except BehaviourFailed as error:
-        raise BehaviourError(f"{error} at {world.time:.2f} s") from error
-    except Exception as error:
-        raise UserError(f"{name} failed at {world.time:.2f} s: {told(error)}") from error
+        if isinstance(error.__cause__, BehaviourFailed):
+            raise BehaviourError(f"{error.__cause__} at {world.time:.2f} s") from error
+        raise UserError(f"{at(implementation.origin)}{error} at {world.time:.2f} s") from error

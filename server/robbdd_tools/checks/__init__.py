@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.checks.catalog_entry import catalog_entry
+from robbdd_tools.checks.catalog_models import catalog_models
 from robbdd_tools.checks.contradictory_order import contradictory_order
 from robbdd_tools.checks.cyclic_import import cyclic_import
 from robbdd_tools.checks.duplicate_iri import duplicate_iri
@@ -55,6 +56,7 @@ DECLARATION_RULES = (
 FILE_RULES = (
     catalog_entry,
     cyclic_import,
+    catalog_models,
     duplicate_iri,
     model_file,
     namespace_iri,

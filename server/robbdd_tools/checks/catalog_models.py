@@ -1,0 +1,58 @@
+"""``catalog-models``: a scene that runs on models of the catalog, chosen by the names of its elements; and on which."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.names.elements import Element, Site, scene_members
+from robbdd_tools.names.index import FileIndex, language_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+
+
+def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Tell once per scene which models its elements have, unless an executable scene among the files says it."""
+    for placed in file.declarations:
+        scene = placed.declaration.tree
+        if not isinstance(scene, tree.Scene) or _is_executable(snapshot, scene.name.text):
+            continue
+        chosen, unknown = _chosen(scene_members(Site(snapshot, file, placed)) or frozenset())
+        if chosen:
+            named = "; ".join(f"{', '.join(names)} as {model}" for model, names in sorted(chosen.items()))
+            message = f"without a .scenex this scene runs on models of the catalog, by name: {named}"
+            if unknown:
+                message += f"; none fits {', '.join(unknown)}"
+            span = scene.name.span.shifted(placed.offset)
+            yield Diagnostic(file.document.uri, span, Severity.INFORMATION, "catalog-models", message)
+
+
+def _is_executable(snapshot: Snapshot, scene: str) -> bool:
+    for uri, source in snapshot.sources.items():
+        if language_of(uri) == "scenex" and isinstance(source, FileIndex):
+            roots = (placed.declaration.tree for placed in source.declarations)
+            if any(isinstance(root, tree.SceneInstance) and root.scene.path == scene for root in roots):
+                return True
+    return False
+
+
+def _chosen(members: frozenset[Element]) -> tuple[dict[str, list[str]], list[str]]:
+    """Return model → names of the elements that it stands for, and the names for which there is none."""
+    catalog = load_catalog()
+    found: dict[str, list[str]] = {}
+    unknown: list[str] = []
+    for member in sorted(members, key=lambda element: element.name):
+        name = member.name.rpartition(".")[2]
+        if member.kind not in ("object", "agent"):
+            continue
+        model = catalog.object_for(name) if member.kind == "object" else catalog.robot_for(name)
+        if model is None:
+            unknown.append(name)
+        else:
+            found.setdefault(model.name, []).append(name)
+    return found, unknown
