@@ -37,7 +37,7 @@ def test_a_mistake_is_reported_once(code: str) -> None:
 
 def test_what_only_a_shape_finds_is_still_told() -> None:
     case = fixture(MODEL.replace("0.5 seconds", "-1 seconds"))
-    assert [entry.code for entry in all_diagnostics(case.snapshot, case.uri)] == ["shacl-horizon"]
+    assert [entry.code for entry in all_diagnostics(case.snapshot, case.uri)] == ["shacl-horizon", "catalog-models"]
 
 
 def test_foreign_models_raise_no_false_alarm() -> None:

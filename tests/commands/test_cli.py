@@ -70,7 +70,7 @@ def test_diagnostics_as_json_follow_their_schema(folder: Path) -> None:
     done = robbdd("check", "--json", "main.bdd", folder=folder)
     entries = [json.loads(line) for line in done.stdout.splitlines()]
     assert [schema_errors("diagnostic.schema.json", entry) for entry in entries] == [[]] * len(entries)
-    assert sorted(entry["code"] for entry in entries) == ["duplicate-name", "syntax"]
+    assert sorted(entry["code"] for entry in entries) == ["catalog-models", "duplicate-name", "syntax"]
     assert entries[0]["related"][0]["file"] == "main.bdd"
 
 
