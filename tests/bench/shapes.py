@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 EDITS = 40
 TRIPLES = 100_000
-QUERIES = ("idle-events", "predicate-coverage", "variants", "clause-times")
+QUERIES = ("idle-events", "variants", "clause-times")
 
 
 def rows() -> Iterator[tuple[str, str]]:
