@@ -42,6 +42,10 @@ def started(scene: SceneSpec = SCENE, seed: int = 1) -> Execution:
         (BIN, "height_scale", "0.8"),
         (BIN_WS, "height_scale", "1.2"),
         (PANDA, "ee_speed", "0.25"),
+        (PANDA, "approach_speed", "0.1"),
+        (PANDA, "travel_height", "0.4"),
+        (PANDA, "grip_time", "0.08"),
+        (PANDA, "release_time", "1"),
         (PANDA, "position_range", "dense"),
         (BALL, "position_range", "0.4 0.5 -0.1 0.1"),
         (PANDA, "seed", "17"),
@@ -95,6 +99,55 @@ def test_a_slower_arm_takes_longer_and_stays_below_its_speed() -> None:
     assert ends[0] > 1.5 * ends[1] > 0.0
 
 
+def ending(*wanted: tuple[str, str, str], robot: str = PANDA) -> Execution:
+    run = execution([pick_place(agent=robot)], replace(configured(*wanted), agents=(robot,)))
+    run.advance_until(lambda _: False)
+    assert run.completed == 1
+    return run
+
+
+def lasts(run: Execution, start: str, end: str) -> float:
+    """Return the time from one event to another, s."""
+    begins, ends = run.trace.event_time(start), run.trace.event_time(end)
+    assert begins is not None
+    assert ends is not None
+    return ends - begins
+
+
+def highest(run: Execution, robot: str) -> float:
+    """Return the greatest height (m) of the tool while it travels with its load."""
+    start, end = run.trace.event_time("t:place-start"), run.trace.event_time("t:place-end")
+    assert start is not None
+    assert end is not None
+    during = (run.trace.times >= start) & (run.trace.times <= end)
+    return float(run.trace.positions[during, run.trace.column(robot), 2].max())
+
+
+@pytest.mark.parametrize("robot", [PANDA, "env:ur10"])
+def test_the_phases_of_pick_and_place_take_as_long_as_is_asked_for(robot: str) -> None:
+    plain = ending(robot=robot)
+    picks, places = lasts(plain, "t:pick-start", "t:pick-end"), lasts(plain, "t:place-start", "t:place-end")
+    waits = ending((robot, "release_time", "1.32"), robot=robot)
+    assert lasts(waits, "t:place-start", "t:place-end") == pytest.approx(places + 1.0, abs=0.05)
+    assert lasts(waits, "t:pick-start", "t:pick-end") == pytest.approx(picks)
+    watches = ending((robot, "grip_time", "0.66"), robot=robot)
+    times = 2 if robot == PANDA else 1
+    assert lasts(watches, "t:pick-start", "t:pick-end") == pytest.approx(picks + 0.5 * times, abs=0.05)
+    assert lasts(ending((robot, "approach_speed", "0.05"), robot=robot), "t:pick-start", "t:pick-end") > picks + 1.0
+
+
+def test_the_tool_travels_as_high_as_is_asked_for() -> None:
+    assert highest(ending(), PANDA) == pytest.approx(0.30, abs=0.01)
+    assert highest(ending((PANDA, "travel_height", "0.4")), PANDA) == pytest.approx(0.40, abs=0.01)
+
+
+def test_what_is_written_out_as_it_is_by_itself_changes_no_bit() -> None:
+    written = (("ee_speed", "0.5"), ("travel_height", "0.3"), ("grip_time", "0.16"), ("release_time", "0.32"))
+    plain, same = ending(), ending(*((PANDA, name, value) for name, value in written))
+    assert plain.trace.positions.tobytes() == same.trace.positions.tobytes()
+    assert plain.trace.events == same.trace.events
+
+
 def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
     scene = configured((PANDA, "seed", "5"))
     one, two, plain = started(scene, 1), started(scene, 2), started(seed=5)
@@ -106,12 +159,12 @@ def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
     [
         (
             [(CUBE, "colour", "red")],
-            "there is no configuration 'colour'; the known ones are displacement_limit, ee_speed,",
+            "there is no configuration 'colour'; the known ones are approach_speed, displacement_limit,",
         ),
         ([(CUBE, "mass", "heavy")], "'env:cube1' cannot be configured: 'mass' cannot be 'heavy': it is a number"),
         ([(CUBE, "ee_speed", "1")], "'env:cube1' has no ee_speed: that is of an agent"),
         ([(PANDA, "mass", "1")], "'env:panda' has no mass: that is of a loose object"),
-        ([("env:bench", "height_scale", "1")], "'env:bench' has no height_scale: that is of a bin, or its workspace"),
+        ([("env:bench", "height_scale", "1")], "'env:bench' has no height_scale: that is of a bin, tray or shelf"),
         ([("env:bolt", "mass", "1")], "'env:bolt', which is to have mass = 1, is not in the scene"),
         ([(CUBE, "mass", "1"), (CUBE, "mass", "2")], "'env:cube1' is to have mass = 1 and 2"),
         ([(CUBE, "position_range", "1.5 1.6 0 0.1")], "no part of 'env:bench', where 'env:cube1' is to be"),

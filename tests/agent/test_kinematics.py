@@ -193,6 +193,20 @@ def test_a_motion_keeps_the_speed_limits_and_ends_at_its_goal(name: str, data: s
     assert np.linalg.norm(np.diff(tool, axis=0), axis=1).max() / TICK < 1.1 * speed
 
 
+def test_where_a_joint_comes_to_its_limit_the_tool_stays_on_its_path() -> None:
+    """So near to its base the Panda's elbow has to turn aside; straight ahead of that lies another posture."""
+    robot = ROBOTS["franka-panda"]
+    arm, limits = arm_of(robot), np.array(robot.velocity_limits)
+    above = ToolPose(0.2554, 0.1582, 0.150, -0.3571)
+    at = replace(above, height=-0.0343)
+    joints = plan(arm, arm.home, above, limits, robot.tool_speed).joints[-1]
+    for goal in (at, above):
+        motion = plan(arm, joints, goal, limits, robot.tool_speed)
+        radii = [float(np.hypot(*arm.forward(row)[0][:2])) for row in motion.joints]
+        assert np.abs(np.array(radii) - above.radius).max() < 0.01
+        joints = motion.joints[-1]
+
+
 @given(st.floats(-3, 3), st.floats(0.3, 0.6), st.floats(-pi, pi))
 def test_fingers_close_along_the_wanted_direction(bearing: float, radius: float, closing: float) -> None:
     point = np.array([radius * cos(bearing), radius * sin(bearing), 0.2])

@@ -19,23 +19,27 @@ def test_every_configuration_says_what_it_is_and_reads_its_own_values(setting: S
 
 def test_the_documented_names_are_known() -> None:
     assert list(SETTINGS) == [
+        "approach_speed",
         "displacement_limit",
         "ee_speed",
         "exactly_one",
         "force_limit",
         "friction",
+        "grip_time",
         "height_scale",
         "mass",
         "max_speed",
         "position_range",
+        "release_time",
         "seed",
+        "travel_height",
         "whole_object",
     ]
 
 
 def test_an_unknown_name_is_told_the_known_ones() -> None:
     with pytest.raises(
-        SettingError, match="no configuration 'colour'; the known ones are displacement_limit, ee_speed"
+        SettingError, match="no configuration 'colour'; the known ones are approach_speed, displacement_limit"
     ):
         setting_of("colour")
 

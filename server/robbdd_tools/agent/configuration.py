@@ -16,6 +16,16 @@ if TYPE_CHECKING:
     from robbdd_tools.run.protocol import ConfigSpec, SceneSpec
 
 
+CONTROLLER = {
+    "approach_speed": "approach_speed",
+    "ee_speed": "tool_speed",
+    "grip_time": "grip_time",
+    "release_time": "release_time",
+    "travel_height": "travel_height",
+}
+"""Configurations of how an agent picks and places, and the attributes of its model that have them."""
+
+
 @dataclass(slots=True)
 class Configured:
     """Models of objects and agents as configured, where things lie (position ranges, m) and the seed, if any.
@@ -64,7 +74,10 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
         if thing.free and thing.region is not None:
             settings[name, "height_scale"] = (_top(model, geoms) / _height(load_catalog().objects[thing.name]),)
     for name, robot in simulation.robots.items():
-        settings[name, "ee_speed"] = (robot.model.tool_speed,)
+        for setting, attribute in CONTROLLER.items():
+            settings[name, setting] = (getattr(robot.model, attribute),)
+        if robot.model.approach_speed is None:
+            settings[name, "approach_speed"] = settings[name, "ee_speed"]
         settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
     # A seed may be asked for of anything, such as the scene.
     for name in (*cast.objects, *cast.agents, *(config.target for config in scene.config)):
@@ -80,8 +93,9 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
             found.seed = int(value[0])
         case name if judged is not None:
             found.judged[element, name] = value
-        case "ee_speed" if robot is not None:
-            found.agents[element] = replace(robot, tool_speed=value[0])
+        case name if name in CONTROLLER and robot is not None:
+            changed: dict[str, Any] = {CONTROLLER[name]: value[0]}
+            found.agents[element] = replace(robot, **changed)
         case "position_range" if robot is not None:
             found.ranges |= dict.fromkeys(_loose(found), value) | {element: value}
         case "position_range" if thing is not None and thing.graspable:

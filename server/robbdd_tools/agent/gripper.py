@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
 CLOSING = 0.05
 """Speed of one finger, m/s."""
-SQUEEZE = 10
-"""Ticks for which a grip must last before the arm moves."""
 PATIENCE = 60
 """Ticks that the fingers may take beyond their way before the object counts as missed."""
 STANDOFF, PRESS = 0.015, 0.010
@@ -59,6 +57,7 @@ class Gripper(ABC):
 
     def __init__(self, robot: RobotModel) -> None:
         self._robot = robot
+        self._firm = max(1, round(robot.grip_time / TICK))
 
     @abstractmethod
     def grasps(self, name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray) -> list[Grasp]:
@@ -82,16 +81,16 @@ class Fingers(Gripper):
 
     def take(self, hand: Hand, at: ToolPose, name: str) -> Step:
         """Reach around the object and close until both fingers press on it."""
-        yield from hand.move(at)
+        yield from hand.move(at, self._robot.approach_speed)
         held = 0
         closed = self._robot.gripper_closed
         for _ in range(int((hand.control - closed) / (CLOSING * TICK)) + PATIENCE):
             hand.control = max(closed, hand.control - CLOSING * TICK)
             yield from hand.wait(1)
             held = held + 1 if hand.feels(name) else 0
-            if held == SQUEEZE:
+            if held == self._firm:
                 hand.control = closed
-                yield from hand.wait(SQUEEZE)
+                yield from hand.wait(self._firm)
                 return
         raise BehaviourError(f"gripper closed beside {name} at {hand.time:.2f} s")
 
@@ -111,11 +110,11 @@ class Cup(Gripper):
 
     def take(self, hand: Hand, at: ToolPose, name: str) -> Step:
         """Descend slowly with the vacuum on until the cup touches the object."""
-        yield from hand.move(replace(at, height=at.height + STANDOFF))
+        yield from hand.move(replace(at, height=at.height + STANDOFF), self._robot.approach_speed)
         hand.control = self._robot.gripper_closed
         lowest = replace(at, height=at.height - PRESS)
-        yield from hand.move(lowest, DESCENT, lambda: hand.feels(name))
-        yield from hand.wait(SQUEEZE)
+        yield from hand.move(lowest, min(DESCENT, self._robot.approach_speed or DESCENT), lambda: hand.feels(name))
+        yield from hand.wait(self._firm)
         if not hand.feels(name):
             raise BehaviourError(f"suction cup found no hold on {name} at {hand.time:.2f} s")
 

@@ -29,6 +29,8 @@ SPACING = 0.03
 """Distance between the points of a path for which joint positions are computed, m."""
 PEAK_SPEED, PEAK_ACCELERATION = 1.875, 5.774
 """Peaks of the minimum-jerk profile over unit distance and time."""
+BEND = 0.3
+"""Change of a joint (rad) from one point of a path to the next that is also searched for from where the arm is."""
 SHORTEST = 0.1
 """Duration of the shortest motion, s."""
 
@@ -102,7 +104,7 @@ def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed
         # A path goes on as it went: the search starts one step ahead.
         seed = 2.0 * points[-1] - last
         last = points[-1]
-        points.append(arm.solve(seed, *frame_of(_between(start, goal, float(share)))))
+        points.append(_next(arm, points[-1], seed, _between(start, goal, float(share))))
     path = np.array(points)
     rate = np.abs(np.diff(path, axis=0)).max(axis=0) * count
     duration = max(
@@ -113,6 +115,19 @@ def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed
         float((PEAK_SPEED * rate / (MARGIN * limits)).max()),
     )
     return _timed(path, shares, duration)
+
+
+def _next(arm: Arm, present: FloatArray, ahead: FloatArray, pose: ToolPose) -> FloatArray:
+    """Return joint positions at a pose near the present ones; raises ``Unreachable``.
+
+    Where a joint comes to its limit the others turn off, and what lies straight ahead leads to another posture: the
+    nearer one counts.
+    """
+    found = arm.solve(ahead, *frame_of(pose))
+    if np.abs(found - present).max() <= BEND:
+        return found
+    other = arm.solve(present, *frame_of(pose))
+    return min(found, other, key=lambda joints: float(np.abs(joints - present).max()))
 
 
 def _timed(path: FloatArray, shares: FloatArray, duration: float) -> Motion:

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.agent.clearance import Clearance
+from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.errors import BehaviourError
 from robbdd_tools.agent.gripper import Step, gripper_of
 from robbdd_tools.agent.kinematics import Unreachable, arm_of
 from robbdd_tools.agent.motion import ToolPose, plan, present_pose, tool_pose
-from robbdd_tools.agent.reach import TRAVEL, Approach, approaches, at_travel, joints_at
+from robbdd_tools.agent.reach import Approach, approaches, at_travel, joints_at
 from robbdd_tools.agent.target import Target, targets
 
 if TYPE_CHECKING:
@@ -28,8 +29,6 @@ SLIPPED = 3
 """Ticks in a row without grip that count as a loss."""
 RISE = 1e-3
 """Difference in height (m) from which on the tool first rises and then travels: on a slant it would hit the place."""
-RELEASE = 20
-"""Ticks that the open gripper waits before it leaves."""
 
 
 class PickPlace:
@@ -71,10 +70,10 @@ class PickPlace:
         if over.height > here.height + RISE:
             yield from self.move(replace(here, height=over.height))
         yield from self.move(over)
-        yield from self.move(down)
+        yield from self.move(down, self._robot.model.approach_speed)
         self._held = None
         yield from self._gripper.release(self)
-        yield from self.wait(RELEASE)
+        yield from self.wait(round(self._robot.model.release_time / TICK))
         yield from self.move(self._at_travel(down))
         self._emit("place-end")
 
@@ -114,7 +113,7 @@ class PickPlace:
         robot = self._robot
         x, y, surface = target.position
         height = surface + grasp.below + target.gap
-        top = max(TRAVEL, height)
+        top = max(robot.model.travel_height, height)
         closing = target.closing if target.closing is not None else grasp.closing
         while height <= top:
             pose = tool_pose(robot.base, np.array([x, y, height]), closing)
@@ -128,7 +127,7 @@ class PickPlace:
         return None
 
     def _at_travel(self, pose: ToolPose) -> ToolPose:
-        return at_travel(self._robot.base, pose)
+        return at_travel(self._robot, pose)
 
     @property
     def time(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import nan, pi
 from typing import TYPE_CHECKING, Any
@@ -20,12 +20,9 @@ from robbdd_tools.agent.motion import ToolPose, frame_of, tool_pose
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.kinematics import Arm
-    from robbdd_tools.agent.placement import Pose
     from robbdd_tools.agent.simulation import Robot, Simulation
     from robbdd_tools.catalog.api import FloatArray
 
-TRAVEL = 0.30
-"""Height in the world frame at which the tool travels, m (paper)."""
 NONE = -pi
 """Reach margin (rad) where there is no clear grasp within the joint limits."""
 SAME = 1e-4
@@ -45,9 +42,10 @@ class Approach:
     depth: float
 
 
-def at_travel(base: Pose, pose: ToolPose) -> ToolPose:
+def at_travel(robot: Robot, pose: ToolPose) -> ToolPose:
     """Return a tool pose raised to the travelling height."""
-    return ToolPose(pose.radius, pose.bearing, max(TRAVEL - base.position[2], pose.height), pose.turn)
+    height = robot.model.travel_height - robot.base.position[2]
+    return replace(pose, height=max(height, pose.height))
 
 
 def joints_at(arm: Arm, above: ToolPose, at: ToolPose) -> FloatArray:
@@ -72,7 +70,7 @@ def approaches(simulation: Simulation, robot: Robot, name: str, data: Any = None
     clearance = Clearance(simulation, robot, name, data)
     for grasp in gripper_of(robot.model).grasps(name, objects[name], position, rotation):
         at = tool_pose(robot.base, grasp.position, grasp.closing)
-        above = at_travel(robot.base, at)
+        above = at_travel(robot, at)
         try:
             joints = joints_at(arm, above, at)
         except Unreachable:

@@ -273,4 +273,12 @@ class RobotModel:
     source: str
     tool_speed: float = 0.5
     """Largest speed of the tool along a planned path, m/s (paper: what the Panda typically reached)."""
+    approach_speed: float | None = None
+    """Largest speed of the tool while it descends to a thing or lowers one, m/s; ``None``: ``tool_speed``."""
+    travel_height: float = 0.30
+    """Height in the world frame at which the tool travels, m (paper)."""
+    grip_time: float = 0.16
+    """How long a grip must last, and is then waited for, before the arm moves, s."""
+    release_time: float = 0.32
+    """How long the open gripper waits before it leaves, s."""
     gripper: GripperKind = GripperKind.PARALLEL

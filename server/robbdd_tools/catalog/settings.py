@@ -78,6 +78,10 @@ _EVERY = (
     ),
     Setting("height_scale", "", "a bin, tray or shelf", 0.2, 3.0, "height as a multiple of the catalog's"),
     Setting("ee_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool along its planned path"),
+    Setting("approach_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool as it descends or lowers"),
+    Setting("travel_height", "m", "an agent", 0.15, 1.0, "height in the world frame at which the tool travels"),
+    Setting("grip_time", "s", "an agent", 0.016, 5.0, "how long a grip is watched before the arm moves"),
+    Setting("release_time", "s", "an agent", 0.0, 5.0, "how long the open gripper waits before it leaves"),
     Setting("mass", "kg", "a loose object", 0.001, 50.0, "mass of the whole object"),
     Setting("friction", "", "an object", 0.01, 2.0, "coefficient of sliding friction"),
     Setting(

@@ -47,8 +47,9 @@ HAS_CONFIG = Predicate(
     sentence='"{target}" has config "{name}" = "{value}"',
     unit="",
     doc=(
-        "The target is set up with this value: position_range (m), height_scale, ee_speed (m/s), mass (kg), friction "
-        "or seed; or judged by it: max_speed (m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
+        "The target is set up with this value: position_range (m), height_scale, ee_speed, approach_speed (m/s), "
+        "travel_height (m), grip_time, release_time (s), mass (kg), friction or seed; or judged by it: max_speed "
+        "(m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
     ),
     evaluate=margin,
     set_up=True,
