@@ -70,6 +70,7 @@ def _parser() -> argparse.ArgumentParser:
     steps = commands.add_parser("steps", help="write a skeleton of step functions for another robot or simulator")
     steps.add_argument("path", metavar="FILE", type=Path)
     steps.add_argument("-o", "--output", metavar="STEPS.py", type=Path, help="add what is missing to this file")
+    steps.add_argument("--undefined", action="store_true", help="only free text, which nothing else can judge")
     steps.set_defaults(command=_steps)
 
     run = commands.add_parser("run", help="execute the scenarios of models in simulation and judge every clause")
@@ -176,7 +177,7 @@ def _gherkin(options: argparse.Namespace) -> int:
 def _steps(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.steps import write_steps
 
-    return write_steps(options.path, options.output)
+    return write_steps(options.path, options.output, undefined=options.undefined)
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -148,13 +148,60 @@ def test_plain_behave_gives_the_verdicts_of_a_run(tmp_path: Path) -> None:
         assert behave_statuses(out, tmp_path) == verdicts
 
 
+@pytest.mark.physics
+def test_own_steps_beside_the_model_judge_what_they_define(tmp_path: Path) -> None:
+    shutil.copy(PICKPLACE.with_name("bench.scene"), tmp_path)
+    text = PICKPLACE.read_text(encoding="utf-8").replace(
+        "            in-hand:",
+        """            'the lamp is green' after <evt-end>
+            and
+            glows: holds(pred("the lamp glows at {g}", g=<goal>), before <evt-end>)
+            and
+            'the lamp is out' before <evt-start>
+            and
+            in-hand:""",
+    )
+    (tmp_path / "a-model.bdd").write_text(text, encoding="utf-8")
+    own = tmp_path / "steps" / "a_model_steps.py"
+    assert robbdd("steps", "a-model.bdd", "--undefined", "-o", own, folder=tmp_path).returncode == 0
+    skeleton = own.read_text(encoding="utf-8")
+    assert skeleton.count("raise NotImplementedError") == 3
+    filled = skeleton.replace("raise NotImplementedError", "pass", 1)
+    filled = filled.replace("raise NotImplementedError", "assert 'left' in g, f'dark at {g}'", 1)
+    # What the catalog knows can be taken over, too: here what nothing supports.
+    sentence = '"{o:Quoted}" is held by "{a:Quoted}" after event "{e:Quoted}"'
+    filled += f"\n\n@then({sentence!r})\ndef held(context, o, a, e):\n    assert False\n"
+    own.write_text(filled, encoding="utf-8")
+    done = robbdd("run", "a-model.bdd", "--first", "2", "--json", "out.json", folder=tmp_path)
+    report: Any = json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))
+    clauses = [scenario["clauses"] for scenario in report["scenarios"]]
+    verdicts = [[clause["verdict"] for clause in judged] for judged in clauses]
+    assert verdicts == [
+        ["holds", "holds", "holds", "holds", "unknown", "violated", "holds", "holds"],
+        ["holds", "holds", "holds", "violated", "unknown", "violated", "holds", "holds"],
+    ], done.stdout
+    assert clauses[1][3]["reason"] == "dark at env:right_ws"
+    assert clauses[0][4]["reason"] == "the step failed: NotImplementedError"
+    out = tmp_path / "out"
+    assert robbdd("gherkin", "a-model.bdd", "-o", out, "--first", "2", folder=tmp_path).returncode == 0
+    (tmp_path / "steps").rename(tmp_path / "gone")
+    assert behave_statuses(out, tmp_path) == verdicts
+
+
+def test_a_folder_has_no_steps_of_its_own_without_a_file_beside_the_model(folder: Path) -> None:
+    (folder / "steps").mkdir()
+    (folder / "steps" / "other_steps.py").write_text("", encoding="utf-8")
+    assert robbdd("gherkin", "main.bdd", "-o", "out", folder=folder).returncode == 0
+    assert [file.name for file in (folder / "out" / "features" / "steps").iterdir()] == ["catalog_steps.py"]
+
+
 def behave_statuses(out: Path, elsewhere: Path) -> list[list[str]]:
     """The verdict of each clause as plain behave tells it, run from another folder."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("BEHAVE")}
     command = [sys.executable, "-m", "behave", "--format", "json", "--outfile", str(out / "report.json")]
     subprocess.run([*command, str(out / "features")], capture_output=True, cwd=elsewhere, env=environment)
     features: Any = json.loads((out / "report.json").read_text(encoding="utf-8"))
-    words = {"passed": "holds", "failed": "violated", "undefined": "unknown"}
+    words = {"passed": "holds", "failed": "violated", "error": "unknown", "undefined": "unknown"}
     found: list[list[str]] = []
     for element in features[0]["elements"]:
         if element["type"] == "scenario":

@@ -10,6 +10,7 @@ from typing import Any
 
 from robbdd_tools.agent.channel import current_channel
 from robbdd_tools.agent.session import Session
+from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.protocol import MANIFEST, read_manifest
 
 EXECUTION = "robbdd.execution"
@@ -34,6 +35,11 @@ def before_scenario(context: Any, scenario: Any) -> None:
     context.session.start(Path(scenario.filename), int(scenario.line), texts, index)
 
 
+def after_step(context: Any, step: Any) -> None:
+    """Tell the outcome of a step that a user's own function carried out; ours have told their verdict already."""
+    context.session.told(int(step.line), _verdict(step))
+
+
 def after_scenario(context: Any, _scenario: Any) -> None:
     """Give the clauses that are still open their verdict."""
     context.session.finish()
@@ -44,3 +50,18 @@ def after_all(context: Any) -> None:
     session = getattr(context, "session", None)
     if session is not None:
         session.finish()
+
+
+def _verdict(step: Any) -> Verdict:
+    """Return what the outcome of a step says of its clause: a failed assertion violates it."""
+    error: BaseException | None = step.exception
+    said = " ".join(str(error or "").split())
+    match str(step.status.name):
+        case "passed":
+            return Verdict(Outcome.HOLDS)
+        case "failed":
+            return Verdict(Outcome.VIOLATED, reason=said)
+        case status if error is None:
+            return unknown(f"behave calls the step {status}")
+        case _:
+            return unknown(f"the step failed: {type(error).__name__}" + (f": {said}" if said else ""))

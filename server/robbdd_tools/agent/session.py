@@ -143,6 +143,10 @@ class ScenarioRun:
 
         return self._judged(line, verdict)
 
+    def told(self, line: int, verdict: Verdict) -> None:
+        """Take the verdict of a user's step on a clause that has none yet."""
+        self._report(line, verdict)
+
     def finish(self) -> None:
         """Report what was left open as unknown, and the scenario as finished."""
         for line, sentence in list(self._open.items()):
@@ -249,6 +253,11 @@ class Session:
         if self._present is None:
             raise SceneError(STRANGER)
         return self._present
+
+    def told(self, line: int, verdict: Verdict) -> None:
+        """Take the verdict of a user's step on the clause of a line."""
+        if self._present is not None:
+            self._present.told(line, verdict)
 
     def finish(self) -> None:
         """End the scenario at hand."""

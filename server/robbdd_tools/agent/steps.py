@@ -20,28 +20,26 @@ TABLES = ("a set of objects", "a set of workspaces", "a set of agents", "variabl
 
 
 def register() -> None:
-    """Register the steps with behave; called from a file of the steps folder."""
+    """Register the steps with behave; called from a file of the steps folder.
+
+    They are registered for all keywords at once: behave prefers what a user's file defines for one, and lets both be.
+    """
     behave = import_module("behave")
     matchers = import_module("behave.matchers")
     matchers.use_step_matcher("re")
     try:
         for text in TABLES:
-            behave.given(re.escape(text))(_tell)
-        behave.given("the scene is set up")(_set_up)
+            behave.step(re.escape(text))(_tell)
+        behave.step("the scene is set up")(_set_up)
         for predicate in load_catalog().predicates.values():
-            _judged_step(behave, fluent_pattern(predicate))
-        _judged_step(behave, NOT)
-        _judged_step(behave, GROUP)
+            behave.step(fluent_pattern(predicate))(_judge)
+        behave.step(NOT)(_judge)
+        behave.step(GROUP)(_judge)
         for behaviour in load_catalog().behaviours.values():
-            behave.when(sentence_pattern(behaviour.sentence))(_execute)
-        behave.when(OCCURS)(_await_event)
+            behave.step(sentence_pattern(behaviour.sentence))(_execute)
+        behave.step(OCCURS)(_await_event)
     finally:
         matchers.use_step_matcher("parse")
-
-
-def _judged_step(behave: Any, pattern: str) -> None:
-    behave.given(pattern)(_judge)
-    behave.then(pattern)(_judge)
 
 
 def _tell(_context: Any) -> None:

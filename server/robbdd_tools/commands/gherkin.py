@@ -67,9 +67,10 @@ def _write(plan: FeaturePlan, total: int | None, options: GherkinOptions, json_l
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    from robbdd_tools.run.prepare import lay_out, write_surroundings
+    from robbdd_tools.run.prepare import bring_steps, lay_out, write_surroundings
 
     write_surroundings(options.folder, options.path.stem, json_ld)
+    bring_steps(str(options.path), options.folder)
     console = Console(stderr=True)
     columns = (TextColumn("writing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:

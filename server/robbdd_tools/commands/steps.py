@@ -10,16 +10,20 @@ from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
 
 
-def write_steps(path: Path, target: Path | None) -> int:
-    """Print the skeleton, or add to ``target`` what it lacks; returns the exit code."""
-    from robbdd_tools.gherkin.skeleton import add_steps, patterns, skeleton
+def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> int:
+    """Print the skeleton, or add to ``target`` what it lacks; returns the exit code.
+
+    ``undefined`` leaves out the sentences that the catalog knows.
+    """
+    from robbdd_tools.gherkin.skeleton import add_steps, free_patterns, patterns, skeleton
     from robbdd_tools.graph.build import build_graph
     from robbdd_tools.graph.read import read_model
 
     snapshot = sound_model(path)
     if snapshot is None:
         return FAILED
-    wanted = patterns(read_model(build_graph(snapshot, path_to_uri(path)).graph))
+    model = read_model(build_graph(snapshot, path_to_uri(path)).graph)
+    wanted = free_patterns(model) if undefined else patterns(model)
     try:
         if target is None:
             sys.stdout.write(skeleton(wanted, None, path.name)[0])

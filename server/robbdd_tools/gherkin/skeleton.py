@@ -55,6 +55,11 @@ class Pattern:
     parameters: tuple[tuple[str, str], ...]
 
 
+def steps_file(model: Path) -> Path:
+    """Return where the users' own steps for a model stand; nothing may be there yet."""
+    return model.parent / "steps" / f"{model.stem.replace('-', '_')}_steps.py"
+
+
 def patterns(model: AcceptanceModel) -> list[Pattern]:
     """Return the distinct sentences of a model: those of the scene first, then in the order of the clauses."""
     found: dict[Pattern, None] = {}

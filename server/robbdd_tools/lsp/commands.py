@@ -15,7 +15,7 @@ from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.clause_results import clause_diagnostics, pass_rate
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.gherkin.files import write_features
-from robbdd_tools.gherkin.skeleton import add_steps, free_patterns
+from robbdd_tools.gherkin.skeleton import add_steps, free_patterns, steps_file
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan
 from robbdd_tools.lsp.runs import cancel_run, start_run
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 RUN, RERUN, RECORD, CANCEL = "robbdd.run", "robbdd.rerunFailed", "robbdd.record", "robbdd.cancel"
 GHERKIN, STEPS = "robbdd.gherkin", "robbdd.steps"
-STEPS_FOLDER = "steps"
-"""Folder beside a model for step functions of its own."""
 _UNDEFINED = "clause-undefined"
 
 
@@ -155,7 +153,7 @@ async def _write_steps(ls: RobbddServer, uri: str) -> list[str]:
     if path is None:
         ls.tell("save the model first: its steps are written beside it")
         return []
-    target = path.parent / STEPS_FOLDER / f"{path.stem.replace('-', '_')}_steps.py"
+    target = steps_file(path)
     try:
         plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
         await asyncio.to_thread(add_steps, free_patterns(plan.model), target, path.name)

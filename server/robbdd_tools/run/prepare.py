@@ -9,19 +9,22 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.gherkin.feature import Numbered, every_scenario
 from robbdd_tools.gherkin.files import FeaturePlan, only, whole_plan, written_scenarios
+from robbdd_tools.gherkin.skeleton import steps_file
 from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri, Story, Variant
 from robbdd_tools.run.protocol import MANIFEST, ExecutionSpec, Manifest, ScenarioSpec
 from robbdd_tools.run.specs import SpecWriter
 
 DEFAULT_SEED = 1
 FEATURES = "features"
+MODEL_STEPS = "model_steps.py"
 _ENVIRONMENT = '''"""Hooks that hold the simulated world while behave goes through the scenarios."""
 
-from robbdd_tools.agent.hooks import after_all, after_scenario, before_all, before_scenario
+from robbdd_tools.agent.hooks import after_all, after_scenario, after_step, before_all, before_scenario
 
-__all__ = ["after_all", "after_scenario", "before_all", "before_scenario"]
+__all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario"]
 '''
 _STEPS = '''"""Steps for every sentence that the catalog knows."""
 
@@ -80,7 +83,18 @@ def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Pa
         plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
         executions = request.chosen_executions()
         parts += _parts(plan, request.name, request.seed, executions, below, request.repeat, request.only)
+        bring_steps(request.name, folder, f"model_{number}_steps.py" if len(requests) > 1 else MODEL_STEPS)
     return Manifest(name, seed, tuple(_written(parts, name, seed, folder, traces)), traces)
+
+
+def bring_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> None:
+    """Copy the steps that users wrote for a model (its path or URI), if any, into ``folder``. Raises ``OSError``."""
+    path = uri_to_path(model) if model.startswith("file:") else Path(model)
+    own = None if path is None else steps_file(path)
+    if own is not None and own.is_file():
+        steps = folder / FEATURES / "steps"
+        steps.mkdir(parents=True, exist_ok=True)
+        (steps / name).write_bytes(own.read_bytes())
 
 
 def lay_out(
