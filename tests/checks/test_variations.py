@@ -87,6 +87,15 @@ def test_a_variable_of_another_template_is_no_variable_here() -> None:
     assert "var <fetch.part>: obj set" in fixed(text, "foreign-variable")
 
 
+def test_a_foreign_variable_is_not_changed_to_one_that_has_its_values() -> None:
+    text = EVENTS.replace("ns t =", "ns o = 'https://example.org/o/'\nns t =") + TEMPLATE
+    text += OTHER.replace("Template (ns=t)", "Template (ns=o)")
+    text += STORY.replace(LINES, LINES + LINES.splitlines(keepends=True)[0].replace("<fetch.part>", "<bring.part>"))
+    (finding,) = found(text, "foreign-variable")
+    assert finding.fixes == ()
+    assert "name one of its variables" in finding.message
+
+
 def test_a_clause_of_a_variant_speaks_of_its_own_template() -> None:
     text = EVENTS.replace("ns t =", "ns o = 'https://example.org/o/'\nns t =") + TEMPLATE
     text += OTHER.replace("Template (ns=t)", "Template (ns=o)")

@@ -5,8 +5,9 @@ from typing import Any, cast
 
 import pytest
 
-from kit import EVENTS, MODEL, TEMPLATE, assert_diagnostics, fixture
+from kit import EVENTS, MODEL, SCENE, TEMPLATE, assert_diagnostics, fixture
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.serialize import serialize
 from robbdd_tools.syntax import tree
@@ -136,6 +137,29 @@ def test_both_forms_may_stand_in_one_file() -> None:
         for index, (current, published) in enumerate(zip(split("bdd", CURRENT), declarations, strict=True))
     )
     assert graph(mixed) == graph(CURRENT)
+
+
+def in_scene(scene: str) -> tuple[list[str], str]:
+    """The findings about a scene beyond its models, and the graph of a model that imports it."""
+    case = fixture(f"//- main.bdd\n{MODEL}//- lab.scene\n{scene}")
+    found = [entry for uri in case.project.texts() for entry in fast_diagnostics(case.snapshot, uri)]
+    ttl = serialize(build_graph(case.snapshot, case.uri).graph, "ttl")
+    return [entry.code for entry in found if entry.code != "catalog-models"], ttl
+
+
+def test_scenes_leave_their_namespace_out_as_well() -> None:
+    _, expected = in_scene(SCENE)
+    declared = SCENE.count(" (ns=env)")
+    assert in_scene(SCENE.replace(" (ns=env)", "")) == (["published-form"] * declared, expected)
+    pieces = SCENE.split(" (ns=env)")
+    for number in range(1, declared + 1):
+        mixed = " (ns=env)".join(pieces[:number]) + " (ns=env)".join(pieces[number:])
+        assert in_scene(mixed) == (["published-form"], expected)
+
+
+def test_with_several_namespaces_a_scene_must_say_which() -> None:
+    codes, _ = in_scene("ns o = 'https://example.org/o/'\n" + SCENE.replace("comp (ns=env) tray", "comp tray"))
+    assert codes == ["namespace-missing"]
 
 
 def test_clauses_without_names_are_numbered_past_the_names_that_are_given() -> None:

@@ -45,6 +45,14 @@ def test_a_plain_mistake_has_a_fix_that_mends_it(old: str, new: str, found: list
     assert faults(mended(broken)) == []
 
 
+@pytest.mark.parametrize(("old", "found"), [("When:", ["Behaviour"]), ("Given:", ["on-bench"]), ("Then:", ["in-tray"])])
+@pytest.mark.parametrize("comment", ["// it's {", '// "a', "// holds( // :\n// <b>"])
+def test_a_missing_sign_is_put_before_a_comment(old: str, found: list[str], comment: str) -> None:
+    broken = TEMPLATE.replace(old, f"{old[:-1]}  {comment}").replace("<goal>, ", f"<goal>, {comment}\n")
+    assert faults(broken) == found
+    assert faults(mended(broken)) == []
+
+
 def test_several_mistakes_in_one_declaration_are_all_found() -> None:
     broken = TEMPLATE.replace("var robot", "vr robot").replace("before", "bfore").replace("When:", "When")
     broken = broken.replace("after", "aftr")

@@ -22,6 +22,11 @@ def test_each_declaration_is_a_chunk() -> None:
     ]
 
 
+def test_comments_may_stand_between_opening_words() -> None:
+    texts = ["Event // one (\n (ns=t) // two\n a\n", "Scenario // three\n// four\nTemplate (ns=t) b { }"]
+    assert [chunk.text for chunk in split("bdd", "".join(texts))] == texts
+
+
 def test_a_missing_brace_costs_one_declaration() -> None:
     text = "Scenario Template (ns=t) a {\n  var x\nEvent (ns=t) e\nTask (ns=t) k\n"
     assert heads("bdd", text) == ["Scenario Template (ns=t)", "Event (ns=t) e", "Task (ns=t) k"]

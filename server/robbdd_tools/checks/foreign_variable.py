@@ -43,9 +43,23 @@ def _is_of_template(scenario: Scenario, found: Definition) -> bool:
     return found.kind in VARIABLES and not inside
 
 
+def _is_column(scenario: Scenario, ref: tree.Ref) -> bool:
+    return any(column.ref is ref for column in scenario.columns)
+
+
+def _has_values(scenario: Scenario, variable: Definition) -> bool:
+    key = variable_key(variable)
+    return any(column.variable is not None and variable_key(column.variable) == key for column in scenario.columns)
+
+
 def _report(scenario: Scenario, ref: tree.Ref, found: Definition, own: dict[str, Definition]) -> Diagnostic:
     template = scenario.variant.template.path
-    same = [variable for variable in own.values() if variable.symbol.name == found.symbol.name]
+    same = [
+        variable
+        for variable in own.values()
+        if (variable.symbol.name, variable.kind) == (found.symbol.name, found.kind)
+        and not (_is_column(scenario, ref) and _has_values(scenario, variable))
+    ]
     return finding(
         scenario.site,
         ref,

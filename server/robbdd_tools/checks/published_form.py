@@ -23,7 +23,10 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration
 
-_NAMED = tree.Event | tree.Task | tree.ConstantSet | tree.BehaviourTree | tree.Template | tree.Story
+_NAMED = (
+    *(tree.ElementSet, tree.SimilarSet, tree.Composition, tree.Scene),
+    *(tree.Event, tree.Task, tree.ConstantSet, tree.BehaviourTree, tree.Template, tree.Story),
+)
 Change = tuple[Span, str]
 """A span of a declaration's text (empty: put in) and what shall stand there."""
 

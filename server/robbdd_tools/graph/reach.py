@@ -11,6 +11,7 @@ from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.graph.source_map import Location
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import FILE_NAMESPACE
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import Definition, FileAnalysis, PlacedDeclaration
@@ -71,11 +72,17 @@ class Uses:
         return (entry for entries in self._files.values() for entry in entries)
 
     def of(self, entry: Reached) -> list[Reached]:
-        """Return the declarations that the references of one lead to, in the order of the references."""
+        """Return the declarations that the references of one lead to, in the order of the references.
+
+        One that gives no namespace leads to that of its file as well.
+        """
         key = entry.key
         if key not in self._found:
             places = entry.placed.targets.declarations()
-            self._found[key] = [self._files[uri][position] for uri, position in places]
+            found = [self._files[uri][position] for uri, position in places]
+            if any(symbol.namespace == FILE_NAMESPACE for symbol in entry.placed.declaration.symbols):
+                found += [other for other in self._files[entry.uri] if isinstance(other.tree, tree.Namespace)]
+            self._found[key] = found
         return self._found[key]
 
     def has_error(self, entry: Reached) -> bool:

@@ -24,6 +24,7 @@ ALIKE = 0.6
 """Share of common letters from which a word counts as a misspelt keyword."""
 HOLE = "\u02ad"
 """Stands for a missing name: a letter to the grammar, but of no alphabet, so that no user means it."""
+_COMMENTS = re.compile(r"(?P<comment>//[^\n]*)|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
 _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(?P<open>[{(])|(?P<close>[})])")
 
 
@@ -136,7 +137,7 @@ def _repairs(text: str, stopped: Rejected) -> Iterator[Repair]:
 
 def _insertion(text: str, offset: int, sign: str) -> Iterator[Repair]:
     """Put a sign into the white space before the error, or behind the end of the text."""
-    place = len(text[:offset].rstrip())
+    place = _behind_words(text, offset)
     room = text[place : place + len(sign)]
     if place == len(text):
         yield Repair(text + sign, Span(place, place), sign)
@@ -144,9 +145,19 @@ def _insertion(text: str, offset: int, sign: str) -> Iterator[Repair]:
         yield Repair(text[:place] + sign + text[place + len(sign) :], Span(place, place), sign)
 
 
+def _behind_words(text: str, offset: int) -> int:
+    """Return the end of the last word or sign before ``offset``: what is put behind a comment would be a part of it."""
+    found = (match for match in _COMMENTS.finditer(text, 0, offset) if match["comment"])
+    comments = {match.start() + len(match[0].rstrip()): match.start() for match in found}
+    place = len(text[:offset].rstrip())
+    while place in comments:
+        place = len(text[: comments[place]].rstrip())
+    return place
+
+
 def _hole(text: str, offset: int) -> Iterator[Repair]:
     """Put a stand-in for a missing name into the white space before the error."""
-    place = len(text[:offset].rstrip())
+    place = _behind_words(text, offset)
     if not _continues(text, place - 1) and not (text[place:] and _continues(text, place + 1)):
         for repair in _insertion(text, offset, HOLE):
             yield Repair(repair.mended, repair.span, None)

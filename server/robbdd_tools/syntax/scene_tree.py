@@ -102,7 +102,7 @@ class ElementSet(Node):
     """``obj set``, ``ws set`` or ``agn set``; ``kind`` is ``object``, ``workspace`` or ``agent``."""
 
     kind: str
-    namespace: NamespaceArgument
+    namespace: NamespaceArgument | None
     name: Name
     members: tuple[Member, ...]
 
@@ -112,7 +112,7 @@ class SimilarSet(Node):
     """``similar obj set``: stands for base name + 0 … count-1."""
 
     kind: str
-    namespace: NamespaceArgument
+    namespace: NamespaceArgument | None
     name: Name
     base: Name
     count: Number
@@ -129,7 +129,7 @@ class Link(Node):
 class Composition(Node):
     """``comp … of ws <…> { … }``."""
 
-    namespace: NamespaceArgument
+    namespace: NamespaceArgument | None
     name: Name
     workspace: Ref
     entries: tuple[Link, ...]
@@ -139,6 +139,6 @@ class Composition(Node):
 class Scene(Node):
     """``scene … { … }``."""
 
-    namespace: NamespaceArgument
+    namespace: NamespaceArgument | None
     name: Name
     entries: tuple[Link, ...]

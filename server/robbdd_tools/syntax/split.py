@@ -14,14 +14,15 @@ from functools import cache
 from itertools import pairwise
 
 _NAME = r"[^\W\d][\w\-]*"
+_GAP = r"(?:\s|//[^\n]*\n)"
+"""What may stand between two words: white space and comments."""
 _SHARED_STARTERS = (r"import\s*[\"']", rf"ns\s+{_NAME}\s*=")
 _STARTERS = {
     "scene": (
         *_SHARED_STARTERS,
         r"similar\s+(?:obj|ws|agn)\s+set\b",
-        r"(?:obj|ws|agn)\s+set\s*\(",
-        r"comp\s*\(",
-        r"scene\s*\(",
+        rf"(?:obj|ws|agn)\s+set(?:\s*\(|\s+{_NAME})",
+        rf"(?:comp|scene)(?:\s*\(|\s+{_NAME})",
     ),
     "bdd": (
         *_SHARED_STARTERS,
@@ -113,7 +114,7 @@ _LEAD = re.compile(r"\A(?:\s|\ufeff|//[^\n]*)+")
 @cache
 def _scanner(language: str) -> re.Pattern[str]:
     """Comments, strings, braces and starters; everything else is passed over."""
-    starters = "|".join(_STARTERS[language])
+    starters = "|".join(_STARTERS[language]).replace(r"\s", _GAP)
     string = r"\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?"
     # The first letters alone pass over nearly all of a text.
     letters = (re.findall(r"(?:^\(\?:|^|\|)([A-Za-z])", starter) for starter in _STARTERS[language])

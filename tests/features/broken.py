@@ -1,0 +1,154 @@
+"""Small models, each with a mistake for which a fix is offered, by the code of the finding."""
+
+from __future__ import annotations
+
+from checks.models import LINES, SETS, story
+from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE
+from syntax.test_published import PUBLISHED, SCENE_IMPORT
+
+_TWO_NAMESPACES = EVENTS.replace("ns t =", "ns o = 'https://example.org/o/'\nns t =")
+_OTHER = (
+    TEMPLATE.replace("fetch", "bring")
+    .replace("carry", "haul")
+    .replace("on-bench", "at-b")
+    .replace("in-tray", "at-t")
+    .replace("Template (ns=t)", "Template (ns=o)")
+)
+_HEADER = "                | <fetch.part> | <fetch.robot> | <fetch.goal> |\n                |---|\n"
+_ROW = "                | <parts.bolt> | <arms.panda> | <places.tray_ws> |\n"
+_LISTED = "                | <parts.bolt> | <arms.panda> | { <places.tray_ws>,\n                <places.bench_ws> } |\n"
+_ELSEWHERE = "//- more.scene\nns x = 'https://example.org/x/'\nagn set (ns=x) robots { agent r2 }\n"
+_EXECUTABLE = "//- main.scenex\nimport \"lab.scene\"\nns x = 'https://example.org/x/'\n"
+
+
+def _without(*lines: str) -> str:
+    """The model without some lines."""
+    text = MODEL
+    for line in lines:
+        assert line in text
+        text = text.replace(line, "")
+    return text
+
+
+def _swapped(*pairs: str) -> str:
+    """The model with some texts, each of which stands in it, replaced by the one behind it."""
+    text = MODEL
+    for old, new in zip(pairs[::2], pairs[1::2], strict=True):
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
+
+def _declared(line: str) -> str:
+    """The model with one more declaration before its templates."""
+    return EVENTS + line + TEMPLATE + STORY
+
+
+BROKEN: dict[str, list[str]] = {
+    "syntax": [
+        _swapped("before <pick", "befor <pick"),
+        _swapped("var robot", "vr robot"),
+        _swapped("When:", "When"),
+        _swapped("<robot> picks", "<robot picks"),
+        _swapped("Then:", "Than:"),
+        _swapped("<fetch.part>: obj set", "<fetch.part> obj set"),
+        _swapped("    }\n}", "    }\n"),
+        "//- lab.scene\n" + SCENE.replace("workspace bench_ws,", "workspac bench_ws,"),
+        "//- lab.scene\n" + SCENE.replace("object bolt, object", "object bolt object"),
+    ],
+    "unknown-name": [
+        _swapped("before <pick-start>", "before <pik-start>"),
+        _swapped("before <pick-start>", "before <lift>"),
+        _swapped("scene: <bench_scene>", "scene: <bench-scene>"),
+        _swapped("task: <task>", "task: <other>"),
+        EVENTS + TEMPLATE.replace("<robot> picks", "<crane> picks"),
+        _swapped("<places.tray_ws>", "<places.trays_ws>"),
+        "//- main.bdd\n" + _without('import "lab.scene"\n'),
+        "//- main.bdd\n" + _swapped("<arms.panda>", "<robots.r2>") + _ELSEWHERE,
+        EVENTS
+        + "Scenario Template (ns=t) other { task: <task> var a When: event <lift> occurs <a> picks <a> }\n"
+        + TEMPLATE
+        + STORY,
+        EVENTS + " ".join(TEMPLATE.replace("<robot> picks", "<crane> picks").split()),
+        "ns t = 'https://example.org/t/'\n"
+        "Scenario Template (ns=t) x { duration: from <go> until <stop> var a var b When: <a> picks <b> }\n",
+    ],
+    "wrong-kind": [
+        _swapped("obj set <parts>", "ws set <parts>"),
+        "//- lab.scene\n" + SCENE.replace("agn set <arms> }", "obj set <arms> }"),
+        "//- lab.scene\n" + SCENE.replace("ws comp <tray_comp> }\nscene", "ws <tray_comp> }\nscene"),
+    ],
+    "namespace-missing": [
+        _TWO_NAMESPACES + "Event late\n" + TEMPLATE + STORY,
+        _TWO_NAMESPACES + TEMPLATE.replace("Template (ns=t)", "Template") + STORY,
+        _TWO_NAMESPACES + TEMPLATE + STORY.replace("Story (ns=t)", "Story"),
+        "//- lab.scene\nns o = 'https://example.org/o/'\n" + SCENE.replace("comp (ns=env) tray", "comp tray"),
+        "//- lab.scene\nns o = 'https://example.org/o/'\n" + SCENE.replace("obj set (ns=env)", "obj set"),
+    ],
+    "published-form": [SCENE_IMPORT + PUBLISHED, _declared("Event spare\n")],
+    "repeated-value": [
+        story(LINES + "                var <fetch.part>: { <parts.bolt> }\n"),
+        story(LINES.rstrip() + " var <fetch.part>: { <parts.bolt> } // again\n"),
+        story(LINES + "                var <fetch.part>: { <parts.bolt>,\n    <parts.nut> }\n"),
+    ],
+    "foreign-variable": [
+        _TWO_NAMESPACES + TEMPLATE + _OTHER + STORY.replace("<fetch.part>:", "<bring.part>:"),
+        _TWO_NAMESPACES
+        + TEMPLATE
+        + _OTHER
+        + STORY.replace(
+            "variation:", "Then: also: holds(<bring.part> is held by <fetch.robot>, after <end>)\n variation:"
+        ),
+    ],
+    "row-width": [
+        story(_HEADER + _ROW + "                | <parts.nut> | <arms.ur10> |\n"),
+        story(_HEADER + "                | <parts.nut> |\n" + _LISTED),
+        story(_HEADER + _ROW + "                | <parts.nut>\n | <arms.ur10>\n |\n"),
+        story(_HEADER + "                | <parts.nut> | <arms.ur10> | <places.tray_ws> | 3 | 4 |\n"),
+        story(_HEADER + _LISTED.replace("} |", "} | 'a | b' |") + _ROW),
+    ],
+    "selection-size": [
+        story(LINES + f"                set var <fetch.goals>: select 3 {kind} from <places>\n", SETS)
+        for kind in ("combinations", "permutations")
+    ],
+    "setting": [
+        story(
+            LINES + "                var <fetch.pace>: { 0.5 }\n",
+            TEMPLATE.replace("    var goal\n", "    var goal\n    var pace\n").replace(
+                "    Then:\n",
+                "    Then:\n        slow: holds(<robot> has config max_sped = <pace>, after <end>)\n",
+            ),
+        )
+    ],
+    "catalog-entry": [
+        _EXECUTABLE
+        + 'scene inst (ns=x) s { scene: <bench_scene> obj <parts.bolt> { model m as mjcf { catalog "cubee" } } }\n',
+        "//- main.bddx\nns x = 'https://example.org/x/'\nbhv impl (ns=x) b { catalog \"pick-plac\" }\n",
+    ],
+    "contradictory-order": [
+        _swapped("0.5 seconds after <place-end>)", "from <place-end> until <pick-start>)"),
+        _swapped(
+            "variation:",
+            "Then: late: holds(<fetch.part> is held by <fetch.robot>, from <end> until <start>)\n variation:",
+        ),
+    ],
+    "unused-event": [
+        _declared("Event (ns=t) spare\n"),
+        _declared("Event (ns=t) spare Event (ns=t) spare-too\n"),
+        _declared("Event\n (ns=t)\n spare // not needed\n"),
+    ],
+    "unused-task": [_declared("Task (ns=t) spare\n")],
+    "unused-set": [
+        _declared("const set (ns=t) spare { <parts.bolt> }\n"),
+        _declared("const set (ns=t) spare {\n1,\n2 }\n"),
+    ],
+    "unused-import": [
+        "//- main.bdd\nimport 'more.scene'\n" + MODEL + _ELSEWHERE,
+        "//- main.bdd\nimport 'more.scene' " + MODEL + _ELSEWHERE,
+    ],
+    "unused-variable": [
+        EVENTS + TEMPLATE.replace("    var goal\n", "    var goal\n    var spare\n") + STORY,
+        EVENTS + TEMPLATE.replace("    var goal\n", "    var goal set var spare var more\n") + STORY,
+    ],
+}
+"""Diagnostic code → fixtures (see ``kit.fixture``) that have at least one such finding with a fix."""
