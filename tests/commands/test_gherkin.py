@@ -107,6 +107,16 @@ def test_an_own_template_is_used_and_its_error_shown_at_its_line(folder: Path) -
     assert "has no attribute 'colour'" in done.stderr
 
 
+def test_a_template_that_makes_no_gherkin_is_told_so(folder: Path) -> None:
+    own = folder / "own.feature.jinja"
+    scenario = "{% block scenario %}  Scenario: {{ scenario.name }}\n    Then it works\n    nonsense\n{% endblock %}"
+    own.write_text("{% block feature %}Feature: f\n{% endblock %}" + scenario)
+    done = robbdd("gherkin", "main.bdd", "-o", "out", "--template", own.name, folder=folder)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("robbdd: own.feature.jinja: what it makes is no Gherkin: ")
+    assert str(Path("out", "features", "fetching.feature")) in done.stderr
+
+
 def test_steps_are_printed_or_added_to_a_file(folder: Path) -> None:
     printed = robbdd("steps", "main.bdd", folder=folder)
     first = robbdd("steps", "main.bdd", "-o", "steps/own.py", folder=folder)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 EVERY = 200
 """Scenarios between two looks at the progress bar."""
+LARGEST_CHECKED = 4 * 1024 * 1024
+"""Bytes of a feature that is parsed again, all of it in memory; features are written in constant memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +86,21 @@ def _write(plan: FeaturePlan, total: int | None, options: GherkinOptions, json_l
             if written % EVERY == 0:
                 progress.update(task, completed=written)
     for feature in features:
+        _check_gherkin(options.folder / feature, template=options.template)
         print(options.folder / feature)
+
+
+def _check_gherkin(feature: Path, *, template: str) -> None:
+    """Raise ``TemplateProblem`` when a user's template made something else than Gherkin; large files are believed."""
+    from robbdd_tools.gherkin.render import OURS, TemplateProblem
+
+    if template in OURS or feature.stat().st_size > LARGEST_CHECKED:
+        return
+    try:
+        import_module("behave.parser").parse_file(str(feature))
+    except Exception as error:  # of behave's own types, which it does not declare
+        said = " ".join(str(error).split())
+        raise TemplateProblem(template, 0, f"what it makes is no Gherkin: {said}") from None
 
 
 def _failed(message: str) -> int:
