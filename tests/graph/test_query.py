@@ -2,13 +2,30 @@
 
 from __future__ import annotations
 
+from functools import cache
+from importlib.util import find_spec
+
 import pytest
 from rdflib import Graph
 
 from graph.models import EVERYTHING
 from graph.statements import built
-from kit import MODEL
+from kit import EXAMPLES, MODEL
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.query import BadQuery, Rows, Term, ready_queries, ready_query, run_query
+from robbdd_tools.names.project import Project
+
+
+@cache
+def example(name: str) -> Graph:
+    uri, project = path_to_uri(EXAMPLES / name), Project()
+    project.load(uri)
+    return build_graph(project.snapshot(), uri).graph
+
+
+def absent(_name: str) -> None:
+    """Say of every module that it is not installed."""
 
 
 def answer(query: str, text: str = MODEL) -> Rows:
@@ -115,3 +132,33 @@ def test_what_no_variation_uses() -> None:
 
 def test_what_variants_there_are() -> None:
     assert ready("variants") == [("fetching", "bench-to-tray", "fetch", "bench_scene")]
+
+
+@pytest.mark.parametrize("name", sorted(ready_queries()))
+@pytest.mark.parametrize(
+    "model", ["ownrobot/tidy.bdd", "pickplace/pickplace.bdd", "sorting/sorting.bdd", "tworobots/heights.bdd"]
+)
+def test_both_engines_give_the_same_rows(model: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert find_spec("oxrdflib") is not None
+    text, graph = ready_query(name) or "", example(model)
+    fast = run_query(graph, text)
+    monkeypatch.setattr("robbdd_tools.graph.query.find_spec", absent)
+    assert run_query(graph, text) == fast
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "SELECT ?s ?v { ?s ?p ?v FILTER(isLiteral(?v)) }",
+        "SELECT (SUM(?v) AS ?sum) (MAX(?v) AS ?most) { ?s time:horizon-seconds ?v }",
+        "SELECT ?s (STRLEN(STR(?s)) AS ?n) (1.50 AS ?d) { ?s a time:Event }",
+        "ASK { ?s a time:Event }",
+        "CONSTRUCT { ?s a ?k } WHERE { ?s a ?k FILTER(isIRI(?s)) }",
+    ],
+)
+def test_both_engines_write_numbers_and_triples_alike(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    graph = example("pickplace/pickplace.bdd")
+    fast = run_query(graph, text)
+    assert fast.rows
+    monkeypatch.setattr("robbdd_tools.graph.query.find_spec", absent)
+    assert run_query(graph, text) == fast

@@ -1,14 +1,18 @@
-"""SPARQL over a graph: all prefixes are declared, nothing is fetched, rows come in a fixed order."""
+"""SPARQL over a graph: all prefixes are declared, nothing is fetched, rows come in a fixed order.
+
+rdflib reads the query and says where it is wrong; Oxigraph, where the extra ``fast-queries`` is installed, answers it.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from decimal import Decimal
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.base.data import data_file, data_folder
-from robbdd_tools.graph.canonical import sort_text
 from robbdd_tools.graph.prefixes import bind_prefixes, user_prefixes
 from robbdd_tools.graph.vocabulary import expand
 
@@ -34,7 +38,7 @@ class BadQuery(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A node of a graph as plain data: ``kind`` is ``uri``, ``bnode`` or ``literal``."""
+    """A node of a graph as plain data: ``kind`` is ``uri``, ``bnode`` or ``literal``; plain text has no datatype."""
 
     kind: str
     value: str
@@ -62,9 +66,10 @@ def run_query(graph: Graph, text: str) -> Rows:
     prefixes = bind_prefixes(Graph(bind_namespaces="none"), user_prefixes(graph))
     known = {**_MORE_PREFIXES, **prefixes}
     query = _prepared(text, known)
+    engine = _fast_copy(graph)
     try:
         # rdflib's results are only loosely typed.
-        result = cast(Any, graph.query(query))
+        result = cast(Any, graph.query(query) if engine is graph else engine.query(text, initNs=known))
         if result.type == "ASK":
             truth = Term("literal", str(bool(result.askAnswer)).lower(), expand("xsd:boolean"))
             return Rows(("answer",), ((truth,),), known)
@@ -72,10 +77,11 @@ def run_query(graph: Graph, text: str) -> Rows:
         rows = cast("list[tuple[Node | None, ...]]", list(result if is_select else result.graph))
     except Exception as error:  # evaluation raises whatever a function of the query runs into
         raise BadQuery(f"the query cannot be answered: {error}") from error
+    terms = [tuple(map(_term, row)) for row in rows]
     if not any(part.name == "OrderBy" for part in _parts(query.algebra)):
-        rows = sorted(rows, key=_row_order)
+        terms.sort(key=_row_order)
     columns = tuple(str(name) for name in result.vars) if is_select else ("subject", "predicate", "object")
-    return Rows(columns, tuple(tuple(map(_term, row)) for row in rows), known)
+    return Rows(columns, tuple(terms), known)
 
 
 def ready_queries() -> dict[str, str]:
@@ -89,6 +95,17 @@ def ready_query(name: str) -> str | None:
     if name not in ready_queries():
         return None
     return data_file("metamodels", f"{FOLDER}/{name}.rq").read_text(encoding="utf-8")
+
+
+def _fast_copy(graph: Graph) -> Graph:
+    """Return a copy that Oxigraph answers for; the graph itself where that is not installed."""
+    from rdflib import Graph
+
+    if find_spec("oxrdflib") is None:
+        return graph
+    copy = Graph(store="Oxigraph", bind_namespaces="none")
+    copy.addN((*triple, copy) for triple in graph)
+    return copy
 
 
 def _prepared(text: str, prefixes: dict[str, str]) -> Any:
@@ -127,12 +144,22 @@ def _parts(algebra: Any) -> Iterator[Any]:
 
 
 def _term(node: Node | None) -> Term | None:
-    from rdflib import BNode, Literal
+    from rdflib import XSD, BNode, Literal
 
     if node is None or not isinstance(node, Literal):
         return None if node is None else Term("bnode" if isinstance(node, BNode) else "uri", str(node))
-    return Term("literal", str(node), str(node.datatype or ""), node.language or "")
+    datatype = "" if node.datatype == XSD.string else str(node.datatype or "")
+    return Term("literal", _lexical(node.value, str(node)), datatype, node.language or "")
 
 
-def _row_order(row: tuple[Node | None, ...]) -> tuple[tuple[str, str, str], ...]:
-    return tuple(("", "", "") if node is None else sort_text(node) for node in row)
+def _lexical(value: object, text: str) -> str:
+    """Return how a number is written, whichever engine computed it: 1.50 as 1.5; other text as it is."""
+    if isinstance(value, Decimal) and value.is_finite():
+        return format(value.normalize() if value else Decimal(0), "f")
+    return repr(value) if isinstance(value, float) else text
+
+
+def _row_order(row: tuple[Term | None, ...]) -> tuple[tuple[str, str, str, str], ...]:
+    return tuple(
+        ("", "", "", "") if term is None else (term.kind, term.value, term.datatype, term.language) for term in row
+    )
