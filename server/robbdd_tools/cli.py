@@ -134,16 +134,16 @@ def _take_results(parser: argparse.ArgumentParser) -> None:
 
 def _allow_hosts(*parsers: argparse.ArgumentParser) -> None:
     for parser in parsers:
-        text = "fetch JSON-LD contexts from this host, once; may be repeated"
+        text = "fetch JSON-LD contexts from this host, once; may be repeated (always: the setting context-hosts)"
         parser.add_argument("--allow-host", metavar="HOST", action="append", help=text)
 
 
 def _fetch_contexts(options: argparse.Namespace) -> int:
-    if not getattr(options, "allow_host", None):
+    if "allow_host" not in options:
         return OK
     from robbdd_tools.commands.models import fetch_contexts
 
-    failure = fetch_contexts(getattr(options, "paths", None) or [options.path], options.allow_host)
+    failure = fetch_contexts(getattr(options, "paths", None) or [options.path], options.allow_host or ())
     if failure is None:
         return OK
     print(failure, file=sys.stderr)

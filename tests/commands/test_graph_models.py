@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
+import threading
+from collections.abc import Iterator
+from functools import partial
+from http.server import HTTPServer, SimpleHTTPRequestHandler
 from pathlib import Path
 
 import pytest
@@ -63,6 +68,50 @@ def test_a_context_that_may_not_be_fetched_ends_the_command(tmp_path: Path) -> N
     done = robbdd("check", "m.json", "--allow-host", "example.com", folder=tmp_path)
     assert done.returncode == 2
     assert "robbdd: m.json: the context 'https://example.org/c.json' is not fetched" in done.stderr
+
+
+@pytest.fixture
+def address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """A server on this machine that hands out a context, and a cache of its own."""
+    (tmp_path / "served").mkdir()
+    (tmp_path / "served" / "c.json").write_text('{"@context": {"ex": "https://example.org/"}}', encoding="utf-8")
+    monkeypatch.setenv("ROBBDD_CACHE", str(tmp_path / "cache"))
+    handler = partial(SimpleHTTPRequestHandler, directory=tmp_path / "served")
+    server = HTTPServer(("127.0.0.1", 0), handler)
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+@pytest.mark.parametrize(
+    ("config", "text", "allowed"),
+    [
+        ("robbdd.toml", 'context-hosts = ["127.0.0.1"]', True),
+        ("pyproject.toml", '[tool.robbdd]\ncontext-hosts = ["localhost", "127.0.0.1"]', True),
+        ("robbdd.toml", 'context-hosts = ["example.org"]', False),
+        ("pyproject.toml", '[tool.other]\ncontext-hosts = ["127.0.0.1"]', False),
+    ],
+)
+def test_a_projects_settings_allow_hosts_of_contexts(
+    tmp_path: Path, address: str, config: str, text: str, allowed: bool
+) -> None:
+    (tmp_path / config).write_text(text, encoding="utf-8")
+    model = {"@context": f"{address}/c.json", "@id": "ex:a", "@type": "ex:b"}
+    (tmp_path / "m.json").write_text(json.dumps(model), encoding="utf-8")
+    done = robbdd("check", "m.json", folder=tmp_path)
+    assert ("is not fetched" not in done.stdout + done.stderr) == allowed
+    assert (tmp_path / "cache").exists() == allowed
+
+
+def test_a_wrong_setting_of_hosts_is_told_at_its_place(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text('[tool.robbdd]\ncontext-hosts = "a.org"\n', encoding="utf-8")
+    (tmp_path / "m.json").write_text("{}", encoding="utf-8")
+    done = robbdd("check", "m.json", folder=tmp_path)
+    assert done.returncode == 2
+    assert "pyproject.toml:2:1: error: 'context-hosts' is a list of host names" in done.stderr
 
 
 @pytest.mark.physics

@@ -41,10 +41,11 @@ def project(tmp_path: Path) -> Path:
 
 
 def check(folder: Path) -> list[Diagnostic]:
+    """Return what is found, without the remark on catalog models, which every scene without a .scenex has."""
     uri = (folder / "models" / "main.bdd").as_uri()
     loaded = Project()
     loaded.load(uri)
-    return all_diagnostics(loaded.snapshot(), uri)
+    return [found for found in all_diagnostics(loaded.snapshot(), uri) if found.code != "catalog-models"]
 
 
 def words(folder: Path) -> list[tuple[str, str, str]]:

@@ -65,19 +65,34 @@ def not_a_model(paths: Iterable[Path]) -> str | None:
 def fetch_contexts(paths: Iterable[Path], hosts: Iterable[str]) -> str | None:
     """Fetch the JSON-LD contexts of models from hosts that the user allows; returns what to say when one fails.
 
-    What was fetched is kept, so that reading the models later needs no network.
+    Allowed are ``hosts`` and those of the setting ``context-hosts`` of a model's project. What was fetched is kept, so
+    that reading the models later needs no network.
     """
+    allowed = frozenset(hosts)
+    for path in paths:
+        if graph_format(path.name) == "json-ld":
+            failure = _fetch(path, allowed)
+            if failure is not None:
+                return failure
+    return None
+
+
+def _fetch(path: Path, hosts: frozenset[str]) -> str | None:
+    from robbdd_tools.graph.configuration import nearest_setting
     from robbdd_tools.graph.contexts import ContextLoader
     from robbdd_tools.graph.serialize import UnreadableGraph, parse
 
-    loader = ContextLoader(frozenset(hosts))
-    for path in paths:
-        text = read_text(path) if graph_format(path.name) == "json-ld" else None
-        if isinstance(text, str):
-            try:
-                parse(text, "json-ld", path_to_uri(path), loader)
-            except UnreadableGraph as error:
-                return f"robbdd: {path}: {error}"
+    setting = nearest_setting(path_to_uri(path), "context-hosts", 'a list of host names, such as ["example.org"]')
+    for fault in setting.faults if setting else ():
+        return f"{_place(Project().snapshot(), fault.uri, fault.span)}: error: {fault.message} [{fault.code}]"
+    allowed = hosts.union(setting.values if setting else ())
+    text = read_text(path)
+    if not allowed or not isinstance(text, str):
+        return None
+    try:
+        parse(text, "json-ld", path_to_uri(path), ContextLoader(allowed))
+    except UnreadableGraph as error:
+        return f"robbdd: {path}: {error}"
     return None
 
 

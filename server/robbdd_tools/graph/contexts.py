@@ -80,6 +80,7 @@ class ContextLoader:
         if urlsplit(url).scheme not in ("http", "https") or host not in self.hosts:
             raise UnknownContext(
                 f"the context '{url}' is not fetched: allow it once with '--allow-host {host}', "
+                f"or in the project's settings with 'context-hosts = [\"{host}\"]', "
                 "or write the context into the document itself"
             )
 

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
 from robbdd_tools.base.document import Document, Span
-from robbdd_tools.base.files import Unreadable, path_to_uri, read_text, uri_to_path
+from robbdd_tools.base.files import Unreadable, path_to_uri, read_text
+from robbdd_tools.graph.configuration import nearest_setting
 from robbdd_tools.graph.foreign import graph_places
-from robbdd_tools.graph.libraries import json_object
 from robbdd_tools.graph.serialize import UnreadableGraph, parse
 
 if TYPE_CHECKING:
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.source_map import Location, SourceMap
 
 _SERVICE = re.compile(r"\bSERVICE\b", re.IGNORECASE)
-_LINE_COLUMN = re.compile(r"\(at line (\d+), column (\d+)\)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,43 +80,11 @@ def project_shapes(uri: str, editor: EditorShapes | None = None) -> ProjectShape
 
 
 def _nearest(uri: str) -> ProjectShapes:
-    path = uri_to_path(uri)
-    for folder in path.parents if path is not None else ():
-        for name in ("robbdd.toml", "pyproject.toml"):
-            file = folder / name
-            if file.is_file():
-                found = _configured(file)
-                if found is not None:
-                    return found
-    return ProjectShapes()
-
-
-def _configured(file: Path) -> ProjectShapes | None:
-    """Return what one configuration says; ``None`` when it says nothing of shapes."""
-    text = read_text(file)
-    if isinstance(text, Unreadable):
-        return ProjectShapes((), (_fault(file, 0, "config", text.reason),))
-    try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        if file.name == "pyproject.toml" and "tool.robbdd" not in text:
-            return None
-        return ProjectShapes((), (_fault(file, _toml_offset(text, str(error)), "config", f"no TOML: {error}"),))
-    if file.name == "pyproject.toml":
-        table = json_object(json_object(table.get("tool")).get("robbdd"))
-    if "shapes" not in table:
-        return None
-    patterns: Any = table["shapes"]
-    if not isinstance(patterns, list) or not all(isinstance(one, str) for one in cast("list[Any]", patterns)):
-        message = "'shapes' is a list of file patterns, such as [\"shapes/*.ttl\"]"
-        return ProjectShapes((), (_fault(file, _key_offset(text), "config", message),))
-    return _matched(file, text, cast("list[str]", patterns))
-
-
-def _matched(config: Path, text: str, patterns: Sequence[str]) -> ProjectShapes:
-    paths, problems = _matches(config.parent, patterns)
-    faults = tuple(_fault(config, _key_offset(text), "config", problem) for problem in problems)
-    return ProjectShapes(tuple(shape_file(path) for path in paths), faults)
+    setting = nearest_setting(uri, "shapes", 'a list of file patterns, such as ["shapes/*.ttl"]')
+    if setting is None or setting.faults:
+        return ProjectShapes(faults=setting.faults if setting else ())
+    paths, problems = _matches(setting.file.parent, setting.values)
+    return ProjectShapes(tuple(map(shape_file, paths)), tuple(map(setting.fault, problems)))
 
 
 def _matches(folder: Path, patterns: Sequence[str]) -> tuple[list[Path], list[str]]:
@@ -199,17 +165,3 @@ def broken(file: ShapeFile, error: Exception) -> Diagnostic:
 
 def _fault(path: Path, offset: int, code: str, message: str) -> Diagnostic:
     return Diagnostic(path_to_uri(path), Span(offset, offset), Severity.ERROR, code, message)
-
-
-def _key_offset(text: str) -> int:
-    found = re.search(r"^\s*(shapes)\s*=", text, re.MULTILINE)
-    return found.start(1) if found else 0
-
-
-def _toml_offset(text: str, message: str) -> int:
-    found = _LINE_COLUMN.search(message)
-    if found is None:
-        return len(text)
-    document = Document("", 0, text)
-    line = min(int(found[1]), len(document.line_starts)) - 1
-    return document.line_starts[line] + int(found[2]) - 1
