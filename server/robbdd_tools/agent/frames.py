@@ -10,10 +10,11 @@ import numpy as np
 
 from robbdd_tools.agent.engine import mujoco
 from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.catalog.executable import law_fault
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.catalog.executable import Body, Law, Link, Origin, SceneInstance
+    from robbdd_tools.catalog.executable import Body, Link, Origin, SceneInstance
 
     Transform = tuple[FloatArray, FloatArray]
     """Position (3,) m and unit quaternion (4,), w first."""
@@ -102,37 +103,22 @@ class Frames:
         law = self._laws.get(iri)
         if law is None:
             raise SceneError(f"the distribution '{_short(iri)}' does not exist")
+        fault = law_fault(law)
+        if fault:
+            raise SceneError(f"{at(law.origin)}the distribution '{_short(law.iri)}' {fault}")
         digest = hashlib.sha256(f"{self._seed} {salt}".encode()).digest()
         dice = np.random.default_rng(int.from_bytes(digest[:8], "big"))
         match law.kind:
             case "uniform-rotation":
-                drawn = dice.standard_normal(4)
-                return drawn / np.linalg.norm(drawn)
+                turn = dice.standard_normal(4)
+                return turn / np.linalg.norm(turn)
             case "uniform":
-                if len(law.low) != len(law.high):
-                    raise _broken(law, "has bounds of different lengths")
                 return dice.uniform(law.low, law.high)
             case _:
-                return _normal(law, dice)
-
-
-def _normal(law: Law, dice: np.random.Generator) -> FloatArray:
-    size = len(law.mean)
-    if len(law.covariance) != size * size:
-        raise _broken(law, f"needs a covariance of {size} × {size} numbers")
-    covariance = np.array(law.covariance).reshape(size, size)
-    try:
-        if not np.allclose(covariance, covariance.T):
-            raise _broken(law, "has a covariance that is not symmetric")
-        factor = np.linalg.cholesky(covariance)
-    except np.linalg.LinAlgError:
-        raise _broken(law, "has a singular covariance") from None
-    drawn: FloatArray = np.array(law.mean) + factor @ dice.standard_normal(size)
-    return drawn
-
-
-def _broken(law: Law, why: str) -> SceneError:
-    return SceneError(f"{at(law.origin)}the distribution '{_short(law.iri)}' {why}")
+                size = len(law.mean)
+                factor = np.linalg.cholesky(np.array(law.covariance).reshape(size, size))
+                drawn: FloatArray = np.array(law.mean) + factor @ dice.standard_normal(size)
+                return drawn
 
 
 def _rotation(drawn: FloatArray, link: Link) -> FloatArray:

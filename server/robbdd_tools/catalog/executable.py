@@ -55,6 +55,36 @@ class Law:
     origin: Origin | None = None
 
 
+def spherical(deviation: float, size: int) -> tuple[float, ...]:
+    """Return the covariance of independent numbers of one standard deviation, rows behind one another."""
+    return tuple(deviation**2 if row == column else 0.0 for row in range(size) for column in range(size))
+
+
+def law_fault(law: Law) -> str:
+    """Return why a distribution cannot be drawn from, as what is said of it; empty when it can."""
+    # Reading a model should not wait for numpy.
+    import numpy as np
+
+    if law.kind == "uniform":
+        if len(law.low) != len(law.high):
+            return "has bounds of different lengths"
+        above = any(low > high for low, high in zip(law.low, law.high, strict=True))
+        return "has a lower bound above its upper one" if above else ""
+    if law.kind != "normal":
+        return ""
+    size = len(law.mean)
+    if len(law.covariance) != size * size:
+        return f"needs a covariance of {size} × {size} numbers"
+    covariance = np.array(law.covariance).reshape(size, size)
+    if not np.allclose(covariance, covariance.T):
+        return "has a covariance that is not symmetric"
+    try:
+        np.linalg.cholesky(covariance)
+    except np.linalg.LinAlgError:
+        return "has a singular covariance"
+    return ""
+
+
 @dataclass(frozen=True, slots=True)
 class Link:
     """What places a frame relative to another one, ``base`` (empty: the world).

@@ -12,6 +12,7 @@ from robbdd_tools.checks.catalog_entry import catalog_entry
 from robbdd_tools.checks.catalog_models import catalog_models
 from robbdd_tools.checks.contradictory_order import contradictory_order
 from robbdd_tools.checks.cyclic_import import cyclic_import
+from robbdd_tools.checks.distribution import distribution
 from robbdd_tools.checks.duplicate_iri import duplicate_iri
 from robbdd_tools.checks.empty_duration import empty_duration
 from robbdd_tools.checks.empty_set import empty_set
@@ -23,6 +24,7 @@ from robbdd_tools.checks.model_file import model_file
 from robbdd_tools.checks.namespace_iri import namespace_iri
 from robbdd_tools.checks.no_scenario import no_scenario
 from robbdd_tools.checks.not_in_scene import not_in_scene
+from robbdd_tools.checks.pose import pose
 from robbdd_tools.checks.published_form import published_form
 from robbdd_tools.checks.repeated_value import repeated_value
 from robbdd_tools.checks.row_width import row_width
@@ -41,12 +43,14 @@ if TYPE_CHECKING:
 
 DECLARATION_RULES = (
     contradictory_order,
+    distribution,
     empty_duration,
     empty_set,
     foreign_variable,
     many_scenarios,
     missing_value,
     not_in_scene,
+    pose,
     repeated_value,
     row_width,
     selection_size,

@@ -25,7 +25,15 @@ if TYPE_CHECKING:
 
 Rule = Callable[[Site], "Iterator[Diagnostic]"]
 KEPT_FILES = 256
-_RULED = (tree.ElementSet, tree.ConstantSet, tree.Template, tree.Story)
+_RULED = (
+    tree.ElementSet,
+    tree.ConstantSet,
+    tree.Template,
+    tree.Story,
+    tree.Distribution,
+    tree.KinematicTree,
+    tree.SceneInstance,
+)
 """Declarations that rules look at."""
 _TRANSPARENT = (tree.Scene, tree.Composition, tree.ConstantSet)
 """Declarations whose own references matter to those that refer to them."""

@@ -14,6 +14,7 @@ from robbdd_tools.catalog.executable import (
     Origin,
     Realisation,
     SceneInstance,
+    spherical,
 )
 from robbdd_tools.graph.model import Iri
 from robbdd_tools.graph.records import Incomplete, Records
@@ -141,8 +142,7 @@ class InstanceReader:
             mean, covariance = self._numbers(node, "rbw:mean"), self._numbers(node, "rbw:covariance")
             deviation = self._numbers(node, "rbw:standard-deviation")
             if deviation:
-                size = range(len(mean))
-                covariance = tuple(deviation[0] ** 2 if row == column else 0.0 for row in size for column in size)
+                covariance = spherical(deviation[0], len(mean))
             low, high = self._numbers(node, "rbw:lower"), self._numbers(node, "rbw:upper")
             yield Law(node, kind, low, high, mean, covariance, self._places(node))
 

@@ -1,0 +1,65 @@
+"""``distribution``: one that a run cannot draw from, or that is not of the dimension which it states.
+
+A warning: only what is placed by it cannot be run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.catalog.executable import Law, law_fault, spherical
+from robbdd_tools.checks.finding import finding
+from robbdd_tools.graph.rotations import numbers_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.elements import Site
+
+CODE = "distribution"
+
+
+def distribution(site: Site) -> Iterator[Diagnostic]:
+    """Report bounds and means of another dimension, else why nothing can be drawn."""
+    declared = site.tree
+    if not isinstance(declared, tree.Distribution) or not site.whole(declared):
+        return
+    match declared.law:
+        case tree.UniformRotation():
+            return
+        case tree.Uniform(dimension=dimension, lower=lower, upper=upper):
+            sized, blamed = (lower, upper), upper
+            law = Law("", "uniform", low=_numbers(lower), high=_numbers(upper))
+        case tree.Normal(dimension=dimension, mean=mean, spread=spread):
+            sized, blamed = (mean,), spread
+            law = Law("", "normal", mean=_numbers(mean), covariance=_covariance(spread, len(_numbers(mean))))
+    name, wanted = declared.name.text, dimension.value
+    wrong = next((part for part in sized if len(_numbers(part)) != wanted), None)
+    fault = law_fault(law)
+    if wrong is not None:
+        text = f"the distribution '{name}' has dimension {wanted}, but this has {len(_numbers(wrong))}"
+        yield finding(site, wrong, Severity.WARNING, CODE, text)
+    elif fault:
+        text = f"the distribution '{name}' {fault}: a run cannot draw from it"
+        yield finding(site, blamed, Severity.WARNING, CODE, text)
+
+
+def drawn(law: tree.Uniform | tree.UniformRotation | tree.Normal) -> int:
+    """Return how many numbers a distribution draws; a rotation has four."""
+    match law:
+        case tree.UniformRotation():
+            return 4
+        case tree.Uniform():
+            return len(_numbers(law.lower))
+        case tree.Normal():
+            return len(_numbers(law.mean))
+
+
+def _covariance(spread: tree.Vector | tree.Number, size: int) -> tuple[float, ...]:
+    return numbers_of(spread) if isinstance(spread, tree.Vector) else spherical(float(spread.value), size)
+
+
+def _numbers(value: tree.Vector | tree.Number) -> tuple[float, ...]:
+    return numbers_of(value) if isinstance(value, tree.Vector) else (float(value.value),)

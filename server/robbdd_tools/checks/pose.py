@@ -1,0 +1,67 @@
+"""``pose``: a position that has not three numbers, or an orientation that is no rotation.
+
+A warning: only what is placed by it cannot be run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.checks.distribution import drawn
+from robbdd_tools.checks.finding import finding
+from robbdd_tools.graph.rotations import numbers_of, rotation_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.elements import Site
+
+CODE = "pose"
+
+
+def pose(site: Site) -> Iterator[Diagnostic]:
+    """Report positions and orientations of poses that no run can place anything by."""
+    if not isinstance(site.tree, tree.SceneInstance | tree.KinematicTree):
+        return
+    for node in walk(site.tree):
+        if isinstance(node, tree.Pose) and site.whole(node):
+            yield from _position(site, node.position)
+            orientation = node.orientation
+            yield from _orientation(site, orientation if isinstance(orientation, tree.Sample) else orientation.value)
+
+
+def _position(site: Site, written: tree.Vector | tree.Sample) -> Iterator[Diagnostic]:
+    count = _count(site, written) if isinstance(written, tree.Sample) else len(numbers_of(written))
+    if count not in (3, None):
+        yield _told(site, written, f"a position needs 3 numbers, not {count}")
+
+
+def _orientation(site: Site, written: tree.Vector | tree.EulerAngles | tree.Axes | tree.Sample) -> Iterator[Diagnostic]:
+    match written:
+        case tree.Sample():
+            count = _count(site, written)
+            if count not in (3, 4, None):
+                yield _told(site, written, f"an orientation needs 3 angles or a rotation, not {count} numbers")
+        case _ if rotation_of(written) is not None:
+            return
+        case tree.Vector():
+            yield _told(site, written, "this is no rotation: a quaternion has 4 numbers, not all of them 0")
+        case tree.EulerAngles():
+            yield _told(site, written.angles, "this is no rotation: it has 3 angles")
+        case tree.Axes():
+            text = "these axes are no rotation: they must be of length 1, at right angles and right-handed"
+            yield _told(site, written, text)
+
+
+def _count(site: Site, sample: tree.Sample) -> int | None:
+    """Return how many numbers a sample has; ``None`` when its distribution is not known."""
+    found = site.follow(sample.distribution)
+    declared = None if found is None else found.tree
+    return drawn(declared.law) if isinstance(declared, tree.Distribution) else None
+
+
+def _told(site: Site, node: tree.Node, text: str) -> Diagnostic:
+    return finding(site, node, Severity.WARNING, CODE, text)
