@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from agent.worlds import BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, Steps, write_run
+from robbdd_tools.agent.world import build_world
 from robbdd_tools.run.protocol import (
     MANIFEST,
     ClauseJudged,
@@ -144,6 +145,14 @@ def test_a_scene_without_models_is_unknown_and_the_next_scenario_runs(
 def test_a_scenario_reports_its_times(found: list[RunMessage]) -> None:
     first = next(message for message in found if isinstance(message, ScenarioFinished))
     assert first.simulated > first.wall > first.stepping > 0
+
+
+def test_a_scenario_reports_how_many_places_were_drawn_again(tmp_path: Path) -> None:
+    crowd = replace(SCENE, objects=(*SCENE.objects, *(f"env:ball{number}" for number in range(2, 12))))
+    (spec,) = write_run(tmp_path, [Steps(STEPS[:1], crowd)])
+    done = agent(tmp_path)
+    (finished,) = [message for message in messages(done.stdout) if isinstance(message, ScenarioFinished)]
+    assert finished.resampled == build_world(spec.scene, spec.seed).resampled > 0
 
 
 def test_plain_behave_gives_the_same_verdicts(folder: Path, specs: tuple[ScenarioSpec, ...]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kit import schema_errors
+from robbdd_tools.commands.progress import Display
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.protocol import (
     ClauseJudged,
@@ -56,6 +57,19 @@ def test_what_a_crash_leaves_open_is_unknown_and_nothing_is_lost() -> None:
         ("holds", ""),
         ("unknown", "the agent process ended unexpectedly"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("count", "words"), [(0, "s)"), (1, "; 1 initial place drawn again)"), (3, "places drawn again)")]
+)
+def test_a_run_tells_how_many_places_were_drawn_again(
+    count: int, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = results("holds", "holds")
+    found.apply(ScenarioFinished(0, 9.0, 1.0, 0.5, count))
+    assert found.as_json()["scenarios"][0]["resampled"] == count
+    Display(found).summary()
+    assert capsys.readouterr().out.rstrip().endswith(words)
 
 
 def test_results_follow_their_documented_schema() -> None:

@@ -160,8 +160,9 @@ class ScenarioRun:
             self._write_trace(execution, self._trace_file)
         simulated = execution.simulated if execution is not None else 0.0
         stepping = execution.stepping if execution is not None else 0.0
+        resampled = execution.simulation.world.resampled if execution is not None else 0
         wall = perf_counter() - self._began
-        self._channel.send(ScenarioFinished(self._index, round(simulated, 6), wall, stepping))
+        self._channel.send(ScenarioFinished(self._index, round(simulated, 6), wall, stepping, resampled))
 
     def _tell_ranges(self, execution: Execution) -> None:
         """Tell how far the margins varied in all that happened, for clauses that could not have failed."""

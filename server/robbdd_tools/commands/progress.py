@@ -93,10 +93,11 @@ class Display:
         counts = [f"{outcomes.count(outcome)} {_word(outcome)}" for outcome in Outcome]
         simulated = sum(scenario.finished.simulated for scenario in finished if scenario.finished)
         wall = sum(scenario.finished.wall for scenario in finished if scenario.finished)
-        total = self._total
+        resampled = sum(scenario.finished.resampled for scenario in finished if scenario.finished)
+        again = f"; {_counted(resampled, 'initial place')} drawn again" if resampled else ""
         self._console.print(
-            f"{total} scenario{'' if total == 1 else 's'}: {', '.join(counts)}"
-            f"  (seed {self._results.manifest.seed}; {simulated:.1f} s simulated in {wall:.1f} s)"
+            f"{_counted(self._total, 'scenario')}: {', '.join(counts)}"
+            f"  (seed {self._results.manifest.seed}; {simulated:.1f} s simulated in {wall:.1f} s{again})"
         )
 
     def _counts(self) -> str:
@@ -136,6 +137,10 @@ def _clause_line(judged: ClauseJudged, sentence: str, width: int) -> Text:
     if judged.reason and outcome is not Outcome.HOLDS:
         line.append(f"\n      {judged.reason}")
     return line
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def _word(outcome: Outcome) -> str:

@@ -174,12 +174,16 @@ class MarginRanges:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioFinished:
-    """All clauses of scenario ``index`` are judged; times in seconds (simulated, wall, wall inside mj_step)."""
+    """All clauses of scenario ``index`` are judged; times in seconds (simulated, wall, wall inside mj_step).
+
+    ``resampled`` counts the random places that were drawn again because they overlapped or were out of reach.
+    """
 
     index: int
     simulated: float
     wall: float
     stepping: float
+    resampled: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -111,6 +111,7 @@ class RunResults:
                 "execution": None if spec.execution is None else spec.execution.name,
                 "repetition": spec.repetition,
                 "duration": None if scenario.finished is None else scenario.finished.simulated,
+                "resampled": 0 if scenario.finished is None else scenario.finished.resampled,
                 "verdict": str(scenario.verdict),
                 "clauses": [
                     _clause(clause, scenario.judged.get(clause.line), vacuous.get(clause.iri, ""))
