@@ -65,6 +65,28 @@ def test_an_error_is_shown_with_its_place_and_code(folder: Path) -> None:
     )
 
 
+@pytest.mark.parametrize(("mark", "end"), [(b"", "\n"), (b"\xef\xbb\xbf", "\r\n")])
+def test_places_are_right_whatever_the_form_of_the_file(folder: Path, mark: bytes, end: str) -> None:
+    text = MODEL.replace("    ", "\t").replace('As A "operator"', 'As A "größer 部品 🤖"')
+    text = text.replace("Event (ns=t) start", "Event (ns=t) größe-部品\nEvent (ns=t) start")
+    text = text.replace("scene: <bench_scene>", "scene: <bench-scene>").replace(
+        "before <pick-start>", "before <größe-部>"
+    )
+    text = text.replace('So That "work', 'So Thot "work').rstrip()
+    (folder / "main.bdd").write_bytes(mark + text.replace("\n", end).encode())
+    shown = robbdd("check", "main.bdd", folder=folder).stdout.splitlines()
+    found = [line.split(": ")[0] for line in shown if ": error: " in line]
+    lines = text.split("\n")
+    expected = [
+        f"main.bdd:{number}:{line.index(word) + 1}"
+        for number, line in enumerate(lines, start=1)
+        for word in ("größe-部>", "Thot", "bench-scene>")
+        if word in line
+    ]
+    assert found == expected
+    assert len(found) == 3
+
+
 def test_diagnostics_as_json_follow_their_schema(folder: Path) -> None:
     (folder / "main.bdd").write_text(MODEL + "Event (ns=t) end\nEvnt\n", encoding="utf-8")
     done = robbdd("check", "--json", "main.bdd", folder=folder)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from checks.models import LINES
 from kit import MODEL, MODELS, SCENE, corpus, fixture
 from robbdd_tools.features.layout import lay_out
 from robbdd_tools.graph.build import build_graph
@@ -107,6 +108,50 @@ def essence(text: str) -> str:
 @given(st.text(alphabet=" \n\t{}()<>|\"'/,:=-.aGivenWhen", max_size=60))
 def test_any_text_keeps_its_words_and_settles_at_once(text: str) -> None:
     once = lay_out(text)
+    assert lay_out(once) == once
+    assert essence(once) == essence(text)
+
+
+TABLE = """                // before the header
+                | <fetch.part> | <fetch.robot> | <fetch.goal> |  // behind the header
+                // before the rule
+                |---|---|---|
+                | <parts.bolt> // in a cell
+                  | <arms.panda> // between cells |
+                  | { <places.tray_ws>, // in a list
+                      <places.bench_ws> }
+                |
+                // between rows
+                | <parts.nut> | <arms.ur10> | <places.tray_ws> | // behind a row
+"""
+WITH_TABLE = MODEL.replace(LINES, TABLE)
+GAPS = [found.end() for found in re.finditer(r"[\w\-]+|[^\w\s]", WITH_TABLE)]
+
+
+def test_comments_in_tables_stay_and_mean_nothing() -> None:
+    once = lay_out(WITH_TABLE)
+    assert lay_out(once) == once
+    assert essence(once) == essence(WITH_TABLE)
+    bare = re.sub(r"(?<!:)//.*", "", WITH_TABLE)
+    assert graph(once) == graph(WITH_TABLE) == graph(bare) == graph(lay_out(bare))
+
+
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from(GAPS),
+            st.sampled_from([0, 1, 4, 30]),
+            st.sampled_from(["", "// it's | a { note\n", " //\n", "\n", "\t", "\r\n", '"', "|", "}", "é🤖"]),
+        ),
+        max_size=6,
+    ),
+    st.sampled_from(["\n", "\r\n"]),
+)
+def test_a_damaged_model_keeps_its_words_and_settles_at_once(edits: list[tuple[int, int, str]], end: str) -> None:
+    text = WITH_TABLE
+    for place, length, piece in sorted(edits, reverse=True):
+        text = text[:place] + piece + text[place + length :]
+    once = lay_out(text.replace("\n", end))
     assert lay_out(once) == once
     assert essence(once) == essence(text)
 

@@ -6,9 +6,12 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.bench.models import long_story
@@ -20,7 +23,11 @@ from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.names.analysis import FileAnalysis
 from robbdd_tools.names.project import Project
 
-SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "340"))
+IN_CI = 340
+SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", IN_CI))
+FEWEST = 6
+"""Edits of a sequence, at least."""
+WORDS = re.compile(r"[\w\-]+|[^\w\s]")
 PIECES = (
     "",
     " ",
@@ -51,12 +58,39 @@ PIECES = (
 
 @dataclass(frozen=True)
 class Edit:
-    """Replace some text of one of the files, at a place given as a fraction of its length."""
+    """Something that a user does in one of the files, at a place given as a fraction of its length.
+
+    ``replace`` writes a text over some letters; ``delete`` and ``duplicate`` take the next words, as many as
+    ``length``; ``half`` leaves only the first ``length`` letters of the line; ``undo`` takes back the file's last edit.
+    """
 
     file: int
+    kind: str
     place: float
     length: int
     text: str
+
+    def apply(self, history: list[str]) -> str:
+        """Return the new text, which joins the history of the file's texts; undoing shortens it."""
+        if self.kind == "undo" and len(history) > 1:
+            history.pop()
+            return history[-1]
+        text = history[-1]
+        start = int(self.place * len(text))
+        match self.kind:
+            case "delete" | "duplicate":
+                words = WORDS.finditer(text, start)
+                spans = [found.span() for found in islice(words, min(self.length, 5))] or [(start, start)]
+                begin, end = spans[0][0], spans[-1][1]
+                piece = "" if self.kind == "delete" else f"{text[begin:end]} {text[begin:end]}"
+            case "half":
+                line = text.rfind("\n", 0, start) + 1
+                end = text.find("\n", start) if "\n" in text[start:] else len(text)
+                begin, piece = min(line + self.length, end), ""
+            case _:
+                begin, end, piece = start, start + self.length, self.text
+        history.append(text[:begin] + piece + text[end:])
+        return history[-1]
 
 
 def _texts() -> list[dict[str, str]]:
@@ -86,6 +120,7 @@ def foreign_pieces(draw: st.DrawFn) -> str:
 EDITS = st.builds(
     Edit,
     st.integers(0, 1),
+    st.sampled_from(["replace", "replace", "replace", "delete", "duplicate", "half", "undo"]),
     st.floats(0, 1),
     st.sampled_from([0, 0, 0, 1, 1, 2, 5, 20, 100, 400]),
     st.one_of(st.sampled_from(PIECES), foreign_pieces()),
@@ -107,7 +142,7 @@ def known(project: Project, uri: str) -> object:
 @settings(
     max_examples=SEQUENCES, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
-@given(st.sampled_from(TEXTS), st.lists(EDITS, min_size=4, max_size=16))
+@given(st.sampled_from(TEXTS), st.lists(EDITS, min_size=FEWEST, max_size=16))
 def test_an_edited_project_equals_a_fresh_one(texts: dict[str, str], edits: list[Edit]) -> None:
     folder = Path("/fuzz")
     files = {path_to_uri(folder / name): text for name, text in texts.items()}
@@ -115,16 +150,35 @@ def test_an_edited_project_equals_a_fresh_one(texts: dict[str, str], edits: list
     edited = Project()
     for uri, text in files.items():
         edited.open(uri, 0, text)
-    before = dict(files)
+    histories = {uri: [text] for uri, text in files.items()}
     for version, edit in enumerate(edits, start=1):
         uri = uris[edit.file % len(uris)]
-        text = files[uri]
-        start = int(edit.place * len(text))
-        files[uri] = text[:start] + edit.text + text[start + edit.length :]
+        files[uri] = edit.apply(histories[uri])
         _compare(edited, files, uri, version)
     for uri in uris:
-        files[uri] = before[uri]
+        files[uri] = histories[uri][0]
         _compare(edited, files, uri, len(edits) + 1)
+
+
+def test_there_are_enough_edits_without_asking_for_more() -> None:
+    assert IN_CI * FEWEST >= 2000
+
+
+@pytest.mark.parametrize(
+    ("kind", "length", "expected"),
+    [
+        ("replace", 3, "x\na +c d\n"),
+        ("delete", 2, "x\na  d\n"),
+        ("duplicate", 1, "x\na bb bb c d\n"),
+        ("half", 1, "x\na\n"),
+        ("undo", 0, "x\n"),
+    ],
+)
+def test_an_edit_is_what_a_user_does(kind: str, length: int, expected: str) -> None:
+    history = ["x\n", "x\na bb c d\n"]
+    edit = Edit(0, kind, 0.4, length, "+")
+    assert edit.apply(history) == expected
+    assert history[-1] == expected
 
 
 def _compare(edited: Project, files: dict[str, str], changed: str, version: int) -> None:

@@ -8,6 +8,7 @@ import pytest
 from kit import EVENTS, MODEL, SCENE, fixture
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.features.layout import lay_out
 from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.serialize import serialize
 from robbdd_tools.names.project import Project
@@ -53,6 +54,11 @@ def test_names_may_have_letters_of_any_script(name: str) -> None:
 
 def test_strings_may_hold_anything() -> None:
     assert graph(MODEL.replace('"parts fetched"', '"it\'s \\"größer\\" → 部品 🤖"')).count("🤖") == 1
+
+
+def test_a_string_of_several_lines_means_the_same_whatever_ends_them() -> None:
+    text = MODEL.replace('"parts fetched"', '"parts\n   fetched"')
+    assert graph(text) == graph(text.replace("\n", "\r\n")) == graph(lay_out(text.replace("\n", "\r\n")))
 
 
 def test_a_file_on_disk_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:

@@ -43,11 +43,15 @@ def definition(snapshot: Snapshot, uri: str, offset: int) -> tuple[str, Span] | 
 
 
 def _in_broken_text(snapshot: Snapshot, analysis: FileAnalysis, offset: int) -> tuple[Span, Definition] | None:
-    """Look a qualified name up by its text where the declaration around it has no tree."""
+    """Look a qualified name up by its text where it is missing from the tree of a broken declaration."""
     cursor = cursor_at(analysis, offset)
-    if cursor.quoted is not None or cursor.placed is None or cursor.placed.declaration.tree is not None:
+    if cursor.quoted is not None or cursor.placed is None:
         return None
     text = analysis.document.text
+    declaration = cursor.placed.declaration
+    is_reference = text.startswith("<", cursor.span.start - 1)
+    if declaration.tree is not None and not (declaration.faults and is_reference):
+        return None
     end = offset
     while end < len(text) and (text[end].isalnum() or text[end] in "_-."):
         end += 1

@@ -64,7 +64,8 @@ def _phrase_arguments(raw: RawNode, text: str) -> tuple[tuple[str, tree.Ref | tr
 
 
 def _text(raw: RawNode, span: Span, _: str) -> tree.Text:
-    value = re.sub(r"\\(.)", lambda match: _ESCAPES.get(match[1], match[1]), raw.raw[1:-1], flags=re.DOTALL)
+    written = re.sub(r"\r\n?", "\n", raw.raw[1:-1])  # a string means the same whatever ends the lines of its file
+    value = re.sub(r"\\(.)", lambda match: _ESCAPES.get(match[1], match[1]), written, flags=re.DOTALL)
     return tree.Text(span, value)
 
 

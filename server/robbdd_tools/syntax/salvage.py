@@ -12,7 +12,9 @@ from robbdd_tools.syntax.recover import HOLE
 _NAME = r"(?P<name>[^\W\d][\w\-]*)"
 _ARGUMENT = r"\(\s*ns\s*=\s*(?P<ns>[^\W\d][\w\-]*)\s*\)\s*"
 _TARGET = r"(?P<target>[^\W\d][\w\-]*(?:\.[^\W\d][\w\-]*)*)"
-_NAMED = rf"\s*(?:{_ARGUMENT})?{_NAME}"
+# What is left of an argument that lacks a sign or a word.
+_DAMAGED = r"(?:\(?[^(){}<>\n\"']*\)|\(\s*ns\s*=\s*[^\W\d][\w\-]*)\s*"
+_NAMED = rf"\s*(?:{_ARGUMENT}|{_DAMAGED})?{_NAME}"
 _HEADERS = (
     (re.compile(r"(?:similar\s+)?obj\s+set" + _NAMED), SymbolKind.OBJECT_SET),
     (re.compile(r"(?:similar\s+)?ws\s+set" + _NAMED), SymbolKind.WORKSPACE_SET),
