@@ -25,7 +25,20 @@ DEFECTS = (
     (MAIN, GOAL, "var <fetch.goal>: { <places.bench_ws>, 3 }", "3"),
 )
 """File, what is written there, what stands there instead, and the text that the finding must be on."""
-HARMLESS = ("unused", "no-scenario")
+SCENE_DEFECTS = (
+    ("{ object bolt, object nut }", "{ }", "parts", ()),
+    ("{ obj <furniture.tray> }", "{ }", "tray_comp", ()),
+    ("object nut", "object bolt", "bolt", ("bolt",)),
+    ("of ws <places.bench_ws>", "of ws <parts.nut>", "parts.nut", ("nut",)),
+    ("obj <furniture.tray>", "obj <arms.panda>", "arms.panda", ("panda",)),
+    ("ws comp <tray_comp> }\n", "ws <parts.nut> }\n", "parts.nut", ("nut",)),
+    ("{ obj set <parts>", "{ obj set <places>", "places", ("places",)),
+    ("agn set <arms> }", "agn set <parts> }", "parts", ("parts",)),
+    ("{ obj <furniture.tray> }", "{ obj <furniture.tray> ws <places.tray_ws> }", "places.tray_ws", ("tray_ws",)),
+    ("obj <furniture.bench>", "obj <bench>", "bench", ()),
+)
+"""What the imported scene says, what stands there instead, the text of the finding, those of its other ends."""
+HARMLESS = ("unused", "no-scenario", "catalog-models")
 """Codes that the sound model has as well."""
 
 
@@ -46,11 +59,11 @@ def planted(defect: int, number: int) -> dict[str, str]:
     return {**texts, f"{FOLDER}lab.scene": SCENE}
 
 
-def findings(texts: dict[str, str]) -> list[Diagnostic]:
+def findings(texts: dict[str, str], asked: str = MAIN) -> list[Diagnostic]:
     project = Project()
     for uri, text in texts.items():
         project.open(uri, 1, text)
-    return [one for one in all_diagnostics(project.snapshot(), MAIN) if not one.code.startswith(HARMLESS)]
+    return [one for one in all_diagnostics(project.snapshot(), asked) if not one.code.startswith(HARMLESS)]
 
 
 def test_nearly_all_planted_defects_are_told_once_on_the_token_that_causes_them() -> None:
@@ -70,3 +83,28 @@ def test_what_a_wrong_value_contradicts_is_a_related_place() -> None:
     for defect in values:
         (found,) = findings(planted(defect, 3))
         assert {place.uri for place in found.related} == {BASE}
+
+
+def test_defects_of_an_imported_scene_are_told_once_in_its_file_with_the_other_end_of_the_relation() -> None:
+    sound = {f"{FOLDER}lab.scene": SCENE, MAIN: EVENTS + TEMPLATE + STORY}
+    missed: list[tuple[str, list[Diagnostic]]] = []
+    for old, new, token, ends in SCENE_DEFECTS:
+        assert old in SCENE
+        texts = {**sound, f"{FOLDER}lab.scene": SCENE.replace(old, new, 1)}
+        found = [one for one in findings(texts) if one.uri != MAIN]
+        told = [
+            (
+                texts[one.uri][one.span.start : one.span.end],
+                tuple(texts[place.uri][place.span.start : place.span.end] for place in one.related),
+            )
+            for one in found
+        ]
+        if told != [(token, ends)]:
+            missed.append((new, found))
+    assert not missed
+
+
+def test_a_similar_set_of_no_members_is_told_once() -> None:
+    uri, text = f"{FOLDER}lab.scene", SCENE.replace("count: 3", "count: 0")
+    found = findings({uri: text}, uri)
+    assert [(one.code, text[one.span.start : one.span.end]) for one in found] == [("shacl-similar-count", "0")]

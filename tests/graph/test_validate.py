@@ -127,7 +127,6 @@ def test_a_composition_is_not_empty() -> None:
             "ws set (ns=env) places { workspace desk }\n"
             "comp (ns=env) bare of ws <places.desk> { }\n"
             "//            ^^^^ shacl-composition-contents write the object\n"
-            "//            ^^^^ shacl-scene-entries has no members\n"
         )
     )
 

@@ -31,7 +31,7 @@ def derive(graph: Graph) -> Derived:
         copy.add(triple)
     derived = Derived(copy, Records(graph))
     _add_words(derived)
-    _add_rows(derived)
+    _add_widths(derived)
     _add_sizes(derived)
     _add_enclosed(derived)
     for template in derived.records.instances("bdd:ScenarioTemplate"):
@@ -68,7 +68,7 @@ def _add_words(derived: Derived) -> None:
                 derived.add(clause, "rbw:time-kind", expand(kind))
 
 
-def _add_rows(derived: Derived) -> None:
+def _add_widths(derived: Derived) -> None:
     records = derived.records
     for table in records.instances("bdd:TableVariation"):
         columns = items_of(records, table, "bdd:variable-list")
@@ -78,6 +78,10 @@ def _add_rows(derived: Derived) -> None:
                 derived.add(table, "rbw:row", row)
                 derived.add(row, "rbw:length", len(cells))
                 derived.add(row, "rbw:columns", len(columns))
+    for product in records.instances("bdd:CartesianProductVariation"):
+        if records.all(product, "bdd:of-sets") and records.all(product, "bdd:variable-list"):
+            derived.add(product, "rbw:length", len(items_of(records, product, "bdd:of-sets")))
+            derived.add(product, "rbw:columns", len(items_of(records, product, "bdd:variable-list")))
 
 
 def _add_sizes(derived: Derived) -> None:
