@@ -47,4 +47,6 @@ def test_foreign_models_raise_no_false_alarm() -> None:
         project.load(uri)
     snapshot = project.snapshot()
     alarms = [entry for uri in uris for entry in all_diagnostics(snapshot, uri) if entry.severity <= Severity.WARNING]
-    assert alarms == []
+    # A configuration that only another simulator knows is worth a warning: here its scenarios stay unknown.
+    assert [entry for entry in alarms if entry.code != "setting"] == []
+    assert all(entry.severity is Severity.WARNING for entry in alarms)
