@@ -48,3 +48,20 @@ def test_a_broken_graph_and_a_wrong_name_are_refused(folder: Path) -> None:
     assert done.returncode == 2
     assert "broken.ttl:1:" in done.stderr
     assert not (folder / "model.bdd").exists()
+
+
+def test_what_no_scenario_uses_is_not_called_lost_where_the_scene_says_it(tmp_path: Path) -> None:
+    statements = [
+        "@prefix env: <https://secorolab.github.io/metamodels/environment#> .",
+        "@prefix rbw: <https://robbdd.org/metamodels/workbench#> .",
+        "@prefix ex: <https://example.org/m/> .",
+        "ex:cube a env:Object, ex:RigidBody . ex:table a env:Workspace . ex:tree a rbw:BehaviourTree .",
+    ]
+    (tmp_path / "m.ttl").write_text("\n".join(statements), encoding="utf-8")
+    done = robbdd("import", "m.ttl", "-o", "n.bdd", folder=tmp_path)
+    assert done.returncode == 0
+    assert sorted(line.partition("cannot say: ")[2] for line in done.stderr.splitlines()) == [
+        "ex:cube a ex:RigidBody [lost]",
+        "ex:tree a rbw:BehaviourTree [lost]",
+    ]
+    assert "object cube" in (tmp_path / "n.scene").read_text(encoding="utf-8")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.built import BuiltGraph
     from robbdd_tools.graph.losses import Losses
     from robbdd_tools.graph.text import ModelText
+
+_MODEL = "model.bdd"
 
 
 def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
@@ -36,8 +39,11 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
         return FAILED
     graph = build_graph(snapshot, path_to_uri(path)).graph
     text = write_model(graph, scene.name)
-    again = graph_of(text, scene.name)
-    _report(path, text, compare(graph, again.graph, text.renamed))
+    losses, of_scene = (
+        compare(graph, graph_of(text, scene.name, asked).graph, text.renamed) for asked in (_MODEL, scene.name)
+    )
+    # What no scenario uses is in the scene's own graph alone.
+    _report(path, text, replace(losses, lost=tuple(line for line in losses.lost if line in set(of_scene.lost))))
     try:
         for file, content in ((output, text.criteria), (scene, text.scene)):
             if content:
@@ -49,15 +55,15 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     return OK
 
 
-def graph_of(text: ModelText, scene_name: str) -> BuiltGraph:
-    """Return the graph that a text gives, without writing it anywhere."""
+def graph_of(text: ModelText, scene_name: str, asked: str = _MODEL) -> BuiltGraph:
+    """Return the graph that a text gives, without writing it anywhere: of the model, or of its scene by name."""
     from robbdd_tools.graph.build import build_graph
 
     project = Project()
     folder = "file:///imported/"
-    project.open(f"{folder}model.bdd", 1, text.criteria)
+    project.open(folder + _MODEL, 1, text.criteria)
     project.open(folder + scene_name, 1, text.scene)
-    return build_graph(project.snapshot(), f"{folder}model.bdd")
+    return build_graph(project.snapshot(), folder + asked)
 
 
 def _report(path: Path, text: ModelText, losses: Losses) -> None:
