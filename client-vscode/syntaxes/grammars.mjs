@@ -133,13 +133,13 @@ const bdd = grammar("RobBDD", "source.robbdd", [
 ]);
 
 // A unit is one only behind a number, a vector or `unit:`; elsewhere `m` may well be a name.
-const UNIT = String.raw`(kg\*m\^2|rad/s|N\*m|mm|cm|m|rad|deg|kg|g|Hz|seconds)(?![\p{L}\p{N}_-])`;
+const UNIT = String.raw`(kg\*m\^2|rad/s|N\*m|mm|cm|m|rad|deg|kg|g|Hz|seconds|s)(?![\p{L}\p{N}_-])`;
 const units = [
   {
     match: `${NUMBER}\\s*${UNIT}`,
     captures: { 1: { name: "constant.numeric.robbdd" }, 2: { name: "keyword.other.unit.robbdd" } },
   },
-  { match: String.raw`\)\s*${UNIT}`, captures: { 1: { name: "keyword.other.unit.robbdd" } } },
+  { match: String.raw`(?<=[)>])\s*${UNIT}`, captures: { 1: { name: "keyword.other.unit.robbdd" } } },
   {
     match: String.raw`(?<![\p{L}\p{N}_-])(unit)\s*(:)\s*${UNIT}`,
     captures: {
@@ -166,13 +166,14 @@ const scenex = grammar("RobBDD Scene Instance", "source.robbdd.scenex", [
     ...["dimension", "lower", "upper", "mean", "covariance", "std-dev", "scene", "wrt", "xyz", "orientation", "xyzw"],
     ...["angles", "axes", "x", "y", "z", "root", "tip", "anchor", "parent", "child", "axis", "limits"],
     ...["offset", "polarity", "rate", "module", "attr", "frame", "mass", "position", "velocity", "effort"],
+    ...["tool", "actuator", "open", "close", "pads", "stroke", "home"],
   ),
   { match: String.raw`(?<![\p{L}\p{N}_-])(?:sys\s+path|ros\s+pkg|path)(?=\s*=)`, name: `${PROPERTY}.robbdd` },
   phrases(`${WORD}.distribution`, "uniform-rotation", "uniform", "normal", "sample"),
   phrases("constant.language", "mjcf", "urdf", "usd", "extrinsic", "intrinsic"),
   phrases(`${WORD}.rotation`, "quat", "euler", "direction-cosine"),
   phrases(DECLARE, "scene inst", "ktree inst", "ktree", "kgraph", "distrib", "model", "body", "joints", "frame"),
-  phrases(DECLARE, "pose", "inertia", "fixed", "revolute", "serial", "parallel", "camera", "force-torque", "imu"),
+  phrases(DECLARE, "pose", "inertia", "gripper", "fixed", "revolute", "serial", "parallel", "camera", "force-torque", "imu"),
   phrases(WORD, "actuation", "mimic", "offset", "limits", "polarity", "parent", "child", "as", "of", "to", "py"),
   phrases(WORD, "map body", "map tree", "catalog", "obj set", "agn set", "ws set", "obj", "agn", "ws"),
 ]);

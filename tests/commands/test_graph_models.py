@@ -47,6 +47,16 @@ def test_a_graph_gives_the_features_and_the_graph_of_its_model(folder: Path, tmp
     assert robbdd("graph", folder / name).stdout == robbdd("graph", PICKPLACE).stdout
 
 
+@pytest.mark.physics
+def test_a_graph_without_prefixes_is_executed_like_its_model(tmp_path: Path) -> None:
+    triples = robbdd("graph", PICKPLACE, "--format", "nt").stdout.splitlines(keepends=True)
+    (tmp_path / "m.ttl").write_text("".join(line for line in triples if "#prefix>" not in line), encoding="utf-8")
+    done = robbdd("run", "m.ttl", "--first", "1", "--no-store", folder=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1 scenario: 1 hold" in done.stdout
+    assert "✔ cube0 is located at left_ws after evt-place-end" in done.stdout
+
+
 def test_an_error_in_a_graph_keeps_it_from_becoming_features(folder: Path, tmp_path: Path) -> None:
     text = (folder / "m.ttl").read_text(encoding="utf-8").replace("bdd:of-template", "bdd:of-templat")
     (tmp_path / "wrong.ttl").write_text(text, encoding="utf-8")

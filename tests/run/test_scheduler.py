@@ -119,7 +119,7 @@ def test_a_step_that_raises_costs_no_other_step(tmp_path: Path) -> None:
     manifest = prepared(tmp_path / "run", [("given", "an error"), HOLDS], [HOLDS])
     results, _, _ = run(tmp_path / "run", manifest, Policy(1))
     assert verdicts(results) == ["unknown", "holds"]
-    assert [judged.verdict for judged in results.scenarios[0].judged.values()] == ["holds", "unknown"]
+    assert [judged.verdict for judged in results.scenarios[0].judged.values()] == ["unknown", "holds"]
 
 
 def test_steps_that_cannot_be_loaded_are_said_once(tmp_path: Path) -> None:

@@ -40,5 +40,20 @@ def user_prefixes(graph: Graph) -> dict[str, str]:
     return dict(sorted(stated.items()))
 
 
+def reading_prefixes(graph: Graph) -> dict[str, str]:
+    """Return the graph's prefixes, with invented ones for namespaces that have none: names are then short everywhere.
+
+    What a model's elements are called by itself decides which catalog model simulates them.
+    """
+    from rdflib import URIRef
+
+    prefixes = user_prefixes(graph)
+    for iri in sorted(str(subject) for subject in set(graph.subjects()) if isinstance(subject, URIRef)):
+        namespace = iri[: max(iri.rfind("#"), iri.rfind("/")) + 1]
+        if namespace and namespace != iri and not iri.startswith(tuple(prefixes.values())):
+            prefixes[prefix_for("ns", prefixes)] = namespace
+    return prefixes
+
+
 def _is_legal(sign: str) -> bool:
     return sign in "-_" or (sign.isascii() and sign.isalnum()) or (sign >= "\u00c0" and sign.isalpha())

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.model import AcceptanceModel, Clause, Iri, SceneModel, Story, Template, Value, Variant
-from robbdd_tools.graph.prefixes import user_prefixes
+from robbdd_tools.graph.prefixes import reading_prefixes
 from robbdd_tools.graph.read_clauses import ClauseReader, used_names
 from robbdd_tools.graph.read_executions import read_executions
 from robbdd_tools.graph.read_instances import InstanceReader, Places
@@ -36,7 +36,7 @@ def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
     reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
     every = tuple(reader.story(node) for node in stories)
     executions = read_executions(records, InstanceReader(records, sets, places), places)
-    return AcceptanceModel(every, kinds, sets, user_prefixes(graph), executions)
+    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions)
 
 
 def incomplete_variants(graph: Graph) -> dict[Iri, str]:
