@@ -17,8 +17,8 @@ NASTY = st.text(st.sampled_from("ab \"'\\|<>()[]{}#@:*\n\r\t\x0b\x85\u2028é"), 
 
 
 def quoted(value: str) -> str:
-    """A string literal of the language: backslashes escape."""
-    return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    """A string literal of the language: backslashes escape; a carriage return as such would be the end of a line."""
+    return '"' + value.replace("\\", "\\\\").replace('"', '\\"').replace("\r", "\\r") + '"'
 
 
 def unescaped(told: str) -> str:
