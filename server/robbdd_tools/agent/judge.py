@@ -19,7 +19,6 @@ from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.protocol import (
-    ClauseJudged,
     ClauseSpec,
     LogLine,
     Manifest,
@@ -30,6 +29,7 @@ from robbdd_tools.run.protocol import (
     ScenarioFinished,
     ScenarioSpec,
     ScenarioStarted,
+    judged,
     read_manifest,
     scenario_key,
     trace_file,
@@ -126,17 +126,7 @@ def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
     for index, spec in enumerate(manifest.scenarios):
         yield ScenarioStarted(index)
         for clause, verdict in traces.judged(spec):
-            yield ClauseJudged(
-                index,
-                clause.line,
-                str(verdict.outcome),
-                verdict.robustness,
-                verdict.unit,
-                verdict.at,
-                verdict.reason,
-                verdict.worst_at,
-                verdict.vacuous,
-            )
+            yield judged(index, clause.line, verdict)
         for line, found in traces.ranges(spec):
             yield MarginRanges(index, line, found)
         yield ScenarioFinished(index, 0.0, 0.0, 0.0)

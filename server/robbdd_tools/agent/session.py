@@ -30,6 +30,7 @@ from robbdd_tools.run.protocol import (
     MarginRanges,
     ScenarioFinished,
     ScenarioStarted,
+    judged,
     trace_file,
 )
 
@@ -200,19 +201,9 @@ class ScenarioRun:
             return
         if verdict.outcome is Outcome.VIOLATED and verdict.at is not None and self._execution is not None:
             self._moments.keep(self._index, line, verdict.at, self._execution.state_at(verdict.at))
-        judged = ClauseJudged(
-            self._index,
-            line,
-            str(verdict.outcome),
-            verdict.robustness,
-            verdict.unit,
-            verdict.at,
-            verdict.reason,
-            verdict.worst_at,
-            verdict.vacuous,
-        )
-        self._verdicts.append(judged)
-        self._channel.send(judged)
+        message = judged(self._index, line, verdict)
+        self._verdicts.append(message)
+        self._channel.send(message)
 
 
 class Session:

@@ -15,6 +15,7 @@ from typing import Any
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.policy import Policy
+from robbdd_tools.monitor.verdict import Verdict
 
 MANIFEST = "manifest.json"
 VIEWER = "ROBBDD_VIEWER"
@@ -224,6 +225,21 @@ _TYPES: dict[str, type[RunMessage]] = {
         RunFinished,
     )
 }
+
+
+def judged(index: int, line: int, verdict: Verdict) -> ClauseJudged:
+    """Return the message that a clause has a verdict."""
+    return ClauseJudged(
+        index,
+        line,
+        str(verdict.outcome),
+        verdict.robustness,
+        verdict.unit,
+        verdict.at,
+        verdict.reason,
+        verdict.worst_at,
+        verdict.vacuous,
+    )
 
 
 def encode(message: RunMessage | Execute) -> str:
