@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import pi, sqrt
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -242,11 +243,11 @@ def test_a_body_of_a_world_file_is_the_element_of_its_name(tmp_path: Path) -> No
     ],
 )
 def test_a_model_that_cannot_be_had_is_an_error(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: dict[str, object], words: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: dict[str, Any], words: str
 ) -> None:
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     thing = file(tmp_path, CUBE, BLOCK)
-    broken = replace(thing.models[0], **change)  # pyright: ignore[reportArgumentType]
+    broken = replace(thing.models[0], **change)
     with pytest.raises(SceneError, match=words):
         world(instance(link("x:g.cube.mid", (0, 0, 1)), elements=(replace(thing, models=(broken,)),)))
 
