@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 
 from robbdd_tools.graph.built import BuiltGraph
 from robbdd_tools.graph.derived import items_of
@@ -48,6 +50,10 @@ class Structure:
     clauses: list[Node] = field(default_factory=list[Node])
     events: list[Node] = field(default_factory=list[Node])
     links: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
+
+    def nodes(self) -> Iterator[Node]:
+        """Yield all nodes, by layer."""
+        return chain(self.stories, self.variants, self.templates, self.clauses, self.events)
 
 
 def structure_of(built: BuiltGraph) -> Structure:

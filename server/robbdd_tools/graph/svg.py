@@ -80,7 +80,9 @@ def draw(structure: Structure, source: Callable[[Location], str]) -> str:
             f'<rect width="{right}" height="{bottom:g}" fill="#ffffff"/>',
             *dict.fromkeys(drawn),
             *shapes,
+            '<g class="legend">',
             *_legend(bottom - 34),
+            "</g>",
             "</svg>",
             "",
         ]

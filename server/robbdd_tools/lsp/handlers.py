@@ -11,6 +11,7 @@ from robbdd_tools.features.fixes import imports_from_disk
 from robbdd_tools.lsp.commands import register_commands, source_actions, step_fixes
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.editing import refactorings, register_editing
+from robbdd_tools.lsp.graph_picture import register_graph
 from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.projects import register_projects
@@ -35,6 +36,7 @@ def create_server() -> RobbddServer:
     register_tokens(server)
     register_ways(server)
     register_preview(server)
+    register_graph(server)
     register_projects(server)
     return server
 

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.base.diagnostic import Diagnostic, Severity
-from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.gherkin.preview import MOST_SHOWN, Preview, preview
 from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.last_good import LastGood
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -20,35 +19,26 @@ if TYPE_CHECKING:
 PREVIEW = "robbdd/preview"
 
 
+NOTHING: dict[str, Any] = {"text": "", "lines": [], "shown": 0, "total": 0}
+
+
 class Previews:
     """Makes previews and keeps the last good one of each document and scenario."""
 
     def __init__(self) -> None:
-        self._kept: dict[tuple[str, str | None], dict[str, Any]] = {}
+        self._kept = LastGood()
+        self.forget = self._kept.forget
 
     def show(self, snapshot: Snapshot, convert: Converter, params: Any) -> dict[str, Any]:
         """Return the answer to a request; text with errors is answered with the last preview without."""
         uri = str(params.uri)
         scenario = getattr(params, "scenario", None)
         most = int(getattr(params, "most", None) or MOST_SHOWN)
-        error = _first_error(snapshot, uri)
-        if error is None:
-            made = _answer(snapshot, convert, preview(snapshot, uri, scenario, most))
-            self._kept[uri, scenario] = made
-            return {"uri": uri, "problem": None, **made, "text": _headed(made, _extent(made))}
-        kept = self._kept.get((uri, scenario), {"text": "", "lines": [], "shown": 0, "total": 0})
-        place = document_of(snapshot, error.uri).position(error.span.start)
-        problem = f"line {place.line + 1}: {error.message}"
-        if error.uri != uri:
-            problem = f"{error.uri.rsplit('/', 1)[-1]}, {problem}"
-        made_of = "this was made before" if kept["text"] else "there is nothing to show yet"
-        said = f"out of date: the model has an error ({' '.join(problem.split())}); {made_of}"
-        return {"uri": uri, "problem": problem, **kept, "text": _headed(kept, said)}
-
-    def forget(self, uri: str) -> None:
-        """Drop what is kept of a document."""
-        for key in [key for key in self._kept if key[0] == uri]:
-            del self._kept[key]
+        made, problem = self._kept.of(
+            snapshot, uri, scenario, lambda: _answer(snapshot, convert, preview(snapshot, uri, scenario, most))
+        )
+        made = made or NOTHING
+        return {"uri": uri, "problem": problem, **made, "text": _headed(made, _remark(made, problem))}
 
 
 def register_preview(server: RobbddServer) -> None:
@@ -59,14 +49,6 @@ def register_preview(server: RobbddServer) -> None:
     @server.feature(PREVIEW)
     async def show(ls: RobbddServer, params: Any) -> dict[str, Any]:
         return await ls.in_background(lambda snapshot: previews.show(snapshot, ls.convert, params))
-
-
-def _first_error(snapshot: Snapshot, uri: str) -> Diagnostic | None:
-    for file in snapshot.closure(uri) if snapshot.file(uri) is not None else ():
-        for found in fast_diagnostics(snapshot, file.document.uri):
-            if found.severity is Severity.ERROR:
-                return found
-    return None
 
 
 def _answer(snapshot: Snapshot, convert: Converter, made: Preview) -> dict[str, Any]:
@@ -87,7 +69,10 @@ def _answer(snapshot: Snapshot, convert: Converter, made: Preview) -> dict[str, 
     }
 
 
-def _extent(made: dict[str, Any]) -> str:
+def _remark(made: dict[str, Any], problem: str | None) -> str:
+    if problem is not None:
+        made_of = "this was made before" if made["text"] else "there is nothing to show yet"
+        return f"out of date: the model has an error ({' '.join(problem.split())}); {made_of}"
     if made["shown"] < made["total"]:
         return f"the first {made['shown']} of {made['total']} scenarios"
     return f"{made['total']} scenario{'' if made['total'] == 1 else 's'}"

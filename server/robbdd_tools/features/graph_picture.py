@@ -1,0 +1,80 @@
+"""The picture of a model's graph for reading beside its text, with the way from each node to its text and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.source_map import Location
+from robbdd_tools.names.clauses import clauses_in
+
+if TYPE_CHECKING:
+    from robbdd_tools.graph.structure import Node
+    from robbdd_tools.names.project import Snapshot
+
+MOST_DRAWN = 600
+"""Nodes in one picture; more are neither readable nor moved about smoothly."""
+
+
+@dataclass(frozen=True, slots=True)
+class GraphPicture:
+    """An SVG whose nodes carry ``data-iri``, and what it shows.
+
+    ``places`` are the texts that belong to a node: its declaration, and every reference to it. ``total`` counts the
+    nodes of the whole graph; ``root`` is what the shown ones follow from when that is not all.
+    """
+
+    svg: str
+    nodes: tuple[Node, ...]
+    places: tuple[tuple[str, Location], ...]
+    total: int
+    root: Node | None
+
+
+def graph_picture(
+    snapshot: Snapshot, uri: str, offset: int | None = None, before: str = "", most: int = MOST_DRAWN
+) -> GraphPicture:
+    """Draw the graph of a file without errors.
+
+    Of a graph of more than ``most`` nodes the story around ``offset`` is drawn, else the one with the node ``before``.
+    """
+    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.limits import limited
+    from robbdd_tools.graph.structure import structure_of
+    from robbdd_tools.graph.svg import draw
+
+    structure = structure_of(build_graph(snapshot, uri))
+    drawn = {node.iri for node in structure.nodes()}
+    places = [entry for entry in _places(snapshot, uri) if entry[0] in drawn]
+    part = limited(structure, most, [*_around(places, uri, offset), before])
+    nodes = tuple(part.structure.nodes())
+    shown = {node.iri for node in nodes}
+    svg = draw(part.structure, lambda location: location.uri.rpartition("/")[2])
+    return GraphPicture(svg, nodes, tuple(entry for entry in places if entry[0] in shown), len(drawn), part.root)
+
+
+def _places(snapshot: Snapshot, uri: str) -> Iterator[tuple[str, Location]]:
+    for file in snapshot.closure(uri):
+        name = file.document.uri
+        for definition in file.definitions.values():
+            if definition.iri is not None:
+                yield definition.iri, Location(name, definition.extent)
+        for clause in clauses_in(snapshot, name):
+            yield clause.iri, Location(name, clause.span)
+        for placed in file.declarations:
+            for ref, target in placed.targets.items():
+                if target.iri is not None:
+                    yield target.iri, Location(name, ref.span.shifted(placed.offset))
+
+
+def _around(places: Sequence[tuple[str, Location]], uri: str, offset: int | None) -> list[str]:
+    """Return the nodes whose text is around a place, innermost first."""
+    if offset is None:
+        return []
+    found = [
+        (location.span.end - location.span.start, iri)
+        for iri, location in places
+        if location.uri == uri and location.span.start <= offset <= location.span.end
+    ]
+    return [iri for _, iri in sorted(found)]

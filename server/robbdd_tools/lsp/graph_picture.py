@@ -1,0 +1,64 @@
+"""The request ``robbdd/graph``: the picture of a document's graph as it is being edited.
+
+Parameters: ``uri``; optionally ``position`` (of the cursor), ``iri`` (a node that was looked at) and ``most`` (nodes to
+draw). The answer is described by ``docs/schemas/graph.schema.json``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.features.graph_picture import MOST_DRAWN, GraphPicture, graph_picture
+from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.last_good import LastGood
+
+if TYPE_CHECKING:
+    from robbdd_tools.graph.source_map import Location
+    from robbdd_tools.graph.structure import Node
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.names.project import Snapshot
+
+GRAPH = "robbdd/graph"
+NOTHING: dict[str, Any] = {"svg": "", "nodes": [], "places": [], "shown": 0, "total": 0, "root": None}
+
+
+def register_graph(server: RobbddServer) -> None:
+    """Add the request to a server."""
+    kept = LastGood()
+    server.when_closed.append(kept.forget)
+
+    @server.feature(GRAPH)
+    async def show(ls: RobbddServer, params: Any) -> dict[str, Any]:
+        def answer(snapshot: Snapshot) -> dict[str, Any]:
+            uri = str(params.uri)
+            made, problem = kept.of(snapshot, uri, None, lambda: _drawn(snapshot, ls.convert, params))
+            return {"uri": uri, "problem": problem, **(made or NOTHING)}
+
+        return await ls.in_background(answer)
+
+
+def _drawn(snapshot: Snapshot, convert: Converter, params: Any) -> dict[str, Any]:
+    uri = str(params.uri)
+    position = getattr(params, "position", None)
+    offset = None if position is None else convert.offset(document_of(snapshot, uri), position)
+    before = str(getattr(params, "iri", None) or "")
+    most = int(getattr(params, "most", None) or MOST_DRAWN)
+    return _answer(snapshot, convert, graph_picture(snapshot, uri, offset, before, most))
+
+
+def _answer(snapshot: Snapshot, convert: Converter, made: GraphPicture) -> dict[str, Any]:
+    def place(location: Location) -> dict[str, Any]:
+        return {"uri": location.uri, "range": convert.range(document_of(snapshot, location.uri), location.span)}
+
+    def node(entry: Node) -> dict[str, Any]:
+        source = None if entry.location is None else place(entry.location)
+        return {"iri": entry.iri, "concept": entry.concept, "name": entry.name, "source": source}
+
+    return {
+        "svg": made.svg,
+        "nodes": [node(entry) for entry in made.nodes],
+        "places": [{"iri": iri, **place(location)} for iri, location in made.places],
+        "shown": len(made.nodes),
+        "total": made.total,
+        "root": None if made.root is None else node(made.root),
+    }

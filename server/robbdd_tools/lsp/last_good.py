@@ -1,0 +1,51 @@
+"""What a request shows of a model as it is being edited: the last that was made of a text without errors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.lsp.convert import document_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.project import Snapshot
+
+Json = dict[str, Any]
+
+
+class LastGood:
+    """Keeps an answer for each document and whatever else was asked for."""
+
+    def __init__(self) -> None:
+        self._kept: dict[str, dict[Hashable, Json]] = {}
+
+    def of(
+        self, snapshot: Snapshot, uri: str, key: Hashable, make: Callable[[], Json]
+    ) -> tuple[Json | None, str | None]:
+        """Return what ``make`` says of a text without errors, else what it said last, with the first error."""
+        error = _first_error(snapshot, uri)
+        kept = self._kept.setdefault(uri, {})
+        if error is None:
+            kept[key] = make()
+            return kept[key], None
+        return kept.get(key), _told(snapshot, uri, error)
+
+    def forget(self, uri: str) -> None:
+        """Drop what is kept of a document."""
+        self._kept.pop(uri, None)
+
+
+def _first_error(snapshot: Snapshot, uri: str) -> Diagnostic | None:
+    for file in snapshot.closure(uri) if snapshot.file(uri) is not None else ():
+        for found in fast_diagnostics(snapshot, file.document.uri):
+            if found.severity is Severity.ERROR:
+                return found
+    return None
+
+
+def _told(snapshot: Snapshot, uri: str, error: Diagnostic) -> str:
+    place = document_of(snapshot, error.uri).position(error.span.start)
+    problem = f"line {place.line + 1}: {error.message}"
+    return problem if error.uri == uri else f"{error.uri.rsplit('/', 1)[-1]}, {problem}"
