@@ -11,12 +11,13 @@ import {
   TransportKind,
 } from "vscode-languageclient/node";
 import { openFiles } from "./written";
-import { type Lookup, findServer } from "./lookup";
+import { type Lookup, OWN, findServer } from "./lookup";
 import type { ServerState } from "./presentation";
 import { RestartBudget } from "./restarts";
 import { isRunNotification } from "./runs/messages";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
+import type { Setup } from "./setup/setup";
 import { surroundings } from "./surroundings";
 
 export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
@@ -36,6 +37,7 @@ class DiscreetClient extends LanguageClient {
 export class Server implements vscode.Disposable {
   private client: LanguageClient | undefined;
   private lookup: Lookup | undefined;
+  private state: ServerState = { kind: "stopped" };
   /** Starts and stops one after the other, however fast they are asked for. */
   private pending: Promise<void> = Promise.resolve();
   private readonly files = vscode.workspace.createFileSystemWatcher(FILES);
@@ -43,6 +45,7 @@ export class Server implements vscode.Disposable {
   constructor(
     private readonly log: vscode.LogOutputChannel,
     private readonly runs: RunMonitor,
+    private readonly setup: Setup,
     private readonly onState: (state: ServerState) => void,
   ) {}
 
@@ -50,10 +53,11 @@ export class Server implements vscode.Disposable {
   restart(): Promise<void> {
     return this.enqueue(async () => {
       await this.shutDown();
-      const lookup = findServer(await surroundings(this.log));
+      const lookup = await this.find();
       this.lookup = lookup;
       if (lookup.found) {
         await this.start(lookup.command, lookup.origin);
+        this.setup.offerUpdate(lookup.command, () => void this.install());
       } else {
         this.reportMissing(lookup);
       }
@@ -62,7 +66,7 @@ export class Server implements vscode.Disposable {
 
   /** Restart only if the search would end elsewhere than the last time. */
   async restartIfMoved(): Promise<void> {
-    const lookup = findServer(await surroundings(this.log));
+    const lookup = await this.find();
     if (JSON.stringify(lookup) !== JSON.stringify(this.lookup)) {
       await this.restart();
     }
@@ -70,6 +74,54 @@ export class Server implements vscode.Disposable {
 
   stop(): Promise<void> {
     return this.enqueue(() => this.shutDown());
+  }
+
+  /** Install a server for this extension alone and start it; whether one runs then. */
+  async install(): Promise<boolean> {
+    await this.pending;
+    const lookup = this.lookup;
+    if (lookup?.found === true && lookup.origin !== OWN) {
+      const used = `The language server ${lookup.command} (from ${lookup.origin}) is in use`;
+      void vscode.window.showInformationMessage(`${used}; one of the extension's own would come after it.`);
+      return this.isRunning();
+    }
+    const before = this.state;
+    if (!this.isRunning()) {
+      this.publish({ kind: "installing" });
+    }
+    if (await this.setup.install()) {
+      await this.restart();
+    } else if (this.state.kind === "installing") {
+      this.publish(before);
+    }
+    return this.isRunning();
+  }
+
+  /** Whether a server runs once what is under way has ended; if none does, the user is asked what to do. */
+  async ready(): Promise<boolean> {
+    await this.pending;
+    if (this.state.kind === "missing") {
+      const modal = { modal: true, detail: "It takes a minute or two and needs the network." };
+      const message = "This needs the RobBDD language server, which is not installed.";
+      return (await vscode.window.showInformationMessage(message, modal, "Install")) === "Install" && this.install();
+    }
+    if (!this.isRunning()) {
+      this.complain("The RobBDD language server is not running.", {
+        "Show Log": () => {
+          this.log.show();
+        },
+        Restart: () => void this.restart(),
+      });
+    }
+    return this.isRunning();
+  }
+
+  private isRunning(): boolean {
+    return this.client?.state === State.Running;
+  }
+
+  private async find(): Promise<Lookup> {
+    return findServer(await surroundings(this.setup.installed()?.command, this.log));
   }
 
   /**
@@ -209,6 +261,7 @@ export class Server implements vscode.Disposable {
   }
 
   private publish(state: ServerState): void {
+    this.state = state;
     void vscode.commands.executeCommand("setContext", "robbdd.serverReady", state.kind === "ready");
     this.onState(state);
   }
@@ -233,21 +286,28 @@ export class Server implements vscode.Disposable {
     for (const path of lookup.tried) {
       this.log.info(`tried ${path}`);
     }
-    this.publish({ kind: "failed", problem: lookup.problem });
-    this.complain(lookup.problem, {
-      "Open Setting": openServerSetting,
-      "Try Again": () => void this.restart(),
-    });
+    this.publish({ kind: lookup.installable ? "missing" : "failed", problem: lookup.problem });
+    const buttons = { "Open Setting": openServerSetting, "Try Again": () => void this.restart() };
+    if (lookup.installable) {
+      const offer = { Install: () => void this.install(), ...buttons };
+      ask(vscode.window.showWarningMessage(lookup.problem, ...Object.keys(offer)), offer);
+    } else {
+      this.complain(lookup.problem, buttons);
+    }
   }
 
-  /** Show a problem with buttons. Nobody waits for the answer: a restart would wait for itself. */
   private complain(problem: string, buttons: Record<string, () => void>): void {
-    void vscode.window.showErrorMessage(problem, ...Object.keys(buttons)).then((choice) => {
-      if (choice !== undefined) {
-        buttons[choice]?.();
-      }
-    });
+    ask(vscode.window.showErrorMessage(problem, ...Object.keys(buttons)), buttons);
   }
+}
+
+/** Do what the button of a message says. Nobody waits for the answer: a restart would wait for itself. */
+function ask(answer: Thenable<string | undefined>, buttons: Record<string, () => void>): void {
+  void answer.then((choice) => {
+    if (choice !== undefined) {
+      buttons[choice]?.();
+    }
+  });
 }
 
 function hasUri(value: unknown): value is { readonly uri: string } {

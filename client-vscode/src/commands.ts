@@ -18,6 +18,7 @@ export function registerCommands(
     "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
     "robbdd.previewGherkin": (target) => withModel(target, (uri) => previews.open(vscode.Uri.parse(uri))),
     "robbdd.newProject": () => newProject(server),
+    "robbdd.installServer": () => server.install(),
     "robbdd.restartServer": () => server.restart(),
     "robbdd.showLog": () => {
       log.show();
@@ -49,7 +50,16 @@ async function chooseAction(): Promise<void> {
       label: "$(debug-restart) Restart Language Server",
       run: () => void vscode.commands.executeCommand("robbdd.restartServer"),
     },
-    { label: "$(gear) Open Setting robbdd.server.path", run: openServerSetting },
+    {
+      label: "$(cloud-download) Install Language Server",
+      run: () => void vscode.commands.executeCommand("robbdd.installServer"),
+    },
+    {
+      label: "$(gear) Open Setting robbdd.server.path",
+      run: () => {
+        openServerSetting();
+      },
+    },
   ];
   const choice = await vscode.window.showQuickPick(actions, { placeHolder: "RobBDD language server" });
   choice?.run();

@@ -5,6 +5,7 @@ import { registerCommands } from "./commands";
 import { PreviewView } from "./preview/view";
 import { onInterpreterChange } from "./python";
 import { RunMonitor } from "./runs/monitor";
+import { Setup } from "./setup/setup";
 import { StatusItem } from "./status";
 
 let server: Server | undefined;
@@ -15,7 +16,9 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   const runs = new RunMonitor((progress, summary) => {
     status.showRuns(progress, summary);
   });
-  const started = new Server(log, runs, (state) => {
+  const { version } = context.extension.packageJSON as { readonly version: string };
+  const setup = new Setup(context.globalStorageUri.fsPath, version, log);
+  const started = new Server(log, runs, setup, (state) => {
     status.showServer(state);
     if (state.kind === "ready") {
       previews.refreshSoon();

@@ -2,7 +2,6 @@
 import { posix, win32 } from "node:path";
 
 export const SERVER = "robbdd-lsp";
-export const INSTALL_COMMAND = "pip install robbdd-tools";
 
 /** Everything the lookup depends on; no other state is read. */
 export interface Surroundings {
@@ -16,17 +15,27 @@ export interface Surroundings {
   readonly python: string | undefined;
   /** The environment variable PATH. */
   readonly searchPath: string;
+  /** The program in the environment that the extension has made, if it has. */
+  readonly installed: string | undefined;
   readonly home: string;
   readonly platform: NodeJS.Platform;
   /** Whether a path names a file that can be executed. */
   readonly isExecutable: (path: string) => boolean;
 }
 
-export type Origin = "setting" | "Python environment" | ".venv of the workspace" | "PATH";
+/** Where a server comes from that the extension has installed. */
+export const OWN = "the extension's own environment";
+export type Origin = "setting" | "Python environment" | ".venv of the workspace" | "PATH" | typeof OWN;
 
 export type Lookup =
   | { readonly found: true; readonly command: string; readonly origin: Origin }
-  | { readonly found: false; readonly problem: string; readonly tried: readonly string[] };
+  | {
+      readonly found: false;
+      readonly problem: string;
+      readonly tried: readonly string[];
+      /** Whether installing the server would help. */
+      readonly installable: boolean;
+    };
 
 interface Candidate {
   readonly path: string;
@@ -34,8 +43,8 @@ interface Candidate {
 }
 
 /**
- * Find the server: the setting, the selected Python environment, `.venv` of a workspace folder, PATH; the first
- * that exists wins. A setting that names nothing is a problem of its own: falling through would start another
+ * Find the server: the setting, the selected Python environment, `.venv` of a workspace folder, PATH, the
+ * environment that the extension made; the first that exists wins. A setting that names nothing is a problem of its own: falling through would start another
  * server than the one the user asked for.
  */
 export function findServer(around: Surroundings): Lookup {
@@ -43,7 +52,9 @@ export function findServer(around: Surroundings): Lookup {
   if (setting !== "") {
     return fromSetting(setting, around);
   }
-  const candidates = [...fromWorkspace(around), ...fromSearchPath(around)];
+  const own: Candidate[] =
+    around.installed === undefined ? [] : [{ path: around.installed, origin: OWN }];
+  const candidates = [...fromWorkspace(around), ...fromSearchPath(around), ...own];
   const hit = candidates.find((candidate) => around.isExecutable(candidate.path));
   if (hit !== undefined) {
     return { found: true, command: hit.path, origin: hit.origin };
@@ -54,9 +65,10 @@ export function findServer(around: Surroundings): Lookup {
   return {
     found: false,
     problem:
-      `The RobBDD language server (${SERVER}) was not found. ` +
-      `Install it with "${INSTALL_COMMAND}" or set robbdd.server.path.${trust}`,
+      `The RobBDD language server (${SERVER}) was not found. It can be installed ` +
+      `into a Python environment that only this extension uses.${trust}`,
     tried: candidates.map((candidate) => candidate.path),
+    installable: true,
   };
 }
 
@@ -66,6 +78,7 @@ function fromSetting(setting: string, around: Surroundings): Lookup {
     found: false,
     problem: `The setting robbdd.server.path is "${setting}", ${reason}. Correct it, or clear it to search for ${SERVER}.`,
     tried: [path],
+    installable: false,
   });
   if (!pathsOf(around).isAbsolute(path)) {
     return wrong("which is not an absolute path");
@@ -105,14 +118,23 @@ function scriptsBeside(python: string, around: Surroundings): string {
   return beside ? folder : win32.join(folder, "Scripts");
 }
 
-/** A relative entry of PATH would mean the current folder, and so perhaps the workspace: it is left out. */
 function fromSearchPath(around: Surroundings): Candidate[] {
+  return searchFolders(around).map((folder) => ({
+    path: pathsOf(around).join(folder, program(around)),
+    origin: "PATH",
+  }));
+}
+
+/**
+ * The folders of PATH from which programs may be started. A relative entry would mean the current folder, and so
+ * perhaps the workspace: it is left out.
+ */
+export function searchFolders(around: Surroundings): string[] {
   const paths = pathsOf(around);
   return around.searchPath
     .split(paths.delimiter)
     .filter((entry) => paths.isAbsolute(entry))
-    .filter((entry) => around.trusted || !around.folders.some((folder) => contains(paths, folder, entry)))
-    .map((entry) => ({ path: paths.join(entry, program(around)), origin: "PATH" }));
+    .filter((entry) => around.trusted || !around.folders.some((folder) => contains(paths, folder, entry)));
 }
 
 function contains(paths: typeof posix, folder: string, path: string): boolean {

@@ -4,7 +4,10 @@ export type ServerState =
   | { readonly kind: "starting" }
   | { readonly kind: "ready"; readonly command: string }
   | { readonly kind: "stopped" }
-  | { readonly kind: "failed"; readonly problem: string };
+  | { readonly kind: "failed"; readonly problem: string }
+  /** It is nowhere, but could be installed. */
+  | { readonly kind: "missing"; readonly problem: string }
+  | { readonly kind: "installing" };
 
 export interface RunProgress {
   readonly finished: number;
@@ -14,9 +17,9 @@ export interface RunProgress {
 export interface Presentation {
   readonly text: string;
   readonly tooltip: string;
-  readonly severity: "normal" | "error";
+  readonly severity: "normal" | "warning" | "error";
   /** The command of a click. */
-  readonly command: "robbdd.showLog" | "robbdd.showRuns" | "robbdd.statusActions";
+  readonly command: "robbdd.showLog" | "robbdd.showRuns" | "robbdd.statusActions" | "robbdd.installServer";
 }
 
 /**
@@ -32,6 +35,13 @@ export function present(server: ServerState, runs: readonly RunProgress[], summa
       return item("$(circle-slash) RobBDD", "The RobBDD language server is stopped.", "robbdd.statusActions");
     case "failed":
       return { ...item("$(error) RobBDD", server.problem, "robbdd.statusActions"), severity: "error" };
+    case "missing":
+      return {
+        ...item("$(cloud-download) RobBDD", `${server.problem} Click to install it.`, "robbdd.installServer"),
+        severity: "warning",
+      };
+    case "installing":
+      return item("$(sync~spin) RobBDD", "The RobBDD language server is being installed.", "robbdd.showLog");
     case "ready":
       return runs.length > 0 ? running(runs) : idle(server.command, summary);
   }

@@ -10,9 +10,12 @@ interface Template {
 
 /** Ask for a template, a folder and a name, and open the first model of the project that the server writes there. */
 export async function newProject(server: Server): Promise<void> {
+  if (!(await server.ready())) {
+    return;
+  }
   const answer = await server.request("robbdd/templates", {});
   if (!Array.isArray(answer) || !answer.every(isTemplate)) {
-    void vscode.window.showWarningMessage("The RobBDD language server is not running: it has the templates.");
+    void vscode.window.showWarningMessage("The RobBDD language server knows no templates. Is it of this version?");
     return;
   }
   const template = await vscode.window.showQuickPick(

@@ -35,6 +35,6 @@ export class StatusItem implements vscode.Disposable {
     this.item.tooltip = tooltip;
     this.item.command = command;
     this.item.backgroundColor =
-      severity === "error" ? new vscode.ThemeColor("statusBarItem.errorBackground") : undefined;
+      severity === "normal" ? undefined : new vscode.ThemeColor(`statusBarItem.${severity}Background`);
   }
 }

@@ -5,7 +5,10 @@ import * as vscode from "vscode";
 import type { Surroundings } from "./lookup";
 import { selectedInterpreter } from "./python";
 
-export async function surroundings(log: vscode.LogOutputChannel): Promise<Surroundings> {
+export async function surroundings(
+  installed: string | undefined,
+  log: vscode.LogOutputChannel,
+): Promise<Surroundings> {
   const folders = vscode.workspace.workspaceFolders ?? [];
   const trusted = vscode.workspace.isTrusted;
   return {
@@ -14,6 +17,7 @@ export async function surroundings(log: vscode.LogOutputChannel): Promise<Surrou
     folders: folders.filter((folder) => folder.uri.scheme === "file").map((folder) => folder.uri.fsPath),
     python: trusted ? await selectedInterpreter(folders[0]?.uri, log) : undefined,
     searchPath: process.env["PATH"] ?? "",
+    installed,
     home: homedir(),
     platform: process.platform,
     isExecutable,

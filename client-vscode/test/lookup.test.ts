@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type Surroundings, findServer } from "../src/lookup";
+import { type Surroundings, findServer, searchFolders } from "../src/lookup";
 
 /** A Linux machine with one folder open, where exactly the given programs exist. */
 function machine(programs: readonly string[], changes: Partial<Surroundings> = {}): Surroundings {
@@ -10,6 +10,7 @@ function machine(programs: readonly string[], changes: Partial<Surroundings> = {
     folders: ["/srv/cell"],
     python: undefined,
     searchPath: "/usr/local/bin:/usr/bin",
+    installed: undefined,
     home: "/home/ada",
     platform: "linux",
     isExecutable: (path) => programs.includes(path),
@@ -83,10 +84,29 @@ test("an untrusted workspace still gets the server on PATH", () => {
   assert.equal(outcome(machine(EVERYWHERE, { trusted: false })), "/usr/bin/robbdd-lsp");
 });
 
-test("a missing server says how to install it and where it was looked for", () => {
+test("the server that the extension installed comes last, and serves an untrusted workspace, too", () => {
+  const own = "/home/ada/storage/server-1/bin/robbdd-lsp";
+  assert.equal(outcome(machine([own, ...EVERYWHERE], { installed: own })), "/srv/cell/.venv/bin/robbdd-lsp");
+  assert.equal(outcome(machine([own], { installed: own, trusted: false })), own);
+});
+
+test("programs of an untrusted workspace's folders of PATH are not used to install anything", () => {
+  const around = machine([], { trusted: false, searchPath: "/srv/cell/bin:bin:/usr/bin" });
+  assert.deepEqual(searchFolders(around), ["/usr/bin"]);
+});
+
+test("a missing server can be installed, a wrong setting must be corrected", () => {
+  const installable = (setting: string): boolean => {
+    const lookup = findServer(machine([], { setting }));
+    return !lookup.found && lookup.installable;
+  };
+  assert.deepEqual([installable(""), installable("/opt/gone")], [true, false]);
+});
+
+test("a missing server says what can be done and where it was looked for", () => {
   const lookup = findServer(machine([], { python: "/envs/robots/bin/python" }));
   assert.ok(!lookup.found);
-  assert.match(lookup.problem, /pip install robbdd-tools/);
+  assert.match(lookup.problem, /was not found\. It can be installed/);
   assert.deepEqual(lookup.tried, [
     "/envs/robots/bin/robbdd-lsp",
     "/srv/cell/.venv/bin/robbdd-lsp",

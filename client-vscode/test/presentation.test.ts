@@ -30,6 +30,11 @@ test("a failed server shows its problem and offers what to do", () => {
   assert.deepEqual([tooltip, severity, command], ["It is not there.", "error", "robbdd.statusActions"]);
 });
 
+test("a click on the item of a missing server installs it", () => {
+  const { tooltip, severity, command } = present({ kind: "missing", problem: "It is nowhere." }, [], "");
+  assert.deepEqual([tooltip, severity, command], ["It is nowhere. Click to install it.", "warning", "robbdd.installServer"]);
+});
+
 test("a server that is starting is not ready", () => {
   assert.match(present({ kind: "starting" }, [], "").text, /sync~spin/);
 });

@@ -1,0 +1,77 @@
+// The private environments of the server: folders below the extension's own storage. One counts from the moment its
+// record is written, so an installation that was cut short is never taken for a server.
+import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { isRecord } from "../values";
+
+const PREFIX = "server-";
+const RECORD = "robbdd.json";
+/** The latest one, and the one before: another window may still run it. */
+const KEPT = 2;
+
+export interface PrivateServer {
+  /** Path of the program. */
+  readonly command: string;
+  /** What was asked of the installer. */
+  readonly package: string;
+}
+
+interface Installed extends PrivateServer {
+  readonly folder: string;
+  /** ms since the epoch. */
+  readonly time: number;
+}
+
+/** Make a new folder for an environment. */
+export function freshFolder(storage: string): string {
+  mkdirSync(storage, { recursive: true });
+  return mkdtempSync(join(storage, PREFIX));
+}
+
+/** Record that the environment in a folder is complete, and delete those that nobody needs any more. */
+export function recordInstalled(storage: string, folder: string, server: PrivateServer): void {
+  writeFileSync(join(folder, RECORD), `${JSON.stringify(server)}\n`);
+  for (const old of installedIn(storage).slice(KEPT)) {
+    discard(old.folder);
+  }
+}
+
+/** The server to use: the latest that was asked for by this name, else the latest at all. */
+export function installedServer(storage: string, wanted: string): PrivateServer | undefined {
+  const all = installedIn(storage);
+  const best = all.find((one) => one.package === wanted) ?? all[0];
+  return best && { command: best.command, package: best.package };
+}
+
+export function discard(folder: string): void {
+  rmSync(folder, { recursive: true, force: true, maxRetries: 3 });
+}
+
+/** The complete ones, the latest first. */
+function installedIn(storage: string): Installed[] {
+  return namesIn(storage)
+    .filter((name) => name.startsWith(PREFIX))
+    .flatMap((name) => read(join(storage, name)))
+    .sort((one, other) => other.time - one.time);
+}
+
+function namesIn(folder: string): string[] {
+  try {
+    return readdirSync(folder);
+  } catch {
+    return [];
+  }
+}
+
+function read(folder: string): Installed[] {
+  const path = join(folder, RECORD);
+  try {
+    const record: unknown = JSON.parse(readFileSync(path, "utf8"));
+    const time = statSync(path).mtimeMs;
+    return isRecord(record) && typeof record["command"] === "string" && typeof record["package"] === "string"
+      ? [{ folder, time, command: record["command"], package: record["package"] }]
+      : [];
+  } catch {
+    return [];
+  }
+}

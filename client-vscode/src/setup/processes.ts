@@ -1,0 +1,74 @@
+// Starts the programs that install the server, and ends them with all that they started.
+import { type ChildProcess, spawn } from "node:child_process";
+import { createInterface } from "node:readline";
+
+export interface Ending {
+  /** 0 when it went well; undefined when the program could not be started or was ended. */
+  readonly code: number | undefined;
+  /** What it wrote to either stream. */
+  readonly lines: readonly string[];
+}
+
+/**
+ * Run a program to its end; each line goes to `onLine` as it comes.
+ *
+ * @param folder the folder to run in: never one of the workspace, whose files must not be taken for modules
+ */
+export function runProgram(
+  program: string,
+  args: readonly string[],
+  folder: string,
+  signal: AbortSignal,
+  onLine: (line: string) => void = () => undefined,
+): Promise<Ending> {
+  const lines: string[] = [];
+  const note = (line: string): void => {
+    lines.push(line);
+    onLine(line);
+  };
+  return new Promise((resolve) => {
+    // A group of its own, so that what an installer starts ends with it.
+    const child = spawn(program, args, {
+      cwd: folder,
+      detached: process.platform !== "win32",
+      stdio: ["ignore", "pipe", "pipe"],
+      windowsHide: true,
+      env: { ...process.env, PYTHONUNBUFFERED: "1", PYTHONIOENCODING: "utf-8" },
+    });
+    createInterface({ input: child.stdout }).on("line", note);
+    createInterface({ input: child.stderr }).on("line", note);
+    const end = (): void => {
+      endGroup(child);
+    };
+    signal.addEventListener("abort", end, { once: true });
+    if (signal.aborted) {
+      end();
+    }
+    const finish = (code: number | undefined): void => {
+      signal.removeEventListener("abort", end);
+      resolve({ code, lines });
+    };
+    child.once("error", (error) => {
+      note(error.message);
+      finish(undefined);
+    });
+    child.once("close", (code) => {
+      finish(code ?? undefined);
+    });
+  });
+}
+
+function endGroup(child: ChildProcess): void {
+  if (child.pid === undefined) {
+    return;
+  }
+  if (process.platform === "win32") {
+    spawn("taskkill", ["/pid", String(child.pid), "/t", "/f"], { windowsHide: true });
+    return;
+  }
+  try {
+    process.kill(-child.pid, "SIGKILL");
+  } catch {
+    // It ended by itself in the meantime.
+  }
+}

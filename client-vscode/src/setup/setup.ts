@@ -1,0 +1,115 @@
+// Installs the language server for the user: progress, cancelling, what went wrong, and when it is too old.
+import * as vscode from "vscode";
+import { searchFolders } from "../lookup";
+import { openServerSetting } from "../settings";
+import { surroundings } from "../surroundings";
+import { type PrivateServer, installedServer } from "./environments";
+import { InstallProblem, installServer } from "./installer";
+import { wantedPackage } from "./steps";
+
+export class Setup {
+  private installing: Promise<boolean> | undefined;
+  /** What an update was offered for: once in a window is enough. */
+  private offered: string | undefined;
+
+  /**
+   * @param storage the folder of the private environments
+   * @param version that of the extension, and so of its server
+   */
+  constructor(
+    private readonly storage: string,
+    private readonly version: string,
+    private readonly log: vscode.LogOutputChannel,
+  ) {}
+
+  /** The server in a private environment, if there is one. */
+  installed(): PrivateServer | undefined {
+    return installedServer(this.storage, this.wanted());
+  }
+
+  /** Install the server; false when that failed or was cancelled, of which the user has been told. */
+  install(): Promise<boolean> {
+    this.installing ??= this.installNow().finally(() => {
+      this.installing = undefined;
+    });
+    return this.installing;
+  }
+
+  /** Offer an update when the private server in use is not the one that belongs to this extension. */
+  offerUpdate(command: string, update: () => void): void {
+    const server = this.installed();
+    const wanted = this.wanted();
+    if (server?.command !== command || server.package === wanted || this.offered === wanted) {
+      return;
+    }
+    this.offered = wanted;
+    const message = `RobBDD: this version of the extension belongs to ${wanted}; ${server.package} is installed.`;
+    void vscode.window.showInformationMessage(message, "Update").then((choice) => {
+      if (choice !== undefined) {
+        update();
+      }
+    });
+  }
+
+  private wanted(): string {
+    return wantedPackage(vscode.workspace.getConfiguration("robbdd").get("server.package", ""), this.version);
+  }
+
+  private async installNow(): Promise<boolean> {
+    const title = "Installing the RobBDD language server";
+    const where = vscode.ProgressLocation.Notification;
+    const problem = await vscode.window.withProgress({ location: where, title, cancellable: true }, (progress, token) =>
+      this.attempt((message) => {
+        progress.report({ message });
+      }, token),
+    );
+    if (problem === undefined || problem === "cancelled") {
+      return problem === undefined;
+    }
+    this.log.error(problem);
+    const message = `The RobBDD language server could not be installed: ${problem}`;
+    const choice = await vscode.window.showErrorMessage(message, "Retry", "Show Log", "Open Setting");
+    if (choice === "Show Log") {
+      this.log.show();
+    } else if (choice === "Open Setting") {
+      openServerSetting("package");
+    }
+    return choice === "Retry" && this.installNow();
+  }
+
+  /** Install it once; returns what went wrong. */
+  private async attempt(
+    onProgress: (message: string) => void,
+    token: vscode.CancellationToken,
+  ): Promise<string | undefined> {
+    const stop = new AbortController();
+    token.onCancellationRequested(() => {
+      stop.abort();
+    });
+    try {
+      const around = await surroundings(undefined, this.log);
+      const { command } = await installServer({
+        storage: this.storage,
+        wanted: this.wanted(),
+        folders: searchFolders(around),
+        python: around.python,
+        signal: stop.signal,
+        onProgress,
+        onLine: (line) => {
+          this.log.info(line);
+        },
+      });
+      this.log.info(`Installed ${command}`);
+      return undefined;
+    } catch (error) {
+      if (stop.signal.aborted) {
+        this.log.info("The installation was cancelled.");
+        return "cancelled";
+      }
+      if (!(error instanceof InstallProblem)) {
+        this.log.error(error instanceof Error ? error : String(error));
+      }
+      return error instanceof Error ? error.message : String(error);
+    }
+  }
+}

@@ -1,0 +1,93 @@
+// What is done to install the server, as plain data: no file is touched and nothing is started here.
+import { posix, win32 } from "node:path";
+
+/** The distribution that brings the server, with what moving pictures need. */
+const DISTRIBUTION = "robbdd-tools[video]";
+export const OLDEST_PYTHON = [3, 11] as const;
+
+/** Something to start: a program with its arguments. */
+export interface Step {
+  /** What it does, for the user: "Installing …". */
+  readonly title: string;
+  readonly program: string;
+  readonly args: readonly string[];
+}
+
+/** What can make an environment: uv brings its own installer, Python has venv and pip. */
+export type Tool = { readonly kind: "uv"; readonly program: string } | { readonly kind: "python"; readonly program: string };
+
+/** What pip is asked for: the setting `robbdd.server.package`, or the server of the extension's own version. */
+export function wantedPackage(setting: string, version: string): string {
+  return setting.trim() || `${DISTRIBUTION}==${version}`;
+}
+
+/** Why a package cannot be asked for, or undefined. */
+export function packageProblem(name: string): string | undefined {
+  return name.startsWith("-")
+    ? `The setting robbdd.server.package is "${name}": name a package or the path of a wheel, not an option of pip.`
+    : undefined;
+}
+
+/** The steps that make an environment in a folder and install a package into it. */
+export function installation(tool: Tool, folder: string, wanted: string, platform: NodeJS.Platform): Step[] {
+  const python = programIn(folder, "python", platform);
+  const making = "Making a Python environment";
+  const installing = `Installing ${wanted}`;
+  if (tool.kind === "uv") {
+    const oldest = `>=${OLDEST_PYTHON.join(".")}`;
+    return [
+      { title: making, program: tool.program, args: ["venv", "--python", oldest, folder] },
+      { title: installing, program: tool.program, args: ["pip", "install", "--python", python, "--", wanted] },
+    ];
+  }
+  return [
+    { title: making, program: tool.program, args: ["-I", "-m", "venv", folder] },
+    {
+      title: installing,
+      program: python,
+      args: ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--progress-bar=off", "--", wanted],
+    },
+  ];
+}
+
+/** Where a program of an environment lies. */
+export function programIn(folder: string, name: string, platform: NodeJS.Platform): string {
+  return platform === "win32" ? win32.join(folder, "Scripts", `${name}.exe`) : posix.join(folder, "bin", name);
+}
+
+/** What an installer's line says about how far it is, shortened for a notification; undefined for the others. */
+export function progressOf(line: string): string | undefined {
+  const [, verb, rest] = /^\s*(Collecting|Downloading|Building|Prepared|Resolved|Installing)\s+(.*)$/.exec(line) ?? [];
+  if (verb === undefined || rest === undefined) {
+    return undefined;
+  }
+  if (verb === "Installing") {
+    return "Unpacking the packages";
+  }
+  const [name = ""] = rest.split(/[\s<>=!~;([]/, 1);
+  return /^(Prepared|Resolved)$/.test(verb) ? `${verb} ${rest}` : `${verb} ${name.split("/").at(-1) ?? name}`;
+}
+
+const KNOWN: readonly (readonly [RegExp, string])[] = [
+  [
+    /ensurepip is not available|No module named ensurepip/,
+    "this Python cannot make environments. On Debian and Ubuntu: sudo apt install python3-venv",
+  ],
+  [/No space left on device|os error 28/i, "the disk is full"],
+  [
+    /NewConnectionError|Name or service not known|name resolution|dns error|timed out|ReadTimeout/i,
+    "the package index cannot be reached. Is there a network, or a proxy to be set?",
+  ],
+  [/CERTIFICATE_VERIFY_FAILED|invalid peer certificate/i, "the package index's certificate is not trusted on this machine"],
+];
+
+/** Why a program failed, from what it wrote: a known cause in plain words, else its own last error. */
+export function failureOf(step: Step, lines: readonly string[]): string {
+  const known = KNOWN.find(([pattern]) => lines.some((line) => pattern.test(line)));
+  if (known !== undefined) {
+    return known[1];
+  }
+  const said = lines.map((line) => line.trim()).filter((line) => line !== "");
+  const error = said.find((line) => /^(error|×)/i.test(line)) ?? said.at(-1);
+  return error?.replace(/^(error:|×)\s*/i, "") ?? `${step.program} failed without saying why`;
+}

@@ -1,0 +1,147 @@
+import assert from "node:assert/strict";
+import { chmodSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, utimesSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { afterEach, beforeEach, test } from "node:test";
+import { freshFolder, installedServer, recordInstalled } from "../src/setup/environments";
+import { type Installation, InstallProblem, installServer } from "../src/setup/installer";
+import { failureOf, installation, packageProblem, progressOf, wantedPackage } from "../src/setup/steps";
+
+const STEP = { title: "Installing", program: "pip", args: [] };
+
+/** A Python that passes the probe, makes environments like itself and installs by writing `robbdd-lsp` there. */
+const PYTHON = `#!/bin/sh
+case "$*" in
+  *"-m venv"*) mkdir -p "$4/bin" && cp "$0" "$4/bin/python" ;;
+  *"-m pip"*) echo "Collecting textX<5,>=4.4"; pwd > "$(dirname "$0")/../cwd"; : > "$(dirname "$0")/robbdd-lsp" ;;
+esac
+`;
+
+let folder = "";
+beforeEach(() => {
+  folder = mkdtempSync(join(tmpdir(), "robbdd-setup-"));
+});
+afterEach(() => {
+  rmSync(folder, { recursive: true });
+});
+
+function program(name: string, script: string): void {
+  const path = join(folder, "bin", name);
+  mkdirSync(join(folder, "bin"), { recursive: true });
+  writeFileSync(path, script);
+  chmodSync(path, 0o755);
+}
+
+function install(changes: Partial<Installation> = {}): ReturnType<typeof installServer> {
+  return installServer({
+    storage: join(folder, "storage"),
+    wanted: "robbdd-tools==1.0",
+    folders: [join(folder, "bin")],
+    python: undefined,
+    signal: new AbortController().signal,
+    onProgress: () => undefined,
+    onLine: () => undefined,
+    ...changes,
+  });
+}
+
+async function problem(changes: Partial<Installation> = {}): Promise<string> {
+  try {
+    await install(changes);
+  } catch (error) {
+    assert.ok(error instanceof InstallProblem, String(error));
+    assert.deepEqual(readdirSync(join(folder, "storage")), [], "nothing is left of it");
+    return error.message;
+  }
+  throw new Error("it was installed");
+}
+
+test("without a setting the server of the extension's own version is wanted, with what moving pictures need", () => {
+  assert.equal(wantedPackage(" ", "1.2.3"), "robbdd-tools[video]==1.2.3");
+  assert.equal(wantedPackage("/srv/robbdd.whl", "1.2.3"), "/srv/robbdd.whl");
+});
+
+test("a package cannot be an option of the installer", () => {
+  assert.match(packageProblem("--index-url=http://elsewhere") ?? "", /not an option/);
+});
+
+test("uv makes the environment where it is there, else Python does", () => {
+  const shown = (kind: "uv" | "python") =>
+    installation({ kind, program: kind }, "/env", "robbdd", "linux").map(({ program, args }) => [program, ...args].join(" "));
+  assert.deepEqual(shown("uv"), ["uv venv --python >=3.11 /env", "uv pip install --python /env/bin/python -- robbdd"]);
+  assert.equal(shown("python")[0], "python -I -m venv /env");
+  assert.match(shown("python")[1] ?? "", /^\/env\/bin\/python -I -m pip install .* -- robbdd$/);
+});
+
+test("an installer's lines tell how far it is", () => {
+  assert.equal(progressOf("Collecting rdflib<8,>=7.6 (from robbdd-tools==0.1.0)"), "Collecting rdflib");
+  assert.equal(progressOf("  Downloading mujoco-4.0.0-cp311-manylinux.whl (6.8 MB)"), "Downloading mujoco-4.0.0-cp311-manylinux.whl");
+  assert.equal(progressOf("Installing collected packages: a, b, c"), "Unpacking the packages");
+  assert.equal(progressOf("Resolved 31 packages in 1.2s"), "Resolved 31 packages in 1.2s");
+  assert.equal(progressOf("Requirement already satisfied: numpy"), undefined);
+});
+
+test("a failure is told in plain words where its cause is known, else in the installer's own", () => {
+  assert.match(failureOf(STEP, ["The virtual environment was not created: ensurepip is not available."]), /python3-venv/);
+  assert.match(failureOf(STEP, ["OSError: [Errno 28] No space left on device"]), /disk is full/);
+  assert.match(failureOf(STEP, ["x NewConnectionError(...)", "ERROR: No matching distribution"]), /index cannot be reached/);
+  assert.equal(failureOf(STEP, ["Collecting x", "ERROR: No matching distribution found for x", ""]), "No matching distribution found for x");
+  assert.match(failureOf(STEP, []), /without saying why/);
+});
+
+test("the server is installed by the first Python that is new enough, away from the workspace's files", async () => {
+  program("python3", "#!/bin/sh\nexit 1\n");
+  program("python3.12", PYTHON);
+  const told: string[] = [];
+  const server = await install({ onProgress: (message) => told.push(message) });
+  assert.ok(existsSync(server.command));
+  assert.deepEqual(told, ["Looking for Python", "Making a Python environment", "Installing robbdd-tools==1.0", "Collecting textX"]);
+  assert.equal(readFileSync(join(server.command, "../../cwd"), "utf8").trim(), join(folder, "storage"));
+  assert.deepEqual(installedServer(join(folder, "storage"), "another"), server);
+});
+
+test("without a Python that is new enough it is said what to install", async () => {
+  program("python3", "#!/bin/sh\nexit 1\n");
+  assert.match(await problem(), /Neither uv nor Python 3\.11 or newer was found on PATH, only .*python3\. Install one/);
+});
+
+test("a package without the server is no server", async () => {
+  program("python3", PYTHON.replace("robbdd-lsp", "other"));
+  assert.match(await problem(), /brings no robbdd-lsp/);
+});
+
+test("what pip says about its failure is passed on", async () => {
+  program("python3", PYTHON.replace('echo "Collecting', 'echo "ERROR: no such version" >&2; exit 1; echo "'));
+  assert.equal(await problem(), "no such version");
+});
+
+test("a cancelled installation ends the installer with all that it started and leaves nothing", async () => {
+  const beat = join(folder, "beat");
+  program("python3", PYTHON.replace("pwd >", `(while :; do echo . >> "${beat}"; sleep 0.02; done) & wait; pwd >`));
+  const stop = new AbortController();
+  const onLine = (line: string): void => {
+    if (line.startsWith("Collecting")) {
+      stop.abort();
+    }
+  };
+  await assert.rejects(install({ signal: stop.signal, onLine }), { name: "AbortError" });
+  assert.deepEqual(readdirSync(join(folder, "storage")), []);
+});
+
+test("an environment counts from its record on; the latest two are kept and the one asked for is used", () => {
+  const storage = join(folder, "storage");
+  const record = (name: string, minute: number): string => {
+    const environment = freshFolder(storage);
+    recordInstalled(storage, environment, { command: join(environment, "robbdd-lsp"), package: name });
+    utimesSync(join(environment, "robbdd.json"), minute, minute * 60);
+    return environment;
+  };
+  freshFolder(storage); // cut short
+  assert.equal(installedServer(storage, "one"), undefined);
+  const one = record("one", 1);
+  const two = record("two", 2);
+  assert.equal(installedServer(storage, "one")?.package, "one");
+  assert.equal(installedServer(storage, "three")?.package, "two");
+  record("three", 3);
+  assert.deepEqual([existsSync(one), existsSync(two)], [false, true]);
+});
