@@ -19,11 +19,18 @@ class Background:
         self._project = Project()
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="background")
 
-    async def work(self, texts: Mapping[str, tuple[int, str]], work: Callable[[Snapshot], Result]) -> Result:
-        """Run ``work`` on the files on disk under the open ``texts`` (version and text by URI)."""
+    async def work(
+        self, texts: Mapping[str, tuple[int, str]], work: Callable[[Snapshot], Result], *unopened: str
+    ) -> Result:
+        """Run ``work`` on the files on disk under the open ``texts`` (version and text by URI).
+
+        The snapshot knows the open files, the ``unopened`` ones that are named, and what these import.
+        """
 
         def on_snapshot() -> Result:
             self._project.replace(texts)
+            for uri in unopened:
+                self._project.load(uri)
             return work(self._project.snapshot())
 
         return await asyncio.get_running_loop().run_in_executor(self._thread, on_snapshot)

@@ -44,6 +44,7 @@ def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage
             if clause is not None:
                 fields |= {
                     "clause": clause.iri,
+                    "position": results.scenarios[index].spec.clauses.index(clause),
                     "name": clause.name,
                     "role": clause.role,
                     "sentence": plain_sentence(clause.sentence),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -35,13 +35,17 @@ class ModelError(Exception):
 class RunOptions:
     """What a client asks for, everything but ``uri`` at will.
 
-    ``scenario`` is the name or IRI of a variant, ``variation`` the number of one of its scenarios; ``failed`` takes
-    those that did not hold the last time; ``record`` takes a picture of each violation.
+    ``scenario`` is the name or IRI of a variant, ``variation`` the number of one of its scenarios; ``only`` lists
+    what is wanted, each entry a ``variant`` (its IRI) and, if not all of them, the numbers of its scenarios as
+    ``variations``; ``failed`` takes those that did not hold the last time; ``record`` takes a picture of each
+    violation. ``token`` is what the run is called in its messages.
     """
 
     uri: str
     scenario: str | None = None
     variation: int | None = None
+    only: Sequence[Mapping[str, Any]] | None = None
+    token: str | None = None
     failed: bool = False
     record: bool = False
     where: str | None = None
@@ -57,18 +61,31 @@ class RunOptions:
         wrong = [name for name, value in known.items() if value is not None and not isinstance(value, _TYPES[name])]
         if wrong or "uri" not in known:
             raise ModelError(f"the command's argument has no usable '{(wrong or ['uri'])[0]}'")
+        if any("variant" not in entry for entry in known.get("only") or ()):
+            raise ModelError("the command's argument has no usable 'only'")
         return cls(**known)
 
     @property
     def is_whole(self) -> bool:
         """Whether all scenarios of the variants are run, so that older results of them mean nothing any more."""
-        return not self.failed and {self.variation, self.where, self.first, self.sample} == {None}
+        numbers = {self.variation, self.where, self.first, self.sample}
+        return not self.failed and numbers == {None} and set((self.choice() or {}).values()) <= {None}
+
+    def choice(self) -> dict[str, frozenset[int] | None] | None:
+        """Return the numbers of scenarios that are wanted by variant (``None``: all), ``None`` where ``only`` is."""
+        if self.only is None:
+            return None
+        return {
+            str(entry["variant"]): None if entry.get("variations") is None else frozenset(entry["variations"])
+            for entry in self.only
+        }
 
 
 _TYPES = {
-    **dict.fromkeys(("uri", "scenario", "where"), str),
+    **dict.fromkeys(("uri", "scenario", "where", "token"), str),
     **dict.fromkeys(("variation", "first", "sample", "seed"), int),
     **dict.fromkeys(("failed", "record"), bool),
+    "only": list,
 }
 
 
@@ -87,7 +104,14 @@ def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed
     """Return the plan of a run; ``failed`` are the scenarios that did not hold. Raises ``ModelError``."""
     model = feature_plan(snapshot, options.uri).model
     every = [variant for story in model.stories for variant in story.variants]
-    chosen = [variant for variant in every if _is_named(variant, options.scenario)]
+    choice = options.choice()
+    chosen = [
+        variant
+        for variant in every
+        if _is_named(variant, options.scenario) and (choice is None or variant.iri in choice)
+    ]
+    if not chosen and choice is not None:
+        raise ModelError("the model does not have these scenarios any more")
     if not chosen:
         raise ModelError(f"there is no scenario '{options.scenario}'")
     wanted = Wanted(options.where, options.first, options.sample, None, options.seed)
@@ -96,18 +120,23 @@ def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed
     except SelectionError as error:
         raise ModelError(str(error)) from None
 
-    def scenarios(variant: Variant) -> Iterable[Numbered]:
+    def is_wanted(variant: Variant, number: int) -> bool:
+        numbers = None if choice is None else choice[variant.iri]
         return (
-            numbered
-            for numbered in selected.scenarios(variant)
-            if options.variation in (None, numbered[0]) and (not options.failed or (variant.iri, numbered[0]) in failed)
+            options.variation in (None, number)
+            and (numbers is None or number in numbers)
+            and (not options.failed or (variant.iri, number) in failed)
         )
+
+    def scenarios(variant: Variant) -> Iterable[Numbered]:
+        return (numbered for numbered in selected.scenarios(variant) if is_wanted(variant, numbered[0]))
 
     if all(next(iter(scenarios(variant)), None) is None for variant in chosen):
         raise ModelError("no scenario failed" if options.failed else "no scenario fits the selection")
     variants = {variant.iri for variant in chosen}
     request = RunRequest(model, options.uri, options.seed, variants, scenarios)
-    return RunPlan(request, *_text(snapshot, convert, options.uri))
+    uris, places, rows = places_of(snapshot, convert, options.uri)
+    return RunPlan(request, uris, digests_of(snapshot, options.uri), places, rows)
 
 
 def feature_plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
@@ -130,9 +159,10 @@ def _is_named(variant: Variant, name: str | None) -> bool:
     return name is None or variant.iri == name or variant.iri.endswith((f"/{name}", f"#{name}"))
 
 
-def _text(
+def places_of(
     snapshot: Snapshot, convert: Converter, uri: str
-) -> tuple[tuple[str, ...], Digests, dict[str, types.Location], dict[Scenario, types.Location]]:
+) -> tuple[tuple[str, ...], dict[str, types.Location], dict[Scenario, types.Location]]:
+    """Return a file and what it imports, where clauses and variants stand in them, and where rows of tables do."""
     places: dict[str, types.Location] = {}
     rows: dict[Scenario, types.Location] = {}
     files = [file.document.uri for file in snapshot.closure(uri)]
@@ -143,4 +173,4 @@ def _text(
             places[variant.iri] = convert.location(snapshot, name, variant.definition.span)
             for number, row in enumerate(variant.rows, start=1):
                 rows[variant.iri, number] = convert.location(snapshot, name, row)
-    return tuple(files), digests_of(snapshot, uri), places, rows
+    return tuple(files), places, rows

@@ -67,9 +67,9 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
     folder = Path(tempfile.mkdtemp(prefix="robbdd-"))
     try:
         options = RunOptions.of({**argument, **more})
-        ls.run = run = ActiveRun(options, folder.name)
+        ls.run = run = ActiveRun(options, options.token or folder.name)
         failed = [(known.variant, known.variation) for known in ls.results if known.outcome != "holds"]
-        plan = await ls.in_background(lambda snapshot: plan_run(snapshot, ls.convert, options, failed))
+        plan = await ls.in_background(lambda snapshot: plan_run(snapshot, ls.convert, options, failed), options.uri)
         manifest = await asyncio.to_thread(prepare, plan.request, folder)
         follower = _Follower(ls, run, plan, RunResults(manifest))
         run.scheduler = Scheduler(folder, manifest, watch=follower.hear)

@@ -71,10 +71,13 @@ class RobbddServer(LanguageServer):
     async def _in_thread(self, work: Callable[[], Result]) -> Result:
         return await asyncio.get_running_loop().run_in_executor(self._analysis, work)
 
-    async def in_background(self, work: Callable[[Snapshot], Result]) -> Result:
-        """Run ``work`` on the newest texts in a thread of its own: what is asked for meanwhile does not wait for it."""
+    async def in_background(self, work: Callable[[Snapshot], Result], *unopened: str) -> Result:
+        """Run ``work`` on the newest texts in a thread of its own: what is asked for meanwhile does not wait for it.
+
+        Files that may not be open are to be named.
+        """
         texts = await self._in_thread(self.project.texts)
-        return await self._background.work(texts, work)
+        return await self._background.work(texts, work, *unopened)
 
     async def text_changed(self, uri: str, version: int, text: str) -> None:
         """Take a new text of an open document and publish what it means."""

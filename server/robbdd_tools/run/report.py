@@ -43,7 +43,12 @@ def verdict_words(judged: ClauseJudged) -> str:
 
 def values_words(spec: ScenarioSpec) -> str:
     """Return a scenario's values: ``thing = cube0, goal = left_ws``."""
-    return ", ".join(f"{_variable(name)} = {_local(value)}" for name, value in spec.values.items())
+    return ", ".join(value_words(name, value) for name, value in spec.values.items())
+
+
+def value_words(name: str, value: object) -> str:
+    """Return a variable and its value, both given with their prefixes: ``thing = cube0``."""
+    return f"{_variable(name)} = {_local(value)}"
 
 
 def _variable(name: str) -> str:

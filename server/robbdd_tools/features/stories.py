@@ -1,0 +1,77 @@
+"""The user stories of a file with their scenario variants, told from its text, as a tree of tests shows them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import read_text, uri_to_path
+from robbdd_tools.features.scenarios import number_of_scenarios
+from robbdd_tools.features.workspace_files import model_files
+from robbdd_tools.names.index import FileIndex
+from robbdd_tools.names.variants import PlacedVariant, variants_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.project import Snapshot
+
+_ENDING = ".bdd"
+_STORY = re.compile(r"\bUser\s+Story\b")
+
+
+@dataclass(frozen=True, slots=True)
+class ListedVariant:
+    """A variant; ``count`` is the number of its scenarios (``None`` while unknown).
+
+    ``variation`` is the absolute span of what lists its values: the whole table, or the first line of a product.
+    """
+
+    placed: PlacedVariant
+    count: int | None
+    variation: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ListedStory:
+    """A story and what it wants, with its variants in the order of the text."""
+
+    definition: Definition
+    iri: str
+    wants: str
+    variants: tuple[ListedVariant, ...]
+
+
+def stories_in(snapshot: Snapshot, uri: str) -> list[ListedStory]:
+    """Return the stories of a file that have an IRI, in the order of the text."""
+    file = snapshot.file(uri)
+    variants = list(variants_of(snapshot, uri))
+    found: list[ListedStory] = []
+    for placed in file.declarations if file is not None else ():
+        story = placed.declaration.tree
+        definition = file.definitions.get(story.name.text) if file and isinstance(story, tree.Story) else None
+        if isinstance(story, tree.Story) and definition is not None and definition.iri is not None:
+            own = tuple(_listed(variant) for variant in variants if variant.site.placed is placed)
+            found.append(ListedStory(definition, definition.iri, story.feature.value, own))
+    return found
+
+
+def story_files(snapshot: Snapshot, folders: Iterable[str]) -> list[str]:
+    """Return the files that tell stories, open ones and those on disk below some folders, in alphabetical order."""
+    known = {uri: source.document.text for uri, source in snapshot.sources.items() if isinstance(source, FileIndex)}
+    candidates = sorted({*model_files(folders), *known})
+    told = (uri for uri in candidates if uri.endswith(_ENDING))
+    return [uri for uri in told if _STORY.search(known[uri] if uri in known else _text(uri))]
+
+
+def _listed(variant: PlacedVariant) -> ListedVariant:
+    return ListedVariant(variant, number_of_scenarios(variant), variant.site.span(variant.node.variation))
+
+
+def _text(uri: str) -> str:
+    path = uri_to_path(uri)
+    text = read_text(path) if path is not None else ""
+    return text if isinstance(text, str) else ""

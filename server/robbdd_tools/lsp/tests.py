@@ -1,0 +1,125 @@
+"""The request ``robbdd/tests``: what can be run, level by level, as a tree of tests shows it.
+
+Without parameters it answers with the files that tell stories; with ``uri`` with the stories of a file and their
+variants; with ``uri`` and ``variant`` (IRI) with scenarios, ``most`` of them from number ``first`` on, and their
+clauses. The answer is described by ``docs/schemas/tests.schema.json``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.features.stories import ListedStory, ListedVariant, stories_in, story_files
+from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
+from robbdd_tools.names.clauses import clauses_in
+from robbdd_tools.run.listing import ListedScenario, listed_scenarios
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from lsprotocol import types
+
+    from robbdd_tools.lsp.convert import Converter
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.project import Snapshot
+
+TESTS = "robbdd/tests"
+MOST = 10_000
+"""Scenarios that one answer holds unless fewer are asked for."""
+
+
+def register_tests(server: RobbddServer) -> None:
+    """Add the request to a server."""
+
+    @server.feature(TESTS)
+    async def tests(ls: RobbddServer, params: Any) -> dict[str, Any]:
+        uri = getattr(params, "uri", None)
+        variant = getattr(params, "variant", None)
+        if uri is None:
+            folders = list(ls.workspace.folders)
+            files = await ls.in_background(lambda snapshot: story_files(snapshot, folders))
+            return {"problem": None, "files": files, "tests": []}
+        if variant is None:
+            return await ls.in_background(lambda snapshot: _stories(snapshot, ls.convert, str(uri)), str(uri))
+        first = max(1, int(getattr(params, "first", None) or 1))
+        most = max(0, min(MOST, int(getattr(params, "most", None) or MOST)))
+        return await ls.in_background(
+            lambda snapshot: _scenarios(snapshot, ls.convert, str(uri), str(variant), first, most), str(uri)
+        )
+
+
+def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]:
+    """Answer with the stories of a file; text with errors has those that can be made out."""
+
+    def story(listed: ListedStory) -> dict[str, Any]:
+        return {
+            **_declared("story", listed.iri, listed.definition),
+            "detail": listed.wants,
+            "tests": [variant(each) for each in listed.variants],
+        }
+
+    def variant(listed: ListedVariant) -> dict[str, Any]:
+        placed = listed.placed
+        return {
+            **_declared("variant", placed.iri, placed.definition),
+            "detail": "" if listed.count is None else f"{listed.count:,} scenario{'' if listed.count == 1 else 's'}",
+            "count": listed.count,
+            "variation": convert.location(snapshot, placed.definition.uri, listed.variation),
+        }
+
+    def _declared(kind: str, iri: str, definition: Definition) -> dict[str, Any]:
+        place = convert.location(snapshot, definition.uri, definition.span)
+        return {"kind": kind, "id": iri, "name": definition.symbol.name, "place": place, "tests": []}
+
+    unreadable = snapshot.unreadable(uri)
+    return {
+        "problem": None if unreadable is None else unreadable.reason,
+        "files": [file.document.uri for file in snapshot.closure(uri)] if unreadable is None else [uri],
+        "tests": [story(each) for each in stories_in(snapshot, uri)],
+    }
+
+
+def _scenarios(snapshot: Snapshot, convert: Converter, uri: str, variant: str, first: int, most: int) -> dict[str, Any]:
+    """Answer with scenarios of a variant, or with why there are none."""
+    from robbdd_tools.graph.model import Iri
+
+    try:
+        model = feature_plan(snapshot, uri).model
+    except ModelError as error:
+        return {"problem": str(error), "files": [uri], "tests": []}
+    files, places, rows = places_of(snapshot, convert, uri)
+    # What a behaviour or an event is called in the text reads better than its IRI.
+    names = {clause.iri: clause.name for file in files for clause in clauses_in(snapshot, file)}
+    listed = listed_scenarios(model, Iri(variant), first, most)
+    tests = [_scenario(each, rows.get((variant, each.number)), places, names) for each in listed]
+    return {"problem": None, "files": files, "tests": tests}
+
+
+def _scenario(
+    listed: ListedScenario,
+    row: types.Location | None,
+    places: Mapping[str, types.Location],
+    names: Mapping[str, str],
+) -> dict[str, Any]:
+    counted = f"scenario {listed.number}" if row is None else f"row {listed.number}"
+    return {
+        "kind": "scenario",
+        "id": str(listed.number),
+        "name": listed.varying or listed.shared or counted,
+        "detail": ", ".join(part for part in (counted, listed.shared if listed.varying else "") if part),
+        "number": listed.number,
+        "place": row,
+        "tests": [
+            {
+                "kind": "clause",
+                "id": clause.iri,
+                "name": names.get(clause.iri, clause.name),
+                "detail": clause.sentence,
+                "role": clause.role,
+                "place": places.get(clause.iri),
+                "tests": [],
+            }
+            for clause in listed.clauses
+        ],
+    }
