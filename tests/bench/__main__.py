@@ -1,38 +1,44 @@
-"""``python -m tests.bench``: measures and rewrites ``docs/performance.md``."""
+"""``python -m tests.bench [SECTION…]``: measures and writes the figures into ``docs/performance.md``."""
 
 from __future__ import annotations
 
 import platform
+import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent.parent
 PAGE = ROOT / "docs" / "performance.md"
-HEAD = """# Performance
-
-Written by `make bench`; compare figures within one run only, machines differ and are noisy. Those of
-the language are processor time of one thread.
-"""
 
 
-def main() -> None:
-    """Measure everything and write the page."""
+def main(wanted: Sequence[str]) -> None:
+    """Measure everything, or some sections of the page, and replace their tables; the words around them stay."""
     sys.path.insert(0, str(ROOT / "tests"))
-    from tests.bench import gherkin, language, running, shapes
+    from tests.bench import editor, gherkin, language, running, shapes
 
-    page = [HEAD, f"Measured with Python {platform.python_version()} on {platform.machine()}, {_processor()}.\n"]
-    page += _section("Language", language.rows())
-    page += _section("Shapes and queries", shapes.rows())
-    page += _section("Gherkin", gherkin.rows())
-    page += _section("Runs", running.rows())
-    PAGE.write_text("\n".join(page), encoding="utf-8")
-    sys.stdout.write(PAGE.read_text(encoding="utf-8"))
-
-
-def _section(title: str, rows: Iterable[tuple[str, str]]) -> list[str]:
-    table = [f"| {name} | {figure} |" for name, figure in rows]
-    return [f"## {title}\n", "| what | figure |", "|---|---|", *table, ""]
+    sections: dict[str, Callable[[], Iterable[tuple[str, str]]]] = {
+        "Language": language.rows,
+        "Editors": editor.rows,
+        "Shapes and queries": shapes.rows,
+        "Gherkin": gherkin.rows,
+        "Runs": running.rows,
+    }
+    unknown = set(wanted) - set(sections)
+    if unknown:
+        sys.exit(f"no section '{unknown.pop()}': there are {', '.join(sections)}")
+    page = PAGE.read_text(encoding="utf-8")
+    machine = ("measured with", f"Python {platform.python_version()} on {platform.machine()}, {_processor()}")
+    for title in wanted or sections:
+        table = "".join(f"| {name} | {figure} |\n" for name, figure in [*sections[title](), machine])
+        page, found = re.subn(
+            rf"(?s)(?<=\n## {title}\n\n)(.*?\n)??\| what \| figure \|.*?(?=\n\n|\Z)\n?",
+            lambda match, table=table: f"{match[1] or ''}| what | figure |\n|---|---|\n{table}",
+            page,
+        )
+        assert found == 1, f"{PAGE} has no table of '{title}'"
+    PAGE.write_text(page, encoding="utf-8")
+    sys.stdout.write(page)
 
 
 def _processor() -> str:
@@ -48,4 +54,4 @@ def _processor() -> str:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -1,0 +1,253 @@
+"""How soon an editor gets its answers from ``robbdd-lsp``, a process of its own, over standard input and output.
+
+What an editor waits for is wall time; beside it stands the processor time that the server spends, in which other work
+on the machine does not count.
+"""
+
+from __future__ import annotations
+
+import shutil
+import statistics
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from tests.bench.client import Client, Message
+from tests.bench.models import long_story, model
+
+from kit import EXAMPLES, SCENE
+
+COMMAND = (sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
+STARTS = 5
+QUESTIONS = 60
+PEER = {
+    "start": "the peer took 3.0 s",
+    "opening, 1027 lines": "the peer took 632 ms",
+    "opening, 10003 lines": "the peer took 3937 ms for 5000 lines",
+    "keystroke to diagnostics, 1027 lines": "the peer took 456 ms for 70 lines, 400 of them to wait for more changes",
+    "keystroke to diagnostics, 10003 lines": "the peer took 4409 ms for 5000 lines",
+}
+"""Recorded figures of the server of secoro-dsl-nvim, on a machine of the same kind (2 cores at 2.5 GHz), not in this
+run: what it needs comes from no package registry. Files of the same length are not the same files."""
+ON_EVERY_STROKE = ("semanticTokens/full/delta", "inlayHint", "codeLens", "documentSymbol", "foldingRange")
+"""What VS Code asks for after each change of a text."""
+STAMPS = """import os, time
+from pathlib import Path
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.agent.session import ScenarioRun
+advance, report = Execution.advance_until, ScenarioRun._report
+def stamped(self, satisfied):
+    trace = advance(self, satisfied)
+    Execution.stamp = time.monotonic()
+    return trace
+def told(self, line, verdict):
+    if Execution.stamp:
+        with Path({path!r}).open("a") as file:
+            file.write(f"{{self._index}} {{line}} {{Execution.stamp}}\\n")
+    Execution.stamp = 0.0
+    return report(self, line, verdict)
+Execution.stamp, Execution.advance_until, ScenarioRun._report = 0.0, stamped, told
+"""
+"""A user's step file that notes when the simulation has come as far as a clause needs."""
+
+
+@dataclass(slots=True)
+class Times:
+    """Seconds until an editor has its answers, and processor time of the server for each, where that is known."""
+
+    waited: list[float]
+    spent: list[float]
+
+    def __str__(self) -> str:
+        """Return percentiles in milliseconds."""
+        hundredths = statistics.quantiles(self.waited, n=100, method="inclusive")
+        p50, p95, p99 = (1000 * hundredths[index] for index in (49, 94, 98))
+        spent = f", of which the server computes {1000 * statistics.median(self.spent):.1f} ms" if self.spent else ""
+        return f"p50 {p50:.1f}{spent}; p95 {p95:.1f}, p99 {p99:.1f} ms"
+
+
+class Session:
+    """A server with one long document open in it."""
+
+    def __init__(self, client: Client, folder: Path, text: str) -> None:
+        self.client = client
+        self.folder = folder
+        self.uri = (folder / "bench.bdd").as_uri()
+        self.text = text
+        self.version = 1
+        self.document = {"textDocument": {"uri": self.uri}}
+        self._coloured = ""
+
+    def opened(self) -> float:
+        """Open the document; returns the seconds until its diagnostics are there."""
+        began = time.monotonic()
+        self.client.open(self.uri, self.text)
+        return self.client.wait(self._published)[0] - began
+
+    def typed(self, letter: str, offset: int, asking: bool = False) -> float:
+        """Type a letter; returns the seconds until its diagnostics are there, and what VS Code is ``asking`` for."""
+        self.client.forget()
+        place = self.position(offset)
+        self.text = self.text[:offset] + letter + self.text[offset:]
+        self.version += 1
+        began = time.monotonic()
+        document = {**self.document["textDocument"], "version": self.version}
+        changes = [{"range": {"start": place, "end": place}, "text": letter}]
+        self.client.notify("textDocument/didChange", {"textDocument": document, "contentChanges": changes})
+        more = {"previousResultId": self._coloured, "range": {"start": self.position(0), "end": place}}
+        methods = ON_EVERY_STROKE if asking else ()
+        asked = [self.client.ask(f"textDocument/{method}", {**self.document, **more}) for method in methods]
+        answers = [self.client.answer(number) for number in asked]
+        if answers:
+            self._coloured = str(answers[0][1]["result"]["resultId"])
+        return max(came for came, _ in [self.client.wait(self._published), *answers]) - began
+
+    def asked(self, method: str, parameters: dict[str, Any]) -> float:
+        """Ask a question that has an answer; returns the seconds until it is there."""
+        began = time.monotonic()
+        came, answer = self.client.answer(self.client.ask(method, parameters))
+        assert answer["result"], f"{method} answers nothing"
+        return came - began
+
+    def colour(self) -> None:
+        """Ask for the colours of the whole document, so that from now on only what has changed is sent."""
+        tokens = self.client.request("textDocument/semanticTokens/full", self.document)
+        self._coloured = str(tokens["resultId"])
+
+    def position(self, offset: int) -> dict[str, int]:
+        """Return the place of an offset (all texts here are ASCII)."""
+        return {"line": self.text.count("\n", 0, offset), "character": offset - self.text.rfind("\n", 0, offset) - 1}
+
+    def at(self, text: str, behind: str = "") -> dict[str, Any]:
+        """Return the parameters of a question about the last place between two texts."""
+        offset = self.text.rindex(text + behind) + len(text)
+        return {**self.document, "position": self.position(offset)}
+
+    def measured(self, works: Sequence[Callable[[], float]]) -> Times:
+        """Do some things in turn, each of which returns the seconds waited."""
+        times = Times([], [])
+        for work in works:
+            before = self.client.processor_time()
+            times.waited.append(work())
+            after = self.client.processor_time()
+            if before is not None and after is not None:
+                times.spent.append(after - before)
+        return times
+
+    def settle(self) -> None:
+        """Wait until the server has nothing left to do."""
+        self.client.forget()
+        before, after = -1.0, self.client.processor_time()
+        while after is not None and after - before > 0.001:
+            time.sleep(0.2)
+            before, after = after, self.client.processor_time()
+
+    def _published(self, message: Message) -> bool:
+        return (
+            message.get("method") == "textDocument/publishDiagnostics"
+            and message["params"]["uri"] == self.uri
+            and message["params"].get("version") == self.version
+        )
+
+
+def rows() -> Iterator[tuple[str, str]]:
+    """Yield a name and a figure for each measurement."""
+    yield _starts()
+    for lines in (1000, 10_000):
+        text = model(lines)
+        yield from _one_file(text, f"{text.count(chr(10))} lines", " ( more: holds(<part> is located at", _then)
+    text = long_story(10_000)
+    typed = " var <fetch1.goal1>: { <places.bench_ws>"
+    yield from _one_file(text, "one story of 10000 lines", typed, _variation)
+    yield from _status()
+
+
+def with_peer(name: str, figure: str) -> tuple[str, str]:
+    """Return a row with the peer's figure, where there is one."""
+    return name, f"{figure}; {PEER[name]}" if name in PEER else figure
+
+
+def _then(text: str) -> int:
+    return text.index("Then:", len(text) // 2) + len("Then:")
+
+
+def _variation(text: str) -> int:
+    return text.index("variation:", len(text) // 2) + len("variation:")
+
+
+def _starts() -> tuple[str, str]:
+    """Measure a server that is started with the example."""
+    path = EXAMPLES / "pickplace" / "pickplace.bdd"
+    text = path.read_text(encoding="utf-8")
+    seconds: list[float] = []
+    spent: list[float] = []
+    for _ in range(STARTS):
+        with Client(COMMAND) as client:
+            session = Session(client, path.parent, text)
+            client.initialize(path.parent)
+            began = time.monotonic()
+            seconds.append(began - client.started + session.opened())
+            spent.append(client.processor_time() or 0.0)
+    own, computing = statistics.median(seconds), statistics.median(spent)
+    return "start to first diagnostics", f"{own:.2f} s, {computing:.2f} s of which the server computes; {PEER['start']}"
+
+
+def _one_file(text: str, name: str, typed: str, place: Callable[[str], int]) -> Iterator[tuple[str, str]]:
+    """Measure a long file, in the middle of which something is typed; ``place`` finds where."""
+    with tempfile.TemporaryDirectory() as folder, Client(COMMAND) as client:
+        (Path(folder) / "lab.scene").write_text(SCENE, encoding="utf-8")
+        client.initialize(Path(folder))
+        session = Session(client, Path(folder), text)
+        before, opened = client.processor_time() or 0.0, session.opened()
+        spent = 1000 * ((client.processor_time() or 0.0) - before)
+        yield with_peer(f"opening, {name}", f"{1000 * opened:.0f} ms, of which the server computes {spent:.0f} ms")
+        session.settle()
+        top = {"start": {"line": 0, "character": 0}, "end": {"line": 60, "character": 0}}
+        questions: dict[str, dict[str, Any]] = {
+            "completion": session.at("template: <", "fetch"),
+            "hover": session.at("template: <fet"),
+            "definition": session.at("template: <fet"),
+            "semanticTokens/range": {**session.document, "range": top},
+            "semanticTokens/full": session.document,
+        }
+        for method, parameters in questions.items():
+            work = partial(session.asked, f"textDocument/{method}", parameters)
+            yield f"{method}, {name}", str(session.measured([work] * QUESTIONS))
+        start = place(session.text)
+        strokes = [partial(session.typed, letter, start + number) for number, letter in enumerate(typed)]
+        yield with_peer(f"keystroke to diagnostics, {name}", str(session.measured(strokes)))
+        session.colour()
+        strokes = [partial(session.typed, letter, start + number, True) for number, letter in enumerate(typed)]
+        yield f"keystroke to all that VS Code asks for, {name}", str(session.measured(strokes))
+
+
+def _status() -> Iterator[tuple[str, str]]:
+    """Measure how soon a client hears of what a clause's simulation has shown."""
+    with tempfile.TemporaryDirectory() as name:
+        folder, stamps = Path(name) / "pickplace", Path(name) / "stamps"
+        shutil.copytree(EXAMPLES / "pickplace", folder)
+        (folder / "steps").mkdir()
+        (folder / "steps" / "pickplace_steps.py").write_text(STAMPS.format(path=str(stamps)), encoding="utf-8")
+        path = folder / "pickplace.bdd"
+        with Client(COMMAND) as client:
+            client.initialize(folder)
+            client.open(path.as_uri(), path.read_text(encoding="utf-8"))
+            client.wait(lambda message: message.get("method") == "textDocument/publishDiagnostics")
+            client.request("workspace/executeCommand", {"command": "robbdd.run", "arguments": [{"uri": path.as_uri()}]})
+            heard = client.heard()
+        decided = {(int(index), int(line)): float(at) for index, line, at in map(str.split, stamps.open())}
+    told = {
+        (message["params"]["message"]["index"], message["params"]["message"]["line"]): came
+        for came, message in heard
+        if message.get("method") == "robbdd/runMessage" and message["params"]["message"]["type"] == "ClauseJudged"
+    }
+    refreshed = [came for came, message in heard if message.get("method") == "workspace/inlayHint/refresh"]
+    messages = Times([told[clause] - at for clause, at in decided.items()], [])
+    hints = Times([min(came for came in refreshed if came > told[clause]) - at for clause, at in decided.items()], [])
+    yield f"event in simulation to the client's run message, {len(decided)} clauses", str(messages)
+    yield f"event in simulation to the refresh of hints, {len(decided)} clauses", str(hints)
