@@ -79,10 +79,12 @@ const bdd = grammar("RobBDD", "source.robbdd", [
   declaration(DECLARE, "entity.name.type.template", "Scenario Template"),
   declaration(DECLARE, "entity.name.type.story", "User Story"),
   declaration(DECLARE, "entity.name.type.variant", "Scenario Variant", "Scenario"),
-  declaration(DECLARE, "entity.name.type.behaviour", "Behaviour"),
+  declaration(DECLARE, "entity.name.type.behaviour", "Behaviour Tree", "Behaviour"),
   declaration(DECLARE, "variable.other.constant", "Event", "Task", "const set"),
+  declaration(WORD, "entity.name.type.behaviour", "sequence", "selector"),
+  declaration(WORD, "variable.other.property", "node"),
   labels(SECTION, "Given", "When", "Then", "Scenarios", "variation"),
-  labels(PROPERTY, "duration", "task", "template", "scene"),
+  labels(PROPERTY, "duration", "task", "template", "scene", "node"),
   {
     match: String.raw`(?<![\p{L}\p{N}_-])((?:set\s+)?var)\s+(${QUALIFIED})`,
     captures: { 1: { name: "storage.type.variable.robbdd" }, 2: { name: "variable.parameter.robbdd" } },
@@ -126,7 +128,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
     "agn",
   ),
   // What stays of a declaration that is still being typed.
-  phrases(DECLARE, "Scenario Template", "User Story", "Scenario Variant", "Scenario", "Behaviour", "const set"),
+  phrases(DECLARE, "Scenario Template", "User Story", "Scenario Variant", "Scenario", "Behaviour Tree", "Behaviour", "const set"),
   phrases(DECLARE, "Event", "Task"),
   phrases("keyword.other.event", "event"),
   { match: String.raw`\|(?:\s*-{3,}\s*\|)*`, name: "punctuation.separator.table.robbdd" },

@@ -93,6 +93,21 @@ test("a keyword inside a name with hyphens is no keyword", async () => {
   assert.deepEqual(found.at(-1), "evt-before-all → variable.other.constant");
 });
 
+test("the nodes of a behaviour tree have names", async () => {
+  await expectTokens(
+    "source.robbdd",
+    "Behaviour Tree (ns=t) handling { sequence whole { selector grasp { node pick } } }",
+    "Behaviour Tree → storage.type.declaration",
+    "handling → entity.name.type.behaviour",
+    "sequence → keyword.other",
+    "whole → entity.name.type.behaviour",
+    "selector → keyword.other",
+    "grasp → entity.name.type.behaviour",
+    "node → keyword.other",
+    "pick → variable.other.property",
+  );
+});
+
 test("a comment swallows keywords and quotes", async () => {
   assert.deepEqual(await tokens("source.robbdd", `// Then: "it's`), [`// Then: "it's → comment.line.double-slash`]);
 });

@@ -104,7 +104,16 @@ DAMAGE: dict[str, list[str]] = {
     "variable-repeated": [f"set {PRODUCT} bdd:variable-list (t:var-parts t:var-bins t:var-robot t:var-robot)"],
     "variant-members": ["- t:chosen bdd:has-scene"],
     "variant-scene": ["+ t:chosen bdd:has-scene lab:bench_scene-scene-has-obj"],
+    "tree-children": ["+ t:whole a bt:Sequence", "+ t:tree a bt:BehaviourTree", "+ t:tree bt:root t:whole",
+                      "+ t:whole bt:children ()"],
+    "tree-made": ["+ t:tree a bt:BehaviourTree"],
+    "tree-node-parent": ["+ t:one a bt:Sequence", "+ t:two a bt:Sequence", "+ t:leaf a bt:Action",
+                         "+ t:one bt:children (t:two t:leaf)", "+ t:two bt:children (t:leaf)",
+                         "+ t:tree a bt:BehaviourTree", "+ t:tree bt:root t:one"],
+    "tree-node-root": ["+ t:one a bt:Sequence", "+ t:two a bt:Sequence",
+                       "+ t:one bt:children (t:two)", "+ t:two bt:children (t:one)"],
     "tree-node-tree": ["+ t:leaf a rbw:TreeNode"],
+    "tree-root": ["+ t:tree a bt:BehaviourTree", "+ t:tree bt:root t:one", "+ t:tree bt:root t:two"],
     "variant-template": ["+ t:chosen bdd:of-template t:fetch"],
     "variant-variation": ["- t:chosen bdd:has-variation"],
     "variation-task": [f"+ {TABLE} task:of-task t:start"],
@@ -142,7 +151,8 @@ def damaged(edits: list[str]) -> BuiltGraph:
             assert (node(subject), predicate, None) in graph, edit
             graph.remove((node(subject), predicate, None))
         elif action == "+":
-            graph.add((node(subject), predicate, node(values[0])))
+            made = nested_list(graph, values[0]) if values[0].startswith("(") else node(values[0])
+            graph.add((node(subject), predicate, made))
         else:
             assert (node(subject), predicate, None) in graph, edit
             graph.set((node(subject), predicate, nested_list(graph, values[0])))

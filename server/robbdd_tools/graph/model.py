@@ -81,13 +81,17 @@ class EventClause:
 
 @dataclass(frozen=True, slots=True)
 class BehaviourClause:
-    """The behaviour in ``When``: ``behaviour`` is the catalog name, ``start``/``end`` the events of its duration."""
+    """The behaviour in ``When``: ``behaviour`` is the catalog name, ``start``/``end`` the events of its duration.
+
+    ``node`` is that of a behaviour tree which executes it, if there is one.
+    """
 
     iri: Iri
     behaviour: str
     arguments: Mapping[str, Iri | str]
     start: Iri
     end: Iri
+    node: Iri | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,6 +191,25 @@ class Story:
 
 
 @dataclass(frozen=True, slots=True)
+class TreeNode:
+    """A node of a behaviour tree: ``kind`` is ``sequence``, ``selector`` or ``leaf``."""
+
+    iri: Iri
+    kind: str
+    children: tuple[TreeNode, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class BehaviourTree:
+    """A behaviour tree: its nodes in written order, and either its root or the Python code that makes it."""
+
+    iri: Iri
+    nodes: tuple[Iri, ...]
+    root: TreeNode | None = None
+    source: Implementation | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Execution:
     """How a scenario variant is executed.
 
@@ -218,6 +241,7 @@ class AcceptanceModel:
     sets: Mapping[Iri, tuple[Value, ...]]
     prefixes: Mapping[str, str]
     executions: tuple[Execution, ...] = ()
+    trees: tuple[BehaviourTree, ...] = ()
 
     def curie(self, iri: str) -> str:
         """Shorten an IRI by the longest matching namespace; one that none matches is returned as it is."""

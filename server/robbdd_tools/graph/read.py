@@ -11,6 +11,7 @@ from robbdd_tools.graph.prefixes import reading_prefixes
 from robbdd_tools.graph.read_clauses import ClauseReader, used_names
 from robbdd_tools.graph.read_executions import read_executions
 from robbdd_tools.graph.read_instances import InstanceReader, Places
+from robbdd_tools.graph.read_trees import read_trees
 from robbdd_tools.graph.read_variation import VariationReader
 from robbdd_tools.graph.records import Incomplete, Records
 from robbdd_tools.graph.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
@@ -36,7 +37,8 @@ def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
     reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
     every = tuple(reader.story(node) for node in stories)
     executions = read_executions(records, InstanceReader(records, sets, places), places)
-    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions)
+    trees = read_trees(records, places)
+    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees)
 
 
 def incomplete_variants(graph: Graph) -> dict[Iri, str]:

@@ -91,8 +91,9 @@ class ClauseReader:
         return TextFluent(iri, role, template, dict(zip(names, variables, strict=True)), self.time(iri))
 
     def _behaviour(self, iri: Iri) -> BehaviourClause:
-        behaviour = self.records.one(iri, "bhv:of-behaviour")
-        types = self.records.types(behaviour)
+        records = self.records
+        behaviour = records.one(iri, "bhv:of-behaviour")
+        types = records.types(behaviour)
         fitting = [word for word in load_catalog().behaviours.values() if types.issuperset(map(expand, word.rdf_types))]
         if not fitting:
             raise Incomplete(f"{behaviour} is no behaviour that this installation knows")
@@ -100,7 +101,9 @@ class ClauseReader:
         time = self.time(iri)
         if not isinstance(time, During):
             raise Incomplete(f"{iri} has no start and end")
-        return BehaviourClause(iri, word.name, self._arguments(iri, word.slots), Iri(time.start), Iri(time.end))
+        nodes = records.iris(records.all(behaviour, "rbw:coordination-node"))
+        node = nodes[0] if len(nodes) == 1 else None
+        return BehaviourClause(iri, word.name, self._arguments(iri, word.slots), Iri(time.start), Iri(time.end), node)
 
     def _arguments(self, iri: Iri, slots: Iterable[Slot]) -> Mapping[str, Iri | str]:
         return {

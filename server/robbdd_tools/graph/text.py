@@ -16,6 +16,7 @@ from robbdd_tools.graph.text_clauses import template_text
 from robbdd_tools.graph.text_names import Names, quoted
 from robbdd_tools.graph.text_scenes import SceneText
 from robbdd_tools.graph.text_stories import StoryText
+from robbdd_tools.graph.text_trees import tree_text
 
 if TYPE_CHECKING:
     from rdflib import Graph
@@ -81,6 +82,11 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
         names.declare(node, "story")
     reader = ClauseReader(records)
     blocks: list[str] = []
+    for node in records.instances("bt:BehaviourTree"):
+        try:
+            blocks.append(tree_text(names, node) + "\n")
+        except Incomplete as error:
+            left_out[node] = str(error)
     outside: dict[str, dict[str, str]] = {}
     for node in templates:
         try:

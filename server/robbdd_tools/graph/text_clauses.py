@@ -160,7 +160,8 @@ class ClauseText:
         action = self._phrase(load_catalog().behaviours[clause.behaviour].phrase, clause.arguments)
         duration = self.time(During(clause.start, clause.end))
         head = f"Behaviour (ns={names.prefix(namespace)}) {name}"
-        return f"{head} {{\n    duration: {duration}\n    {action}\n}}"
+        link = "" if clause.node is None else f"\n    node: {names.reference(clause.node)}"
+        return f"{head} {{\n    duration: {duration}\n    {action}{link}\n}}"
 
     def _named(self, node: Iri, kind: str, path: str) -> None:
         made = f"{self.namespace}{kind}-{self.owner}{path}"

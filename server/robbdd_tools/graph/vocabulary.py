@@ -18,6 +18,7 @@ PREFIXES = {
     "time": f"{METAMODELS}time#",
     "task": f"{METAMODELS}task#",
     "bhv": f"{METAMODELS}behaviour#",
+    "bt": f"{METAMODELS}behaviour/behaviour-tree#",
     "env": f"{METAMODELS}environment#",
     "agn": f"{METAMODELS}agent#",
     "obs": f"{METAMODELS}observation#",
@@ -45,6 +46,8 @@ MEMBERSHIPS = {
 }
 """Kind of an element → class, property and IRI ending of the node that makes it a member of a scene."""
 JUNCTIONS = {"and": "rbw:Conjunction", "or": "rbw:Disjunction", "not": "rbw:Negation"}
+COMPOSITES = {"sequence": "bt:Sequence", "selector": "bt:Selector"}
+"""Kind of a behaviour tree's composite → its class."""
 SELECTIONS = {"combinations": "bdd:Combination", "permutations": "bdd:Permutation"}
 
 

@@ -216,15 +216,30 @@ class Template(Node):
 
 
 @dataclass(frozen=True, slots=True)
-class TreeNode(Node):
-    """``node name`` inside a behaviour tree."""
+class TreeLeaf(Node):
+    """``node name`` inside a behaviour tree: executes the behaviour that is linked to it."""
 
     name: Name
 
 
 @dataclass(frozen=True, slots=True)
+class TreeComposite(Node):
+    """``sequence name { … }`` or ``selector name { … }`` inside a behaviour tree; ``kind`` is the first word."""
+
+    kind: str
+    name: Name
+    nodes: tuple[TreeNode, ...]
+
+
+TreeNode = TreeComposite | TreeLeaf
+
+
+@dataclass(frozen=True, slots=True)
 class BehaviourTree(Node):
-    """``Behaviour Tree (ns=…) name { py { … } node … }``: the nodes that behaviours can be linked to."""
+    """``Behaviour Tree (ns=…) name { … }``: the nodes that behaviours can be linked to.
+
+    One root with all others below it or, with ``source``, the names of the nodes that Python code makes.
+    """
 
     namespace: NamespaceArgument | None
     name: Name

@@ -76,8 +76,9 @@ def _parts(root: tree.DeclarationTree, path: str, namespace: str) -> Iterator[Sy
             for variant in root.variants:
                 yield from variant_symbols(variant, path, namespace)
         case tree.BehaviourTree():
-            for node in root.nodes:
-                yield _symbol(path, node.name, SymbolKind.TREE_NODE, node.span, namespace)
+            for node in walk(root):
+                if isinstance(node, tree.TreeComposite | tree.TreeLeaf):
+                    yield _symbol(path, node.name, SymbolKind.TREE_NODE, node.span, namespace)
         case tree.KinematicTree():
             yield from _tree_parts(root, path)
         case tree.SceneInstance():
