@@ -68,6 +68,13 @@ def events_of(constraint: TimeConstraint) -> tuple[str, ...]:
             return (start, end)
 
 
+def ways(fluent: Fluent) -> Iterator[Iterator[Arguments]]:
+    """Yield the ways in which a fluent may hold, each with the arguments for all of which it then must."""
+    slots = fluent.predicate.slots
+    some = [slot for slot in slots if isinstance(fluent.arguments[slot.name], AnyOf)]
+    return (_instances(slots, chosen) for chosen in _choices(fluent.arguments, some))
+
+
 def _closed(fluent: Fluent, trace: Trace, events: AbstractSet[str]) -> bool:
     if fluent.predicate.evaluate is None or not events >= set(events_of(fluent.time)):
         return True
@@ -79,12 +86,8 @@ def _fluent(fluent: Fluent, trace: Trace, regions: Regions, events: AbstractSet[
     silent = [event for event in events_of(fluent.time) if event not in events]
     if silent and fluent.predicate.evaluate is not None:
         return unknown(f"nothing in the scenario emits event {silent[0]}")
-    some = [slot for slot in fluent.predicate.slots if isinstance(fluent.arguments[slot.name], AnyOf)]
     return disjunction(
-        conjunction(
-            _judged(fluent, arguments, trace, regions) for arguments in _instances(fluent.predicate.slots, chosen)
-        )
-        for chosen in _choices(fluent.arguments, some)
+        conjunction(_judged(fluent, arguments, trace, regions) for arguments in group) for group in ways(fluent)
     )
 
 

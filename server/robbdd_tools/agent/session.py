@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.clauses import decide, is_closed, ranges
+from robbdd_tools.agent.curves import behaviour_curves, curves, write_curves
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Call, Execution, Timing
 from robbdd_tools.agent.moments import Moments
@@ -30,12 +31,15 @@ from robbdd_tools.run.protocol import (
     MarginRanges,
     ScenarioFinished,
     ScenarioStarted,
+    curves_file,
     judged,
     trace_file,
 )
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.channel import Channel
+    from robbdd_tools.monitor.curve import Curve
+    from robbdd_tools.monitor.trace import Trace
     from robbdd_tools.run.protocol import Manifest, ScenarioSpec
 
 LEAD = 0.5
@@ -44,7 +48,10 @@ STRANGER = "the manifest of this run knows no such scenario; was the feature cha
 
 
 class ScenarioRun:
-    """One scenario being executed. ``texts`` are its steps in order: line, role (given, when, then) and sentence."""
+    """One scenario being executed. ``texts`` are its steps in order: line, role (given, when, then) and sentence.
+
+    ``keep`` is the run folder that its trace goes to, if it is wanted.
+    """
 
     def __init__(
         self,
@@ -53,7 +60,7 @@ class ScenarioRun:
         texts: Sequence[tuple[int, str, str]],
         channel: Channel,
         moments: Moments,
-        trace_file: Path | None = None,
+        keep: Path | None = None,
     ) -> None:
         self._index = index
         self._spec = spec
@@ -69,7 +76,7 @@ class ScenarioRun:
         }
         self._execution: Execution | None = None
         self._viewer: Viewer | None = None
-        self._trace_file = trace_file
+        self._keep = keep
         self._verdicts: list[ClauseJudged] = []
         self._broken = ""
         self._began = perf_counter()
@@ -157,8 +164,8 @@ class ScenarioRun:
             self._viewer.close()
         if execution is not None:
             self._tell_ranges(execution)
-        if execution is not None and self._trace_file is not None:
-            self._write_trace(execution, self._trace_file)
+        if execution is not None and self._keep is not None:
+            self._write_trace(execution, self._keep)
         simulated = execution.simulated if execution is not None else 0.0
         stepping = execution.stepping if execution is not None else 0.0
         resampled = execution.simulation.world.resampled if execution is not None else 0
@@ -172,13 +179,21 @@ class ScenarioRun:
             if found:
                 self._channel.send(MarginRanges(self._index, line, found))
 
-    def _write_trace(self, execution: Execution, path: Path) -> None:
+    def _write_trace(self, execution: Execution, folder: Path) -> None:
         trace = execution.complete(execution.trace)
         seen = chain(views(execution.simulation, trace), verdict_views(self._spec, self._verdicts, trace.end))
         try:
-            write_trace(path, Evidence(trace, execution.regions), seen)
+            write_trace(trace_file(folder, self._index), Evidence(trace, execution.regions), seen)
+            write_curves(curves_file(folder, self._index), dict(self._curves(execution, trace)), trace)
         except (OSError, TypeError) as error:
             self._channel.send(LogLine("warning", f"{self._spec.name}: the trace is not kept: {error}"))
+
+    def _curves(self, execution: Execution, trace: Trace) -> Iterator[tuple[int, tuple[Curve, ...]]]:
+        for line in (clause.line for clause in self._spec.clauses):
+            if line in self._clauses:
+                yield line, tuple(curves(self._clauses[line], trace, execution.regions))
+            elif line in self._doings:
+                yield line, behaviour_curves(self._doings[line], trace, self._spec.events)
 
     def _judged(self, line: int, verdict: Callable[[Execution], Verdict]) -> Verdict:
         if line in self._open:
@@ -236,8 +251,8 @@ class Session:
         index = index if handed_out is None else handed_out
         self._moments.clear(index)
         spec = self._manifest.scenarios[index]
-        trace = trace_file(self._folder, index) if self._manifest.traces else None
-        self._present = ScenarioRun(index, spec, texts, self._channel, self._moments, trace)
+        keep = self._folder if self._manifest.traces else None
+        self._present = ScenarioRun(index, spec, texts, self._channel, self._moments, keep)
 
     @property
     def scenario(self) -> ScenarioRun:

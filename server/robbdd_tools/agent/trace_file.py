@@ -1,7 +1,8 @@
 """Traces in MCAP, the robotics log format: the exact trace for us, and what viewers and plotters show of it.
 
 Topics: ``/trace`` (one message: the bytes of ``trace_codec``), ``/tf`` (foxglove.FrameTransforms), ``/scene``
-(foxglove.SceneUpdate), ``/joints``, ``/events`` and ``/verdicts`` (JSON with the schemas below). Times are simulated;
+(foxglove.SceneUpdate), ``/geometry`` (the same with meshes, for our own views), ``/joints``, ``/events`` and
+``/verdicts`` (JSON with the schemas below). Times are simulated;
 nothing depends on the wall clock, so equal executions give equal files.
 """
 
@@ -53,9 +54,14 @@ _ENTITY = _object(
     spheres=_list(_SOLID),
     cylinders=_list(_SOLID),
 )
+_LISTED = _list(_object())
 SCHEMAS: Mapping[str, tuple[str, dict[str, Any]]] = {
     "/tf": ("foxglove.FrameTransforms", _object(transforms=_list(_FRAME))),
     "/scene": ("foxglove.SceneUpdate", _object(entities=_list(_ENTITY))),
+    "/geometry": (
+        "robbdd.Geometry",
+        _object(shapes=_list(_object()), meshes=_list(_object()), workspaces=_list(_object())),
+    ),
     "/joints": ("robbdd.JointStates", {"type": "object", "additionalProperties": _object(), "description": "rad or m"}),
     "/events": ("robbdd.Event", _object(name=TEXT, time=NUMBER)),
     "/verdicts": (
@@ -102,6 +108,18 @@ def read_trace(path: Path) -> Evidence:
     except (OSError, McapError, ValueError, KeyError, TypeError) as error:
         raise UnreadableTrace(f"{path} cannot be read: {error}") from error
     raise UnreadableTrace(f"{path} holds no trace")
+
+
+def read_views(path: Path, topics: Sequence[str]) -> Mapping[str, list[tuple[float, Any]]]:
+    """Return time (s) and message of what is to be seen, by topic; raises ``UnreadableTrace``."""
+    found: dict[str, list[tuple[float, Any]]] = {topic: [] for topic in topics}
+    try:
+        with path.open("rb") as file:
+            for _, channel, message in make_reader(file).iter_messages(topics=list(topics)):
+                found[channel.topic].append((message.log_time / 1e9, json.loads(message.data)))
+    except (OSError, McapError, ValueError, KeyError, TypeError) as error:
+        raise UnreadableTrace(f"{path} cannot be read: {error}") from error
+    return found
 
 
 def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from robbdd_tools.agent.engine import mujoco
+from robbdd_tools.agent.geometry import DIGITS, color, geometry, shown_geoms
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.simulation import Simulation
@@ -18,8 +17,6 @@ if TYPE_CHECKING:
 EVERY = 4
 """Samples between two pictures: about 16 per second are enough to look at; the exact trace has all of them."""
 WORLD = "world"
-DIGITS = 5
-"""Decimals of what is only looked at: hundredths of a millimetre."""
 
 
 def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
@@ -27,20 +24,22 @@ def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
     for stamp in trace.events:
         yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
     model = simulation.model
-    solids = {body: shapes for body in range(model.nbody) if (shapes := _shapes(model, body))}
-    names = {body: str(model.body(body).name) or WORLD for body in solids}
+    bodies = [body for body in range(model.nbody) if any(shown_geoms(model, body))]
+    names = {body: str(model.body(body).name) or WORLD for body in bodies}
     names = {body: f"{WORLD}/solid" if name == WORLD else name for body, name in names.items()}
+    yield 0.0, "/geometry", geometry(model, names, simulation.world.cast.regions)
+    solids = {body: shapes for body in bodies if (shapes := _shapes(model, body))}
     yield 0.0, "/scene", {"deletions": [], "entities": [_entity(names[body], solids[body]) for body in solids]}
     scratch = mujoco.MjData(model)
     states = simulation.recorder.states
-    moving = [body for body in solids if model.body_weldid[body] != 0]
+    moving = [body for body in bodies if model.body_weldid[body] != 0]
     for row in range(0, len(states), EVERY):
         time = float(trace.times[row])
         scratch.qpos[:] = states[row]
         mujoco.mj_kinematics(model, scratch)
-        bodies = list(solids) if row == 0 else moving
-        places, turns = scratch.xpos[bodies].round(DIGITS).tolist(), scratch.xquat[bodies].round(DIGITS).tolist()
-        yield time, "/tf", {"transforms": _frames(time, [names[body] for body in bodies], places, turns)}
+        shown = bodies if row == 0 else moving
+        places, turns = scratch.xpos[shown].round(DIGITS).tolist(), scratch.xquat[shown].round(DIGITS).tolist()
+        yield time, "/tf", {"transforms": _frames(time, [names[body] for body in shown], places, turns)}
         if simulation.robots:
             yield time, "/joints", _joints(simulation, states[row])
 
@@ -81,8 +80,7 @@ def _entity(name: str, shapes: dict[str, list[Any]]) -> dict[str, Any]:
 def _shapes(model: Any, body: int) -> dict[str, list[Any]]:
     """Return the boxes, balls and cylinders of a body, by the names that viewers have for them; meshes are left out."""
     found: dict[str, list[Any]] = {}
-    first = int(model.body_geomadr[body])
-    for geom in range(first, first + int(model.body_geomnum[body])):
+    for geom in shown_geoms(model, body):
         half = model.geom_size[geom].tolist()
         match int(model.geom_type[geom]):
             case mujoco.mjtGeom.mjGEOM_BOX:
@@ -98,15 +96,13 @@ def _shapes(model: Any, body: int) -> dict[str, list[Any]]:
 
 
 def _solid(model: Any, geom: int, size: list[float]) -> dict[str, Any]:
-    material = int(model.geom_matid[geom])
-    color = model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]
     place, turn = model.geom_pos[geom].tolist(), model.geom_quat[geom].tolist()
     pose = {
         "position": dict(zip("xyz", place, strict=True)),
         "orientation": dict(zip("wxyz", turn, strict=True)),
     }
-    shade = np.asarray(color, dtype=float).round(DIGITS).tolist()
-    return {"pose": pose, "size": dict(zip("xyz", size, strict=True)), "color": dict(zip("rgba", shade, strict=True))}
+    shade = dict(zip("rgba", color(model, geom), strict=True))
+    return {"pose": pose, "size": dict(zip("xyz", size, strict=True)), "color": shade}
 
 
 def _stamp(time: float) -> dict[str, int]:

@@ -68,7 +68,7 @@ def replay(options: ReplayOptions) -> int:
 
 def _refusal(stored: StoredRun, record: RunRecord) -> str:
     """Say why a run cannot be replayed; nothing when it can."""
-    path = (stored.folder / record.origin).resolve()
+    path = stored.model()
     if not path.exists():
         return f"the model of the run, {record.path}, is gone"
     models = load_models(path)

@@ -18,6 +18,7 @@ from robbdd_tools.lsp.projects import register_projects
 from robbdd_tools.lsp.reading import register_reading
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.settings import follow_settings, register_settings
+from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.tests import register_tests
 from robbdd_tools.lsp.tokens import register_tokens
 from robbdd_tools.lsp.ways import register_ways
@@ -38,6 +39,7 @@ def create_server() -> RobbddServer:
     register_ways(server)
     register_preview(server)
     register_graph(server)
+    register_stored_runs(server)
     register_projects(server)
     register_tests(server)
     return server

@@ -276,6 +276,11 @@ def trace_file(folder: Path, index: int) -> Path:
     return folder / "traces" / f"{index:06}.mcap"
 
 
+def curves_file(folder: Path, index: int) -> Path:
+    """Return where the margins over time of a scenario of a run are."""
+    return folder / "margins" / f"{index:06}.json"
+
+
 def write_manifest(folder: Path, manifest: Manifest) -> None:
     """Write the manifest into a run folder."""
     data = asdict(manifest)

@@ -73,6 +73,10 @@ class StoredRun:
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise NoSuchRun(f"{self.folder} holds no run: {error}") from error
 
+    def model(self) -> Path:
+        """Return what was run, a file or a folder, which may be gone by now; raises ``NoSuchRun``."""
+        return (self.folder / self.record().origin).resolve()
+
     def write_record(self, record: RunRecord) -> None:
         """Write what is run; raises ``OSError``."""
         _write(self.folder / RECORD, asdict(record))

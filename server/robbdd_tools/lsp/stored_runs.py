@@ -1,0 +1,83 @@
+"""The requests ``robbdd/runs`` and ``robbdd/trace``: stored runs, and a recorded execution to be drawn.
+
+Both take the ``uri`` of a document of the project; docs/schemas/runs.schema.json and trace.schema.json say the rest.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.lsp.run_plan import places_of
+from robbdd_tools.run.shown import NoTrace, find_trace, scenarios, shown_trace, summary
+from robbdd_tools.run.store import NoSuchRun, RunStore, store_beside
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.names.project import Snapshot
+
+RUNS, TRACE = "robbdd/runs", "robbdd/trace"
+Result = TypeVar("Result")
+
+
+def register_stored_runs(server: RobbddServer) -> None:
+    """Add the requests to a server."""
+
+    @server.feature(RUNS)
+    async def runs(params: Any) -> dict[str, Any]:
+        return await _answered(lambda: _runs(params))
+
+    @server.feature(TRACE)
+    async def trace(ls: RobbddServer, params: Any) -> dict[str, Any]:
+        def places(snapshot: Snapshot) -> dict[str, types.Location]:
+            files = [str(params.uri), found["model"]]
+            return {iri: place for uri in files for iri, place in places_of(snapshot, ls.convert, uri)[1].items()}
+
+        found = await _answered(lambda: _trace(params))
+        placed = await ls.in_background(places)
+        del found["model"]
+        clauses = [{**clause, "source": placed.get(clause["iri"])} for clause in found["clauses"]]
+        return {**found, "source": placed.get(found["scenario"]["variant"]), "clauses": clauses}
+
+
+def _runs(params: Any) -> dict[str, Any]:
+    store, word = _store(params), getattr(params, "run", None)
+    if word is None:
+        listed = [summary(run) for run in store.runs()]
+    else:
+        run = store.find(str(word))
+        listed = [{**summary(run), "scenarios": list(scenarios(run))}]
+    return {"store": path_to_uri(store.folder), "runs": listed}
+
+
+def _trace(params: Any) -> dict[str, Any]:
+    store = _store(params)
+    # The parameters are a named tuple, which has an ``index`` of its own.
+    given: dict[str, Any] = params._asdict()
+    word, index, *scenario = map(given.get, ("run", "index", "variant", "variation", "repetition"))
+    word = None if word is None else str(word)
+    if index is None:
+        run, index = find_trace(store, word, *scenario)
+    else:
+        run = store.find(word or "latest")
+    return {**shown_trace(run, int(index)), "model": path_to_uri(run.model())}
+
+
+def _store(params: Any) -> RunStore:
+    path = uri_to_path(str(params.uri))
+    if path is None:
+        raise NoTrace("save the model first: its runs are kept beside it")
+    return store_beside(path)
+
+
+async def _answered(work: Callable[[], Result]) -> Result:
+    """Do something in a thread; that there is nothing to show is the request's error, in words for the user."""
+    try:
+        return await asyncio.to_thread(work)
+    except (NoTrace, NoSuchRun) as error:
+        raise JsonRpcException(str(error), int(types.LSPErrorCodes.RequestFailed)) from error

@@ -1,0 +1,88 @@
+"""How the margin of a predicate went over time, for plots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.monitor.time import NoWindow, TimeConstraint, Window, window
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.trace import Trace
+
+    Margins = Callable[[Window], FloatArray | None]
+    """Tells the margin at each sample of a window, shape (n,), nothing where it is not known."""
+
+POINTS = 400
+"""Points of a curve, about: as many as a screen shows. More are thinned out; extremes and what decides stay."""
+DIGITS = 6
+"""Decimals of what is only looked at."""
+DIGIT = 10**-DIGITS
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """The margin of one fluent.
+
+    ``start`` and ``end`` (s) are its window, ``None`` without one, for a ``reason``. ``margins`` in the SI unit
+    ``unit`` at ``times`` (s); there are none where nothing is recorded. ``negated`` tells that the clause wants the
+    opposite of the fluent.
+    """
+
+    start: float | None = None
+    end: float | None = None
+    reason: str = ""
+    unit: str = ""
+    negated: bool = False
+    times: tuple[float, ...] = ()
+    margins: tuple[float, ...] = ()
+
+
+def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margins) -> Curve:
+    """Return a curve with its window and points.
+
+    Beyond the window it goes only where the margin does not depend on when that opens.
+    """
+    whole = margins(Window(0, len(trace.times) - 1)) if len(trace.times) else None
+    selected = window(constraint, trace)
+    if isinstance(selected, NoWindow):
+        return _drawn(replace(found, reason=selected.reason), trace.times, whole)
+    rows = slice(selected.first, selected.last + 1)
+    times, inside = trace.times[rows], margins(selected)
+    found = replace(found, start=round(float(times[0]), DIGITS), end=round(float(times[-1]), DIGITS))
+    if whole is not None and inside is not None and np.array_equal(whole[rows], inside, equal_nan=True):
+        return _drawn(found, trace.times, whole)
+    return _drawn(found, times, inside)
+
+
+def _drawn(found: Curve, times: FloatArray, margins: FloatArray | None) -> Curve:
+    if margins is None:
+        return found
+    finite = np.isfinite(margins)
+    times, margins = times[finite], margins[finite]
+    if len(times) > POINTS:
+        rows = sorted({*_extremes(margins), *_judged(found, times, margins)})
+        times, margins = times[rows], margins[rows]
+    return replace(found, times=tuple(times.round(DIGITS).tolist()), margins=tuple(margins.round(DIGITS).tolist()))
+
+
+def _extremes(margins: FloatArray) -> Iterator[int]:
+    """Yield the rows of the least and the largest margin of each of ``POINTS / 2`` parts."""
+    bounds = np.linspace(0, len(margins), POINTS // 2 + 1).astype(int).tolist()
+    for first, after in pairwise(bounds):
+        part = margins[first:after]
+        yield from (first + int(part.argmin()), first + int(part.argmax()))
+
+
+def _judged(found: Curve, times: FloatArray, margins: FloatArray) -> Iterator[int]:
+    """Yield the rows that decide: the window's first and last, and that of the least margin in between."""
+    if found.start is None or found.end is None:
+        return
+    first, after = np.searchsorted(times, [found.start - DIGIT, found.end + DIGIT]).tolist()
+    if first < after:
+        yield from (first, after - 1, first + int(margins[first:after].argmin()))

@@ -1,0 +1,126 @@
+"""What is told of stored runs and of one recorded execution: docs/schemas/runs.schema.json and trace.schema.json."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.protocol import ScenarioSpec, curves_file, trace_file
+from robbdd_tools.run.report import plain_sentence, values_words
+from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun
+
+
+class NoTrace(Exception):
+    """There is nothing to show; the message says why."""
+
+
+def summary(run: StoredRun) -> dict[str, Any]:
+    """Return what a list of runs tells of one."""
+    found: dict[str, Any] = {"run": run.number, "folder": path_to_uri(run.folder.absolute())}
+    try:
+        record, results = run.record(), run.results()
+        verdicts = Counter(scenario["verdict"] for scenario in results["scenarios"])
+        found |= {"path": record.path, "model": path_to_uri(run.model()), "seed": record.seed}
+        return {**found, **_counts(verdicts), "complete": results["complete"], "problem": None}
+    except (NoSuchRun, KeyError, TypeError) as error:
+        nothing = {"path": "", "model": "", "seed": 0, "complete": False}
+        return {**found, **nothing, **_counts({}), "problem": str(error)}
+
+
+def scenarios(run: StoredRun) -> Iterator[dict[str, Any]]:
+    """Yield what is told of each scenario of a run; raises ``NoSuchRun``."""
+    verdicts = [scenario["verdict"] for scenario in run.results()["scenarios"]]
+    for index, (spec, verdict) in enumerate(zip(run.manifest().scenarios, verdicts, strict=False)):
+        yield _scenario(run, index, spec, verdict)
+
+
+def find_trace(
+    store: RunStore, word: str | None, variant: str | None, variation: int | None, repetition: int | None
+) -> tuple[StoredRun, int]:
+    """Return the run and the number of a scenario with a trace: of the run ``word``, else of the newest that has one.
+
+    Among several that fit it is the first that is violated, else the first. Raises ``NoTrace`` and ``NoSuchRun``.
+    """
+    runs = list(reversed(store.runs())) if word is None else [store.find(word)]
+    wanted = {"variant": variant, "variation": variation, "repetition": repetition}
+    given = {name: value for name, value in wanted.items() if value is not None}
+    for run in runs:
+        try:
+            fitting = [one for one in scenarios(run) if one["trace"] and given.items() <= one.items()]
+        except NoSuchRun:
+            if word is not None:
+                raise
+            continue
+        if fitting:
+            return run, min(fitting, key=lambda one: one["verdict"] != Outcome.VIOLATED)["index"]
+    where = f"run {word}" if word is not None else f"the runs in {store.folder}" if runs else str(store.folder)
+    raise NoTrace(f"there is no trace of {'that scenario' if given else 'any scenario'} in {where}: run it first")
+
+
+def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
+    """Return the document of a trace, clauses without ``source``; raises ``NoTrace`` and ``NoSuchRun``."""
+    specs, results = run.manifest().scenarios, run.results()["scenarios"]
+    if not 0 <= index < min(len(specs), len(results)):
+        raise NoTrace(f"run {run.number} has no scenario number {index}")
+    spec, result = specs[index], results[index]
+    if not trace_file(run.folder, index).is_file():
+        raise NoTrace(f"run {run.number} keeps no trace of {spec.name}")
+    seen = _seen(run, index)
+    kept = kept_curves(run, index)
+    parts = {str(clause.line): kept["clauses"].get(str(clause.line), []) for clause in spec.clauses}
+    return {
+        "run": run.number,
+        "folder": path_to_uri(run.folder.absolute()),
+        "scenario": _scenario(run, index, spec, result["verdict"]),
+        "duration": kept["duration"],
+        "remark": kept["remark"],
+        "events": kept["events"],
+        **seen,
+        "clauses": [
+            {**entry, "sentence": plain_sentence(clause.sentence), "parts": parts[str(clause.line)]}
+            for clause, entry in zip(spec.clauses, result["clauses"], strict=True)
+        ],
+    }
+
+
+def kept_curves(run: StoredRun, index: int) -> Mapping[str, Any]:
+    """Return what is kept beside a trace: duration, remark, events, curves by feature line; raises ``NoTrace``."""
+    path = curves_file(run.folder, index)
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise NoTrace(f"{path} cannot be read: {error}") from error
+
+
+def _seen(run: StoredRun, index: int) -> dict[str, Any]:
+    command = [sys.executable, "-m", "robbdd_tools.agent.show", str(run.folder), str(index)]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
+    if done.returncode:
+        said = (done.stderr.strip().splitlines() or [f"the reading process ended with code {done.returncode}"])[-1]
+        raise NoTrace(said)
+    return json.loads(done.stdout)
+
+
+def _scenario(run: StoredRun, index: int, spec: ScenarioSpec, verdict: str) -> dict[str, Any]:
+    return {
+        "index": index,
+        "name": spec.name,
+        "values": values_words(spec),
+        "story": spec.story,
+        "variant": spec.variant,
+        "variation": spec.variation,
+        "repetition": spec.repetition,
+        "seed": spec.seed,
+        "verdict": verdict,
+        "trace": trace_file(run.folder, index).is_file(),
+    }
+
+
+def _counts(verdicts: Mapping[str, int]) -> dict[str, int]:
+    return {str(outcome): verdicts.get(outcome, 0) for outcome in Outcome}
