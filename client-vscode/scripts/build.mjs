@@ -1,4 +1,4 @@
-// Builds the extension: one bundle and the TextMate grammars. `--test` builds the unit tests instead of the bundle,
+// Builds the extension, the pages of its web views and the TextMate grammars. `--test` builds the unit tests instead of the bundles,
 // `--production` drops source maps, `--watch` keeps building.
 import { mkdir, readFile, readdir, rm, writeFile } from "node:fs/promises";
 import { join } from "node:path";
@@ -38,10 +38,10 @@ async function buildTests() {
   });
 }
 
-/** Write the licences of the packages that ended up in the bundle; theirs ask for that. */
-async function writeNotices(metafile) {
+/** Write the licences of the packages that ended up in the bundles; theirs ask for that. */
+async function writeNotices(inputs) {
   const packages = new Set(
-    Object.keys(metafile.inputs).flatMap((path) => /^(.*node_modules\/(?:@[^/]+\/)?[^/]+)\//.exec(path)?.[1] ?? []),
+    inputs.flatMap((path) => /^(.*node_modules\/(?:@[^/]+\/)?[^/]+)\//.exec(path)?.[1] ?? []),
   );
   const notices = [];
   for (const folder of [...packages].sort()) {
@@ -55,25 +55,36 @@ async function writeNotices(metafile) {
   await writeFile(join(out, "THIRD_PARTY.txt"), notices.join(`\n${"-".repeat(80)}\n\n`));
 }
 
-async function buildExtension() {
-  const production = flags.has("--production");
-  const options = {
+const production = flags.has("--production");
+
+/** What is built: the extension, and the pages of its web views, which run in a browser. */
+const bundles = [
+  {
     ...shared,
     entryPoints: ["src/extension.ts"],
     outfile: "out/extension.js",
     external: ["vscode"],
-    minify: production,
-    sourcemap: !production,
-    metafile: true,
     // The ES modules of the language client's dependencies bundle without their UMD wrappers' dynamic requires.
     mainFields: ["module", "main"],
-  };
+  },
+  {
+    ...shared,
+    entryPoints: { graph: "webviews/graph/main.ts" },
+    outdir: "out/webviews",
+    platform: "browser",
+    target: "es2022",
+    format: "iife",
+  },
+].map((bundle) => ({ ...bundle, minify: production, sourcemap: !production, metafile: true }));
+
+async function buildExtension() {
+  await rm(join(out, "webviews"), { recursive: true, force: true });
   if (flags.has("--watch")) {
-    const context = await esbuild.context(options);
-    await context.watch();
-  } else {
-    await writeNotices((await esbuild.build(options)).metafile);
+    await Promise.all(bundles.map(async (bundle) => (await esbuild.context(bundle)).watch()));
+    return;
   }
+  const built = await Promise.all(bundles.map((bundle) => esbuild.build(bundle)));
+  await writeNotices(built.flatMap(({ metafile }) => Object.keys(metafile.inputs)));
 }
 
 await writeGrammars();

@@ -1,15 +1,22 @@
 // The commands of the palette. Those of code lenses (robbdd.run, …) are the server's own.
 import * as vscode from "vscode";
 import type { Server } from "./client";
+import type { GraphView } from "./panels/graph/view";
 import type { PreviewView } from "./preview/view";
 import { newProject } from "./projects";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
 
+/** What shows something of a model beside its text. */
+export interface Views {
+  readonly previews: PreviewView;
+  readonly graphs: GraphView;
+}
+
 export function registerCommands(
   server: Server,
   runs: RunMonitor,
-  previews: PreviewView,
+  { previews, graphs }: Views,
   log: vscode.LogOutputChannel,
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
@@ -17,6 +24,10 @@ export function registerCommands(
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
     "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
     "robbdd.previewGherkin": (target) => withModel(target, (uri) => previews.open(vscode.Uri.parse(uri))),
+    "robbdd.showGraph": (target) =>
+      withModel(target, (uri) => {
+        graphs.open(vscode.Uri.parse(uri));
+      }),
     "robbdd.newProject": () => newProject(server),
     "robbdd.installServer": () => server.install(),
     "robbdd.restartServer": () => server.restart(),
@@ -32,7 +43,7 @@ export function registerCommands(
 }
 
 /** Apply a task to the model that a menu names, or to the one in the active editor. */
-async function withModel(target: unknown, task: (uri: string) => Promise<unknown>): Promise<void> {
+async function withModel(target: unknown, task: (uri: string) => unknown): Promise<void> {
   const document = vscode.window.activeTextEditor?.document;
   const active = document?.languageId === "robbdd" ? document.uri : undefined;
   const uri = target instanceof vscode.Uri ? target : active;

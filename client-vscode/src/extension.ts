@@ -2,6 +2,7 @@
 import * as vscode from "vscode";
 import { Server } from "./client";
 import { registerCommands } from "./commands";
+import { GraphView } from "./panels/graph/view";
 import { PreviewView } from "./preview/view";
 import { onInterpreterChange } from "./python";
 import { RunMonitor } from "./runs/monitor";
@@ -22,16 +23,19 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     status.showServer(state);
     if (state.kind === "ready") {
       previews.refreshSoon();
+      graphs.refreshSoon();
     }
   });
   const previews = new PreviewView(started);
+  const graphs = new GraphView(started, context.extensionUri);
   server = started;
   context.subscriptions.push(
     log,
     status,
     runs,
     previews,
-    ...registerCommands(started, runs, previews, log),
+    graphs,
+    ...registerCommands(started, runs, { previews, graphs }, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
         void started.restart();

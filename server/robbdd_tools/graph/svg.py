@@ -223,7 +223,8 @@ def _link(start: _Box, end: _Box, kind: str) -> str:
         bend = (end.x - start.x - start.width) / 2
         x, top, bottom = start.x + start.width, start.middle, end.middle
         path = f"M{x:g} {top:g}C{x + bend:g} {top:g} {end.x - bend:g} {bottom:g} {end.x:g} {bottom:g}"
-    return f'<path class="{style}" d="{path}" marker-end="url(#tip)"/>'
+    ends = f"data-from={quoteattr(start.node.iri)} data-to={quoteattr(end.node.iri)}"
+    return f'<path class="{style}" {ends} d="{path}" marker-end="url(#tip)"/>'
 
 
 def _legend(y: float) -> Iterable[str]:

@@ -152,6 +152,17 @@ export class Workbench {
     return toast;
   }
 
+  /** The page of the one panel with a web view that is in front. */
+  webview() {
+    return this.page.frameLocator("iframe.webview.ready").frameLocator("#active-frame");
+  }
+
+  /** Load the window again, as after a crash or an update, and wait until it can be used. */
+  async reload() {
+    await this.page.reload();
+    await this.page.locator(".explorer-folders-view .monaco-list-row").first().waitFor();
+  }
+
   /** Write a picture of the whole window below the build output. */
   async screenshot(name) {
     const path = join(SCREENSHOTS, `${name}.png`);

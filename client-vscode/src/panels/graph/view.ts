@@ -1,0 +1,189 @@
+// The graph of a model beside its text: it follows edits and the cursor, and leads back to the text.
+import * as vscode from "vscode";
+import { LANGUAGES, type Server } from "../../client";
+import { innermost } from "../../places";
+import { isRecord } from "../../values";
+import { Panel, beside } from "../panel";
+import { reveal } from "../reveal";
+import { type GraphPicture, isGraphPicture, remark } from "./answer";
+import type { ToGraph } from "./messages";
+
+const TYPE = "robbdd.graph";
+/** Milliseconds without an edit before a picture is made again. */
+const PAUSE = 250;
+
+export class GraphView implements vscode.Disposable {
+  /** By the URI of the model. */
+  private readonly graphs = new Map<string, Graph>();
+  private readonly subscriptions: vscode.Disposable[];
+
+  constructor(
+    private readonly server: Server,
+    private readonly extension: vscode.Uri,
+  ) {
+    this.subscriptions = [
+      vscode.window.registerWebviewPanelSerializer(TYPE, {
+        deserializeWebviewPanel: (view, state: unknown) => this.restore(view, state),
+      }),
+      vscode.workspace.onDidChangeTextDocument(({ document }) => {
+        if (LANGUAGES.includes(document.languageId)) {
+          this.refreshSoon();
+        }
+      }),
+      vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => {
+        for (const graph of this.graphs.values()) {
+          graph.moved(textEditor);
+        }
+      }),
+    ];
+  }
+
+  /** Show the graph of a model beside it. */
+  open(model: vscode.Uri): void {
+    const uri = model.toString();
+    const open = this.graphs.get(uri);
+    if (open === undefined) {
+      this.adopt(beside(TYPE, `Graph ${fileName(model)}`), uri, false);
+    } else {
+      open.panel.view.reveal(undefined, true);
+    }
+  }
+
+  /** Draw all graphs again, because a text or the server is another one. */
+  refreshSoon(): void {
+    for (const graph of this.graphs.values()) {
+      graph.loadSoon();
+    }
+  }
+
+  dispose(): void {
+    for (const part of [...this.subscriptions, ...[...this.graphs.values()].map(({ panel }) => panel)]) {
+      part.dispose();
+    }
+  }
+
+  private restore(view: vscode.WebviewPanel, state: unknown): Promise<void> {
+    if (isRecord(state) && typeof state["uri"] === "string" && !this.graphs.has(state["uri"])) {
+      this.adopt(view, state["uri"], true);
+    } else {
+      view.dispose();
+    }
+    return Promise.resolve();
+  }
+
+  private adopt(view: vscode.WebviewPanel, uri: string, restored: boolean): void {
+    const graph = new Graph(view, this.extension, this.server, uri, restored);
+    this.graphs.set(uri, graph);
+    view.onDidDispose(() => {
+      graph.stop();
+      this.graphs.delete(uri);
+    });
+  }
+}
+
+/** One panel with the graph of one model. */
+class Graph {
+  readonly panel: Panel<ToGraph>;
+  private picture: GraphPicture | undefined;
+  private highlighted: string | null = null;
+  /** Counts the requests: an answer that is overtaken by a later one is dropped. */
+  private asked = 0;
+  private timer: NodeJS.Timeout | undefined;
+
+  constructor(
+    view: vscode.WebviewPanel,
+    extension: vscode.Uri,
+    private readonly server: Server,
+    private readonly uri: string,
+    /** The page shows its picture as it was left; the first one must not move it. */
+    private restored: boolean,
+  ) {
+    this.panel = new Panel(
+      view,
+      extension,
+      "graph",
+      () => void this.begin(),
+      ({ iri }) => {
+        this.show(iri);
+      },
+    );
+  }
+
+  loadSoon(): void {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => void this.load(), PAUSE);
+  }
+
+  stop(): void {
+    clearTimeout(this.timer);
+  }
+
+  /** Follow the cursor of an editor; of a large model the part around it may have to be drawn first. */
+  moved(editor: vscode.TextEditor): void {
+    if (!this.highlight(editor) && this.picture?.root != null && editor.document.uri.toString() === this.uri) {
+      this.loadSoon();
+    }
+  }
+
+  /** Ask for the picture again; of a large model for the part around the cursor, else for the one shown. */
+  private async load(): Promise<void> {
+    this.asked += 1;
+    const asked = this.asked;
+    const editor = vscode.window.visibleTextEditors.find(({ document }) => document.uri.toString() === this.uri);
+    const position = editor?.selection.active;
+    const answer = await this.server.request("robbdd/graph", {
+      uri: this.uri,
+      ...(position === undefined ? {} : { position: { line: position.line, character: position.character } }),
+      iri: this.highlighted ?? this.picture?.root?.iri ?? null,
+    });
+    if (asked === this.asked && isGraphPicture(answer)) {
+      this.picture = answer;
+      this.post();
+      const { activeTextEditor } = vscode.window;
+      if (activeTextEditor !== undefined) {
+        this.highlight(activeTextEditor, !this.restored);
+      }
+      this.restored = false;
+    }
+  }
+
+  /** Highlight what the cursor of an editor is in, which may show a file that the model imports; false for nothing. */
+  private highlight({ document, selection }: vscode.TextEditor, move = true): boolean {
+    const found = innermost(this.picture?.places ?? [], document.uri.toString(), selection.active);
+    if (found !== undefined && found.iri !== this.highlighted) {
+      this.highlighted = found.iri;
+      this.panel.post({ type: "highlight", iri: found.iri, move });
+    }
+    return found !== undefined;
+  }
+
+  /** The page knows nothing: tell it what there is, and ask for it when that is nothing. */
+  private async begin(): Promise<void> {
+    if (this.picture === undefined) {
+      await this.load();
+    } else {
+      this.post();
+    }
+  }
+
+  private post(): void {
+    if (this.picture === undefined) {
+      return;
+    }
+    const { uri, svg, problem, root } = this.picture;
+    const subject = root?.iri ?? "";
+    this.panel.post({ type: "picture", uri, svg, remark: remark(this.picture), outdated: problem !== null, subject });
+    this.panel.post({ type: "highlight", iri: this.highlighted, move: false });
+  }
+
+  private show(iri: unknown): void {
+    const source = this.picture?.nodes.find((node) => node.iri === iri)?.source;
+    if (source !== null && source !== undefined) {
+      void reveal(source.uri, source.range, this.panel.view.viewColumn);
+    }
+  }
+}
+
+function fileName(uri: vscode.Uri): string {
+  return uri.path.replace(/^.*\//, "");
+}

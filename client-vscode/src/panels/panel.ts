@@ -1,0 +1,65 @@
+// What all panels with a page of their own have in common: where its files lie, what it may load, when it can listen.
+import { randomBytes } from "node:crypto";
+import * as vscode from "vscode";
+import { isRecord } from "../values";
+import { page } from "./page";
+
+/** One panel with the page `out/webviews/<name>.js`. Messages wait until the page listens, and again after a reload. */
+export class Panel<Outgoing extends object> implements vscode.Disposable {
+  private readonly subscriptions: vscode.Disposable[];
+
+  /**
+   * `ready` is called whenever the page has been loaded and knows nothing; `receive` with all else that it says.
+   */
+  constructor(
+    readonly view: vscode.WebviewPanel,
+    extension: vscode.Uri,
+    name: string,
+    private readonly ready: () => void,
+    private readonly receive: (message: Record<string, unknown>) => void,
+  ) {
+    const folder = vscode.Uri.joinPath(extension, "out", "webviews");
+    const file = (ending: string) => view.webview.asWebviewUri(vscode.Uri.joinPath(folder, name + ending)).toString();
+    view.webview.options = { enableScripts: true, localResourceRoots: [folder] };
+    view.iconPath = vscode.Uri.joinPath(extension, "images", "file.svg");
+    this.subscriptions = [
+      view.webview.onDidReceiveMessage((message: unknown) => {
+        this.heard(message);
+      }),
+    ];
+    view.webview.html = page({
+      title: view.title,
+      script: file(".js"),
+      style: file(".css"),
+      source: view.webview.cspSource,
+      nonce: randomBytes(16).toString("base64url"),
+    });
+  }
+
+  post(message: Outgoing): void {
+    void this.view.webview.postMessage(message);
+  }
+
+  dispose(): void {
+    for (const subscription of this.subscriptions) {
+      subscription.dispose();
+    }
+    this.view.dispose();
+  }
+
+  private heard(message: unknown): void {
+    if (!isRecord(message)) {
+      return;
+    }
+    if (message["type"] === "ready") {
+      this.ready();
+    } else {
+      this.receive(message);
+    }
+  }
+}
+
+/** Open a new panel beside the editor, without taking the keyboard from that. */
+export function beside(type: string, title: string): vscode.WebviewPanel {
+  return vscode.window.createWebviewPanel(type, title, { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true });
+}

@@ -1,0 +1,165 @@
+// The page of a graph: a picture to be moved and zoomed, whose nodes lead to their text.
+import "./graph.css";
+import type { FromGraph, GraphState, ToGraph } from "../../src/panels/graph/messages";
+import { button, drawn, element } from "../shared/elements";
+import { connect } from "../shared/host";
+import { Canvas } from "./canvas";
+import { type Viewport, fitted, panned, revealed, zoomed } from "./viewport";
+
+const STEP = 60;
+const ZOOM = 1.25;
+/** A picture is not begun smaller than this: its text could not be read. */
+const READABLE = 0.55;
+
+const host = connect<FromGraph, GraphState>((message) => {
+  receive(message as ToGraph);
+});
+const status = element("div", { role: "status" });
+const percent = element("span", { class: "percent", "aria-live": "off" });
+const canvas = new Canvas((iri) => {
+  host.post({ type: "open", iri });
+});
+let view: Viewport = host.kept?.view ?? { x: 0, y: 0, scale: 1 };
+let uri = host.kept?.uri ?? "";
+/** What is in view; undefined before anything was. */
+let subject = host.kept?.subject;
+
+document.body.append(
+  element(
+    "header",
+    { role: "toolbar", "aria-label": "Picture" },
+    button("Fit", "Show the whole picture (0)", fit),
+    button("−", "Smaller (−, Ctrl+wheel)", () => {
+      zoom(1 / ZOOM);
+    }),
+    percent,
+    button("+", "Larger (+, Ctrl+wheel)", () => {
+      zoom(ZOOM);
+    }),
+    element("span", { class: "space" }),
+    legend(),
+  ),
+  status,
+  canvas.root,
+);
+
+function receive(message: ToGraph): void {
+  if (message.type === "highlight") {
+    canvas.highlight(message.iri);
+    if (message.move) {
+      bringIntoView(message.iri);
+    }
+    return;
+  }
+  uri = message.uri;
+  status.textContent = message.remark;
+  status.classList.toggle("problem", message.outdated);
+  canvas.show(message.svg);
+  const other = subject !== message.subject;
+  subject = message.subject;
+  move(other ? fitted(canvas.picture, canvas.size, READABLE) : view);
+}
+
+function bringIntoView(iri: string | null): void {
+  const box = iri === null ? undefined : canvas.boxOf(iri);
+  if (box !== undefined) {
+    move(revealed(view, box, canvas.size));
+  }
+}
+
+function fit(): void {
+  move(fitted(canvas.picture, canvas.size));
+}
+
+function zoom(factor: number, x = canvas.size.width / 2, y = canvas.size.height / 2): void {
+  move(zoomed(view, factor, x, y));
+}
+
+function move(to: Viewport): void {
+  view = to;
+  canvas.place(view);
+  percent.textContent = `${Math.round(view.scale * 100)} %`;
+  if (subject !== undefined) {
+    host.keep({ uri, subject, view });
+  }
+}
+
+const KEYS: Readonly<Record<string, () => void>> = {
+  ArrowLeft: () => {
+    move(panned(view, STEP, 0));
+  },
+  ArrowRight: () => {
+    move(panned(view, -STEP, 0));
+  },
+  ArrowUp: () => {
+    move(panned(view, 0, STEP));
+  },
+  ArrowDown: () => {
+    move(panned(view, 0, -STEP));
+  },
+  "+": () => {
+    zoom(ZOOM);
+  },
+  "=": () => {
+    zoom(ZOOM);
+  },
+  "-": () => {
+    zoom(1 / ZOOM);
+  },
+  "0": fit,
+};
+
+canvas.root.addEventListener("keydown", (event) => {
+  const action = event.ctrlKey || event.metaKey || event.altKey ? undefined : KEYS[event.key];
+  if (action !== undefined) {
+    action();
+    event.preventDefault();
+  }
+});
+canvas.root.addEventListener(
+  "wheel",
+  (event) => {
+    event.preventDefault();
+    if (event.ctrlKey || event.metaKey) {
+      zoom(Math.exp(-event.deltaY / 300), event.offsetX, event.offsetY);
+    } else {
+      move(event.shiftKey ? panned(view, -event.deltaY, 0) : panned(view, -event.deltaX, -event.deltaY));
+    }
+  },
+  { passive: false },
+);
+canvas.root.addEventListener("pointermove", (event) => {
+  if (canvas.root.hasPointerCapture(event.pointerId)) {
+    move(panned(view, event.movementX, event.movementY));
+  }
+});
+canvas.root.addEventListener("focusin", ({ target }) => {
+  const iri = target instanceof Element ? target.getAttribute("data-iri") : null;
+  bringIntoView(iri);
+});
+
+/** What the colours mean, without the shapes: these are in the picture. */
+function legend(): HTMLElement {
+  const words = {
+    story: "User story",
+    variant: "Variant",
+    template: "Template",
+    given: "Given",
+    when: "When",
+    then: "Then",
+    event: "Event",
+  };
+  const entries = Object.entries(words).map(([concept, word]) =>
+    element(
+      "li",
+      {},
+      drawn(
+        "svg",
+        { width: 14, height: 12, "aria-hidden": "true", "data-concept": concept },
+        drawn("rect", { x: 1, y: 1, width: 12, height: 10, "stroke-width": 1.5 }),
+      ),
+      word,
+    ),
+  );
+  return element("ul", { class: "legend", "aria-label": "Colours" }, ...entries);
+}

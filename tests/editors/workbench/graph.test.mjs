@@ -1,0 +1,167 @@
+// The graph of a model beside its text: it follows edits and the cursor, leads to the text, and comes back.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { EXAMPLES, LANGUAGE_SERVER, required } from "./harness/checkout.mjs";
+import { Session } from "./harness/session.mjs";
+import { SCHEMES } from "./harness/workbench.mjs";
+
+const FILE = "tworobots/heights.bdd";
+
+/** @type {Session} */
+let session;
+/** @type {import("./harness/workbench.mjs").Workbench} */
+let workbench;
+/** The page of the graph. */
+let page;
+let failed;
+
+function step(name, body) {
+  test(name, async () => {
+    assert.equal(failed, undefined, `the step before failed: ${failed}`);
+    try {
+      await body();
+    } catch (error) {
+      failed = name;
+      throw error;
+    }
+  });
+}
+
+before(async () => {
+  const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
+  session = await Session.open({ workspace: EXAMPLES, settings: { "robbdd.server.path": server } });
+  workbench = session.workbench;
+});
+
+after(async () => {
+  await session?.close(failed === undefined ? undefined : "graph-failed");
+});
+
+/** The node with a name. */
+function node(name) {
+  return page.locator(`[data-iri$="/${name}"]`);
+}
+
+function current(name) {
+  return page.locator(`.current[data-iri$="/${name}"]`);
+}
+
+step("the command shows the graph beside the model", async () => {
+  await workbench.openFile(FILE);
+  await workbench.codeLens("Run").first().waitFor({ state: "attached" });
+  await workbench.command("RobBDD: Show Graph");
+  page = workbench.webview();
+  await node("at-goal").waitFor();
+  assert.equal(await page.locator("[data-iri]").count(), 16);
+  assert.match(await node("at-goal").textContent(), /part is located at goal/);
+});
+
+step("the node of what the cursor is in is marked and in view", async () => {
+  await cursorAt("does not drop");
+  await current("not-dropped").waitFor();
+  await cursorAt("evt-end>");
+  await current("evt-end").waitFor();
+  await cursorAt("User Story");
+  await current("fill-tall-bins").waitFor();
+  assert.ok(await inWindow("fill-tall-bins"));
+  assert.equal(await page.locator("[data-iri].current").count(), 1);
+});
+
+step("a click on a node selects its text", async () => {
+  await page.getByRole("button", { name: "Show the whole picture" }).click();
+  await node("goal-untouched").click();
+  await workbench.page.locator(".view-overlays .selected-text").first().waitFor();
+  await current("goal-untouched").waitFor();
+  const line = (await session.text(FILE)).split("\n").findIndex((text) => text.includes("goal-untouched:")) + 1;
+  await workbench.page.locator(".statusbar-item", { hasText: new RegExp(`Ln ${line}, Col`) }).waitFor();
+});
+
+step("an edit redraws the picture and leaves it where it is", async () => {
+  const before = await place();
+  await cursorAt("holds(<part> is located at <goal>", "holds(".length);
+  await workbench.type("x");
+  await page.locator("header + .problem", { hasText: "Out of date" }).waitFor();
+  assert.ok(await node("at-goal").isVisible(), "the last good picture stays");
+  await workbench.screenshot("graph-out-of-date");
+  await workbench.undo();
+  await cursorAt('"the cell does not', 1);
+  await workbench.type("really, ");
+  await node("fill-tall-bins").filter({ hasText: "really," }).waitFor();
+  assert.equal(await page.locator(".problem:not(:empty)").count(), 0);
+  assert.equal(await place(), before);
+});
+
+step("the keyboard moves, zooms and opens", async () => {
+  const before = await place();
+  await page.locator(".canvas").press("ArrowRight");
+  assert.notEqual(await place(), before);
+  await page.locator(".canvas").press("+");
+  await page.locator(".canvas").press("+");
+  const percent = Number.parseInt(await page.locator(".percent").textContent());
+  await page.locator(".canvas").press("0");
+  assert.ok(Number.parseInt(await page.locator(".percent").textContent()) < percent);
+  await node("in-hand").press("Enter");
+  await current("in-hand").waitFor();
+});
+
+step("it can be read in a dark and in a light theme", async () => {
+  for (const scheme of Object.keys(SCHEMES)) {
+    await workbench.changeScheme(scheme);
+    const [text, ground] = await node("in-hand").evaluate((group) => [
+      getComputedStyle(group.querySelector("text")).fill,
+      getComputedStyle(group.querySelector("rect")).fill,
+    ]);
+    assert.ok(contrast(text, ground) >= 4.5, `${scheme}: ${text} on ${ground}`);
+    await workbench.screenshot(`graph-${scheme}`);
+  }
+});
+
+step("a page that was hidden shows what it showed before", async () => {
+  await page.getByRole("button", { name: "Larger" }).click();
+  const before = await place();
+  await workbench.openFile("tworobots/cell.scene");
+  await workbench.page.locator("iframe.webview.ready").waitFor({ state: "hidden" });
+  await workbench.command("View: Close Editor");
+  await current("in-hand").waitFor();
+  assert.equal(await place(), before);
+});
+
+step("the panel comes back with the window", async () => {
+  await workbench.reload();
+  page = workbench.webview();
+  await current("in-hand").waitFor();
+});
+
+function place() {
+  return page.locator(".canvas > g").getAttribute("transform");
+}
+
+/** Whether a node is within the window of its page. */
+function inWindow(name) {
+  return node(name).evaluate((group) => {
+    const { left, top, right, bottom } = group.getBoundingClientRect();
+    return left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
+  });
+}
+
+/** Put the cursor into the first line of the model on disk with a text, so many signs behind its beginning. */
+async function cursorAt(text, behind = 1) {
+  const lines = (await session.text(FILE)).split("\n");
+  const line = lines.findIndex((entry) => entry.includes(text));
+  assert.ok(line >= 0, text);
+  await workbench.command("View: Focus First Editor Group");
+  await workbench.goTo(line + 1, lines[line].indexOf(text) + 1 + behind);
+}
+
+/** Contrast of two colours as WCAG 2 defines it. */
+function contrast(one, other) {
+  const light = (colour) => {
+    const [red, green, blue] = colour.match(/[\d.]+/g).map((part) => {
+      const value = Number(part) / 255;
+      return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
+    });
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+  };
+  const [darker, lighter] = [light(one), light(other)].sort((a, b) => a - b);
+  return (lighter + 0.05) / (darker + 0.05);
+}
