@@ -8,6 +8,7 @@ import { onInterpreterChange } from "./python";
 import { RunMonitor } from "./runs/monitor";
 import { Setup } from "./setup/setup";
 import { StatusItem } from "./status";
+import { TestingView } from "./testing/view";
 
 let server: Server | undefined;
 
@@ -24,10 +25,12 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     if (state.kind === "ready") {
       previews.refreshSoon();
       graphs.refreshSoon();
+      void tests.serverReady();
     }
   });
   const previews = new PreviewView(started);
   const graphs = new GraphView(started, context.extensionUri);
+  const tests = new TestingView(started, runs);
   server = started;
   context.subscriptions.push(
     log,
@@ -35,6 +38,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     runs,
     previews,
     graphs,
+    tests,
     ...registerCommands(started, runs, { previews, graphs }, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {

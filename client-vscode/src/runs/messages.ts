@@ -1,4 +1,5 @@
 // What the server says about a run, as it arrives in the notification `robbdd/runMessage`.
+import type { Place } from "../testing/listing";
 import { isRecord } from "../values";
 
 export interface RunStarted {
@@ -15,16 +16,35 @@ export interface ScenarioStarted {
   readonly name: string;
   /** The values of its variables, in words. */
   readonly values: string;
+  /** IRI of the scenario's variant. */
+  readonly variant?: string;
+  /** Counts the scenarios of the variant, from 1. */
+  readonly variation?: number;
+  /** The name of the variant in the text. */
+  readonly source?: Place | null;
 }
 
-export interface ClauseStarted {
+/** What is said of a clause beside its scenario and its line. */
+export interface ClauseWords {
+  /** IRI of the clause. */
+  readonly clause?: string;
+  /** Number of the clause in its scenario, from 0. */
+  readonly position?: number;
+  readonly name?: string;
+  readonly role?: string;
+  readonly source?: Place | null;
+}
+
+export interface ClauseStarted extends ClauseWords {
   readonly type: "ClauseStarted";
   readonly index: number;
   /** Line of the clause in the feature file. */
   readonly line: number;
+  /** What the clause says, with its values. */
+  readonly sentence?: string;
 }
 
-export interface ClauseJudged {
+export interface ClauseJudged extends ClauseWords {
   readonly type: "ClauseJudged";
   readonly index: number;
   readonly line: number;
@@ -37,6 +57,8 @@ export interface ClauseJudged {
   /** Simulated time of the deciding instant, s. */
   readonly at: number | null;
   readonly reason: string;
+  /** Why the clause could not have been violated; empty where it could. */
+  readonly vacuous?: string;
 }
 
 export interface MarginRanges {
@@ -78,6 +100,8 @@ export type RunMessage =
   | RunFinished;
 
 export interface RunNotification {
+  /** Tells runs apart. */
+  readonly run?: string;
   readonly uri: string;
   readonly message: RunMessage;
 }

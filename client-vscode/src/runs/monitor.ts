@@ -8,6 +8,11 @@ export class RunMonitor implements vscode.Disposable {
   private readonly channel = vscode.window.createOutputChannel("RobBDD Runs");
   private readonly reports = new Map<string, RunReport>();
   private summary = "";
+  private readonly heard = new vscode.EventEmitter<RunNotification>();
+  private readonly over = new vscode.EventEmitter<void>();
+  readonly onMessage = this.heard.event;
+  /** The server has nothing more to say about any run, whether they ended or not. */
+  readonly onOver = this.over.event;
 
   constructor(private readonly onChange: (runs: readonly RunProgress[], summary: string) => void) {}
 
@@ -15,7 +20,8 @@ export class RunMonitor implements vscode.Disposable {
     this.channel.show(true);
   }
 
-  accept({ uri, message }: RunNotification): void {
+  accept(notification: RunNotification): void {
+    const { uri, message } = notification;
     let report = this.reports.get(uri);
     if (report === undefined || message.type === "RunStarted") {
       report = new RunReport(vscode.workspace.asRelativePath(vscode.Uri.parse(uri)));
@@ -24,11 +30,13 @@ export class RunMonitor implements vscode.Disposable {
     this.print(report.add(message));
     this.settle(uri, report);
     this.publish();
+    this.heard.fire(notification);
   }
 
   /** The server has nothing more to say about a run. */
   end(uri: string): void {
     this.interrupt(uri, "The run ended before it was complete.");
+    this.over.fire();
   }
 
   /** The server is gone, and with it whatever it was running. */
@@ -36,10 +44,13 @@ export class RunMonitor implements vscode.Disposable {
     for (const uri of [...this.reports.keys()]) {
       this.interrupt(uri, "The language server stopped during the run.");
     }
+    this.over.fire();
   }
 
   dispose(): void {
     this.channel.dispose();
+    this.heard.dispose();
+    this.over.dispose();
   }
 
   private interrupt(uri: string, reason: string): void {

@@ -1,7 +1,7 @@
 // One run as text: messages in, lines for the output channel and a summary out.
 import type { ClauseJudged, RunMessage } from "./messages";
 
-const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
+export const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
 
 type Outcome = "passed" | "failed" | "undecided";
 
@@ -122,17 +122,22 @@ function describeClause(clause: ClauseJudged): string {
   return `${SIGNS[clause.verdict]} ${clause.sentence}: ${clause.verdict}${margin(clause)}${instant}${reason}`;
 }
 
-/** The margin in a unit that reads well; without a unit it is but another word for the verdict. */
-function margin({ robustness, unit }: ClauseJudged): string {
+function margin(clause: ClauseJudged): string {
+  const shown = marginOf(clause);
+  return shown === "" ? "" : ` by ${shown}`;
+}
+
+/** The margin in a unit that reads well; without a unit it is but another word for the verdict: nothing. */
+export function marginOf({ robustness, unit }: Pick<ClauseJudged, "robustness" | "unit">): string {
   if (robustness === null || unit === "") {
     return "";
   }
   const short = unit === "m" && Math.abs(robustness) < 1;
   const [value, shown] = short ? [robustness * 1000, "mm"] : [robustness, unit];
-  return ` by ${value < 0 ? "−" : "+"}${Math.abs(value).toPrecision(3)} ${shown}`;
+  return `${value < 0 ? "−" : "+"}${Math.abs(value).toPrecision(3)} ${shown}`;
 }
 
-function seconds(value: number): string {
+export function seconds(value: number): string {
   return `${value.toFixed(2)} s`;
 }
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.features.results import variant_digest
 from robbdd_tools.features.stories import ListedStory, ListedVariant, stories_in, story_files
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
 from robbdd_tools.names.clauses import clauses_in
@@ -65,6 +66,7 @@ def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]
             **_declared("variant", placed.iri, placed.definition),
             "detail": "" if listed.count is None else f"{listed.count:,} scenario{'' if listed.count == 1 else 's'}",
             "count": listed.count,
+            "digest": variant_digest(snapshot, placed),
             "variation": convert.location(snapshot, placed.definition.uri, listed.variation),
         }
 

@@ -1,0 +1,132 @@
+// Puts what a run says onto the items of the tree of tests.
+import type { ClauseJudged, ClauseStarted, RunNotification, ScenarioStarted } from "../runs/messages";
+import { RunReport } from "../runs/report";
+import type { Item } from "./items";
+import type { ListedTest, Place } from "./listing";
+import { type Failure, outcomeOf } from "./outcomes";
+import type { TestTree } from "./tree";
+
+/** A run as the editor shows it; it ignores what is said after its end. */
+export interface Sink<I> {
+  started(item: I): void;
+  passed(item: I, duration?: number): void;
+  failed(item: I, failure: Failure, place: Place | null, duration?: number): void;
+  errored(item: I, failure: Failure, place: Place | null, duration?: number): void;
+  output(line: string, item?: I, place?: Place | null): void;
+  end(): void;
+}
+
+interface Begun<I> {
+  readonly item: I;
+  readonly values: string;
+  /** When the clause that is being judged was begun, ms. */
+  since: number;
+}
+
+/** Follows one run of the server. Messages are taken in their order, though a file may have to be read for one. */
+export class RunFollower<I extends Item<I>> {
+  private readonly scenarios = new Map<number, Begun<I>>();
+  private readonly report: RunReport;
+  private pending: Promise<void> = Promise.resolve();
+
+  constructor(
+    private readonly tree: TestTree<I>,
+    private readonly sink: Sink<I>,
+    name: string,
+    private readonly now: () => number,
+  ) {
+    this.report = new RunReport(name);
+  }
+
+  take({ uri, message }: RunNotification): void {
+    const instant = this.now();
+    this.pending = this.pending.then(async () => {
+      if (message.type === "ScenarioStarted") {
+        await this.begin(uri, message, instant);
+      } else if (message.type === "ClauseStarted") {
+        this.start(message, instant);
+      } else if (message.type === "ClauseJudged") {
+        this.judge(message, instant);
+      }
+      const scenario = "index" in message ? this.scenarios.get(message.index) : undefined;
+      for (const line of this.report.add(message)) {
+        this.sink.output(line, scenario?.item);
+      }
+    });
+  }
+
+  /** Resolves when everything that was taken is shown. */
+  settled(): Promise<void> {
+    return this.pending;
+  }
+
+  /** The server has nothing more to say. */
+  async interrupt(reason: string): Promise<void> {
+    await this.pending;
+    for (const line of this.report.interrupt(reason)) {
+      this.sink.output(line);
+    }
+    this.sink.end();
+  }
+
+  private async begin(model: string, message: ScenarioStarted, instant: number): Promise<void> {
+    const { variant: iri, variation } = message;
+    if (iri === undefined || variation === undefined) {
+      return;
+    }
+    const uri = message.source?.uri ?? model;
+    if (this.tree.variant(uri, iri) === undefined) {
+      await this.tree.load(uri);
+    }
+    const variant = this.tree.variant(uri, iri);
+    if (variant !== undefined) {
+      const item = this.tree.scenario(variant, variation, message.values);
+      this.scenarios.set(message.index, { item, values: message.values, since: instant });
+    }
+  }
+
+  private start(message: ClauseStarted, instant: number): void {
+    const scenario = this.scenarios.get(message.index);
+    const item = scenario && this.clause(scenario, message, message.sentence ?? "");
+    if (scenario !== undefined && item !== undefined) {
+      scenario.since = instant;
+      this.sink.started(item);
+    }
+  }
+
+  private judge(message: ClauseJudged, instant: number): void {
+    const scenario = this.scenarios.get(message.index);
+    const item = scenario && this.clause(scenario, message, message.sentence);
+    if (scenario === undefined || item === undefined) {
+      return;
+    }
+    const outcome = outcomeOf(message, scenario.values);
+    this.tree.note(item, outcome.note);
+    const place = message.source ?? null;
+    const duration = instant - scenario.since;
+    scenario.since = instant;
+    if (outcome.failure === undefined) {
+      this.sink.passed(item, duration);
+    } else if (outcome.state === "failed") {
+      this.sink.failed(item, outcome.failure, place, duration);
+    } else {
+      this.sink.errored(item, outcome.failure, place, duration);
+    }
+  }
+
+  private clause(scenario: Begun<I>, message: ClauseStarted | ClauseJudged, sentence: string): I | undefined {
+    if (message.position === undefined) {
+      return undefined;
+    }
+    const listed: ListedTest = {
+      kind: "clause",
+      id: message.clause ?? "",
+      name: message.name ?? "",
+      detail: sentence,
+      role: message.role ?? "",
+      place: message.source ?? null,
+      tests: [],
+    };
+    return this.tree.clause(scenario.item, message.position, listed);
+  }
+}

@@ -1,0 +1,48 @@
+// The part of the editor's test items that the tree needs, so that it can be tested without an editor.
+import type { Kind, Place } from "./listing";
+
+export interface Items<I> extends Iterable<[id: string, item: I]> {
+  readonly size: number;
+  add(item: I): void;
+  delete(id: string): void;
+  get(id: string): I | undefined;
+  replace(items: readonly I[]): void;
+}
+
+export interface Item<I> {
+  readonly id: string;
+  readonly children: Items<I>;
+  readonly parent: I | undefined;
+  label: string;
+  description?: string;
+  sortText?: string | undefined;
+  busy: boolean;
+  canResolveChildren: boolean;
+}
+
+/** Makes items and sets what the editor has types of its own for. */
+export interface Factory<I> {
+  create(id: string, label: string, uri: string): I;
+  setPlace(item: I, place: Place | null): void;
+  setProblem(item: I, problem: string | undefined): void;
+}
+
+/** What an item stands for; `uri` is the model that is run. */
+export interface Facts {
+  readonly kind: Kind;
+  readonly uri: string;
+  readonly place: Place | null;
+  /** IRI of the variant, but of stories. */
+  readonly variant?: string;
+  /** Of a variant: how many scenarios it makes, where known. */
+  readonly count?: number | undefined;
+  readonly digest?: string | undefined;
+  /** Of a variant: its values can be told without asking long, and are shown beside the text. */
+  readonly small?: boolean;
+  readonly variation?: Place | null;
+  /** Of a scenario and its clauses. */
+  readonly number?: number;
+  /** Of a clause: its IRI, and what it says of its scenario. */
+  readonly clause?: string;
+  readonly detail: string;
+}

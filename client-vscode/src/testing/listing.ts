@@ -1,0 +1,82 @@
+// What the server's request `robbdd/tests` answers, level by level.
+import { isRecord } from "../values";
+
+/** A place in a text, in the units of the protocol, which are those of the editor. */
+export interface Place {
+  readonly uri: string;
+  readonly range: {
+    readonly start: { readonly line: number; readonly character: number };
+    readonly end: { readonly line: number; readonly character: number };
+  };
+}
+
+export type Kind = "story" | "variant" | "scenario" | "clause";
+
+export interface ListedTest {
+  readonly kind: Kind;
+  /** IRI; of a scenario its number. */
+  readonly id: string;
+  readonly name: string;
+  readonly detail: string;
+  readonly place: Place | null;
+  readonly tests: readonly ListedTest[];
+  /** Of a variant: how many scenarios it makes, where that is known. */
+  readonly count?: number | null;
+  /** Of a variant: what lists its values. */
+  readonly variation?: Place | null;
+  /** Of a variant: tells whether its text or that of its template has changed. */
+  readonly digest?: string;
+  /** Of a scenario. */
+  readonly number?: number;
+  /** Of a clause. */
+  readonly role?: string;
+}
+
+export interface Listing {
+  /** Why there is nothing (more) to show, for the user. */
+  readonly problem: string | null;
+  /** Files with stories, or what the answer depends on. */
+  readonly files: readonly string[];
+  readonly tests: readonly ListedTest[];
+}
+
+/** What to ask for: nothing names the files, `uri` the stories of one, `variant` the scenarios of a variant. */
+export interface Question {
+  readonly uri?: string;
+  readonly variant?: string;
+  readonly first?: number;
+  readonly most?: number;
+}
+
+export type Ask = (question: Question) => Promise<Listing | undefined>;
+
+const KINDS: ReadonlySet<unknown> = new Set<Kind>(["story", "variant", "scenario", "clause"]);
+
+/** Whether an answer is one that this extension understands. */
+export function isListing(value: unknown): value is Listing {
+  return (
+    isRecord(value) &&
+    (value["problem"] === null || typeof value["problem"] === "string") &&
+    isListOf(value["files"], (file) => typeof file === "string") &&
+    isListOf(value["tests"], isTest)
+  );
+}
+
+function isTest(value: unknown): boolean {
+  return (
+    isRecord(value) &&
+    KINDS.has(value["kind"]) &&
+    ["id", "name", "detail"].every((name) => typeof value[name] === "string") &&
+    (value["place"] === null || isPlace(value["place"])) &&
+    isListOf(value["tests"], isTest)
+  );
+}
+
+/** Whether a value is a place in a text. */
+export function isPlace(value: unknown): value is Place {
+  return isRecord(value) && typeof value["uri"] === "string" && isRecord(value["range"]);
+}
+
+function isListOf(value: unknown, check: (entry: unknown) => boolean): boolean {
+  return Array.isArray(value) && value.every(check);
+}

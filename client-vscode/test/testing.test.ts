@@ -1,0 +1,352 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import type { Factory, Item, Items } from "../src/testing/items";
+import { type Ask, type ListedTest, type Listing, type Place, isListing } from "../src/testing/listing";
+import { outcomeOf } from "../src/testing/outcomes";
+import { fileRuns } from "../src/testing/selection";
+import { RunFollower } from "../src/testing/follower";
+import type { RunMessage } from "../src/runs/messages";
+import { TestTree } from "../src/testing/tree";
+
+const FILE = "file:///cell/fetch.bdd";
+const SCENE = "file:///cell/cell.scene";
+
+/** A test item without an editor. */
+class Node implements Item<Node> {
+  readonly children = new Nodes(this);
+  parent: Node | undefined;
+  description?: string;
+  sortText?: string | undefined;
+  busy = false;
+  canResolveChildren = false;
+  place: Place | null = null;
+  problem: string | undefined;
+
+  constructor(
+    readonly id: string,
+    public label: string,
+  ) {}
+}
+
+class Nodes implements Items<Node> {
+  private readonly entries = new Map<string, Node>();
+
+  constructor(private readonly owner?: Node) {}
+
+  get size(): number {
+    return this.entries.size;
+  }
+
+  add(item: Node): void {
+    item.parent = this.owner;
+    this.entries.set(item.id, item);
+  }
+
+  delete(id: string): void {
+    this.entries.delete(id);
+  }
+
+  get(id: string): Node | undefined {
+    return this.entries.get(id);
+  }
+
+  replace(items: readonly Node[]): void {
+    this.entries.clear();
+    items.forEach((item) => {
+      this.add(item);
+    });
+  }
+
+  [Symbol.iterator](): Iterator<[string, Node]> {
+    return this.entries[Symbol.iterator]();
+  }
+}
+
+const factory: Factory<Node> = {
+  create: (id, label) => new Node(id, label),
+  setPlace: (item, place) => {
+    item.place = place;
+  },
+  setProblem: (item, problem) => {
+    item.problem = problem;
+  },
+};
+
+const at = (line: number, uri = FILE): Place => ({
+  uri,
+  range: { start: { line, character: 0 }, end: { line, character: 9 } },
+});
+
+const clause = (name: string): ListedTest => ({
+  kind: "clause",
+  id: `t:${name}`,
+  name,
+  detail: `cube is ${name}`,
+  role: "then",
+  place: at(3),
+  tests: [],
+});
+
+const scenario = (number: number): ListedTest => ({
+  kind: "scenario",
+  id: String(number),
+  name: `part = cube${number}`,
+  detail: `scenario ${number}`,
+  number,
+  place: null,
+  tests: [clause("held"), clause("placed")],
+});
+
+const variant = (name: string, count: number, digest = "1"): ListedTest => ({
+  kind: "variant",
+  id: `t:${name}`,
+  name,
+  detail: `${count} scenarios`,
+  count,
+  digest,
+  place: at(9),
+  variation: at(12),
+  tests: [],
+});
+
+const story = (...tests: ListedTest[]): ListedTest => ({
+  kind: "story",
+  id: "t:tidy",
+  name: "tidy",
+  detail: "order",
+  place: at(7),
+  tests,
+});
+
+/** A server with one file, whose stories can be changed; it counts the questions. */
+class World {
+  readonly roots = new Nodes();
+  readonly outdated: string[] = [];
+  readonly asked: string[] = [];
+  stories: ListedTest[] = [story(variant("fetch", 3), variant("sort", 1000))];
+  files = [FILE];
+  problem: string | null = null;
+
+  private readonly ask: Ask = async (question): Promise<Listing> => {
+    this.asked.push(question.variant ?? question.uri ?? "files");
+    await Promise.resolve();
+    if (question.uri === undefined) {
+      return { problem: null, files: this.files, tests: [] };
+    }
+    if (question.variant === undefined) {
+      return { problem: null, files: [FILE, SCENE], tests: this.stories };
+    }
+    const count = this.stories.flatMap((one) => one.tests).find((one) => one.id === question.variant)?.count ?? 0;
+    const tests = this.problem === null ? Array.from({ length: count }, (_, index) => scenario(index + 1)) : [];
+    return { problem: this.problem, files: [FILE], tests };
+  };
+
+  readonly tree = new TestTree<Node>(this.roots, factory, this.ask, (items) => {
+    this.outdated.push(...items.map((item) => item.label));
+  });
+
+  item(...path: string[]): Node {
+    let items: Items<Node> = this.roots;
+    let found: Node | undefined;
+    for (const label of path) {
+      found = [...items].map(([, item]) => item).find((item) => item.label === label);
+      assert.ok(found, `there is no ${label}`);
+      items = found.children;
+    }
+    assert.ok(found);
+    return found;
+  }
+
+  labels(item?: Node): string[] {
+    return [...(item?.children ?? this.roots)].map(([, child]) => child.label);
+  }
+}
+
+test("stories and variants are listed first, scenarios when they are asked for", async () => {
+  const world = new World();
+  await world.tree.expand(undefined);
+  assert.deepEqual(world.labels(), ["tidy"]);
+  assert.deepEqual(world.labels(world.item("tidy")), ["fetch", "sort"]);
+  assert.deepEqual(world.asked, ["files", FILE]);
+  const fetch = world.item("tidy", "fetch");
+  assert.ok(fetch.canResolveChildren);
+  await world.tree.expand(fetch);
+  assert.deepEqual(world.labels(fetch), ["part = cube1", "part = cube2", "part = cube3"]);
+  assert.deepEqual(world.labels(world.item("tidy", "fetch", "part = cube2")), ["Then held", "Then placed"]);
+});
+
+test("a scenario without a row of its own stands where the values are listed", async () => {
+  const world = new World();
+  await world.tree.expand(undefined);
+  await world.tree.expand(world.item("tidy", "fetch"));
+  assert.deepEqual(world.item("tidy", "fetch", "part = cube1").place, at(12));
+});
+
+test("of a shown file only variants with few scenarios are listed unasked", async () => {
+  const world = new World();
+  await world.tree.load(FILE);
+  await world.tree.expandSmall(FILE);
+  assert.equal(world.item("tidy", "fetch").children.size, 3);
+  assert.equal(world.item("tidy", "sort").children.size, 0);
+});
+
+test("an edit keeps the items, tells which are outdated, and removes what is gone", async () => {
+  const world = new World();
+  await world.tree.load(FILE);
+  await world.tree.expandSmall(FILE);
+  const before = world.item("tidy", "fetch");
+  world.stories = [story(variant("fetch", 2, "2"))];
+  await world.tree.load(FILE);
+  await world.tree.expandSmall(FILE);
+  assert.equal(world.item("tidy", "fetch"), before);
+  assert.deepEqual(world.outdated, ["fetch"]);
+  assert.equal(before.children.size, 2);
+  assert.deepEqual(world.labels(world.item("tidy")), ["fetch"]);
+});
+
+test("a mistake is shown at the variant and keeps what was listed", async () => {
+  const world = new World();
+  await world.tree.load(FILE);
+  const fetch = world.item("tidy", "fetch");
+  await world.tree.expand(fetch);
+  world.problem = "the model has errors";
+  await world.tree.expand(fetch);
+  assert.equal(fetch.problem, "the model has errors");
+  assert.equal(fetch.children.size, 3);
+  world.problem = null;
+  await world.tree.expand(fetch);
+  assert.equal(fetch.problem, undefined);
+});
+
+test("files that are gone take their stories along", async () => {
+  const world = new World();
+  await world.tree.expand(undefined);
+  assert.deepEqual(world.tree.dependents(SCENE), [FILE]);
+  world.files = [];
+  await world.tree.expand(undefined);
+  assert.deepEqual(world.labels(), []);
+  assert.deepEqual(world.tree.dependents(SCENE), []);
+});
+
+async function chosen(include: string[][] | undefined, exclude: string[][] = []) {
+  const world = new World();
+  await world.tree.expand(undefined);
+  await world.tree.expand(world.item("tidy", "fetch"));
+  const items = (paths: string[][]) => paths.map((path) => world.item(...path));
+  const about = (item: Node) => world.tree.about(item);
+  return fileRuns(world.roots, about, include && items(include), items(exclude));
+}
+
+test("any selection becomes runs of whole variants or of numbers", async () => {
+  const whole = [{ variant: "t:fetch" }, { variant: "t:sort" }];
+  assert.deepEqual(await chosen(undefined), [{ uri: FILE, only: whole }]);
+  assert.deepEqual(await chosen([["tidy"]]), [{ uri: FILE, only: whole }]);
+  assert.deepEqual(await chosen([["tidy", "fetch"]]), [{ uri: FILE, only: [{ variant: "t:fetch" }] }]);
+  assert.deepEqual(
+    await chosen([
+      ["tidy", "fetch", "part = cube3"],
+      ["tidy", "fetch", "part = cube1", "Then held"],
+      ["tidy", "fetch", "part = cube1", "Then placed"],
+    ]),
+    [{ uri: FILE, only: [{ variant: "t:fetch", variations: [1, 3] }] }],
+  );
+});
+
+test("what is excluded is left out", async () => {
+  assert.deepEqual(await chosen([["tidy"]], [["tidy", "sort"]]), [{ uri: FILE, only: [{ variant: "t:fetch" }] }]);
+  assert.deepEqual(await chosen(undefined, [["tidy"]]), []);
+  assert.deepEqual(await chosen([["tidy", "fetch"]], [["tidy", "fetch", "part = cube2"]]), [
+    { uri: FILE, only: [{ variant: "t:fetch", variations: [1, 3] }] },
+  ]);
+  const clause = ["tidy", "fetch", "part = cube2", "Then held"];
+  assert.deepEqual(await chosen([["tidy", "fetch"]], [clause]), [{ uri: FILE, only: [{ variant: "t:fetch" }] }]);
+});
+
+const verdict = { sentence: "cube is placed", robustness: -0.012, unit: "m", at: 3.2, reason: "the bin was pushed" };
+
+test("a violated clause fails with margin, instant and the scenario's values", () => {
+  assert.deepEqual(outcomeOf({ ...verdict, verdict: "violated" }, "part = cube1"), {
+    state: "failed",
+    note: "−12.0 mm · at 3.20 s",
+    failure: {
+      text: "violated by −12.0 mm at 3.20 s: the bin was pushed [part = cube1]",
+      expected: "cube is placed\nmargin ≥ 0",
+      actual: "cube is placed\nmargin −12.0 mm at 3.20 s\nthe bin was pushed",
+    },
+  });
+});
+
+test("an unknown clause has an error with its reason, not a failure", () => {
+  const unknown = { ...verdict, verdict: "unknown", robustness: null, at: null, reason: "timed out" } as const;
+  assert.deepEqual(outcomeOf(unknown, ""), {
+    state: "errored",
+    note: "unknown",
+    failure: { text: "unknown: timed out" },
+  });
+});
+
+test("a clause that could not have been violated says so though it holds", () => {
+  const holds = { ...verdict, verdict: "holds", robustness: 0.031, reason: "", vacuous: "nothing ever moved" } as const;
+  assert.deepEqual(outcomeOf(holds, ""), { state: "passed", note: "+31.0 mm · vacuous: nothing ever moved" });
+});
+
+const words = (name: string, position: number) => ({
+  clause: `t:${name}`,
+  position,
+  name,
+  role: "then",
+  sentence: `cube is ${name}`,
+  source: at(3),
+});
+
+test("a run turns clauses of files that nobody has opened, and ends", async () => {
+  const world = new World();
+  const told: string[] = [];
+  let clock = 0;
+  const label = (item: Node) => `${item.parent?.label ?? ""} / ${item.label}`;
+  const follower = new RunFollower<Node>(
+    world.tree,
+    {
+      started: (item) => told.push(`started ${label(item)}`),
+      passed: (item, duration) => told.push(`passed ${label(item)} ${duration ?? "?"}`),
+      failed: (item, failure, place) => told.push(`failed ${label(item)} ${failure.text} @${place?.range.start.line ?? "?"}`),
+      errored: (item, failure) => told.push(`errored ${label(item)} ${failure.text}`),
+      output: () => undefined,
+      end: () => told.push("end"),
+    },
+    "fetch.bdd",
+    () => (clock += 10),
+  );
+  const judged = { type: "ClauseJudged", index: 0, line: 7, robustness: 0.01, unit: "m", at: 1, reason: "" } as const;
+  const messages: RunMessage[] = [
+    { type: "RunStarted", total: 1, simulator: "mujoco" },
+    { type: "ScenarioStarted", index: 0, name: "fetch", values: "part = cube2", variant: "t:fetch", variation: 2, source: at(9) },
+    { type: "ClauseStarted", index: 0, line: 7, ...words("held", 0) },
+    { ...judged, verdict: "holds", ...words("held", 0) },
+    { type: "ClauseStarted", index: 0, line: 8, ...words("placed", 1) },
+    { ...judged, verdict: "violated", robustness: -0.02, ...words("placed", 1) },
+  ];
+  for (const message of messages) {
+    follower.take({ run: "1", uri: FILE, message });
+  }
+  await follower.interrupt("The server stopped.");
+  assert.deepEqual(told, [
+    "started part = cube2 / Then held",
+    "passed part = cube2 / Then held 10",
+    "started part = cube2 / Then placed",
+    "failed part = cube2 / Then placed violated by −20.0 mm at 1.00 s [part = cube2] @3",
+    "end",
+  ]);
+  // Listing the scenarios afterwards keeps what the run found.
+  const item = world.item("tidy", "fetch", "part = cube2", "Then placed");
+  await world.tree.expand(world.item("tidy", "fetch"));
+  assert.equal(world.item("tidy", "fetch", "part = cube2", "Then placed"), item);
+  assert.equal(item.description, "−20.0 mm · at 1.00 s · cube is placed");
+});
+
+test("an answer of another shape is not taken for a listing", () => {
+  assert.ok(isListing({ problem: null, files: [FILE], tests: [story(variant("fetch", 3))] }));
+  for (const wrong of [undefined, {}, { problem: null, files: [1], tests: [] }, { problem: null, files: [], tests: [{}] }]) {
+    assert.ok(!isListing(wrong), JSON.stringify(wrong));
+  }
+});
