@@ -9,11 +9,12 @@ from typing import Any, cast
 
 import pytest
 from lsprotocol import types
-from pytest_lsp import client_capabilities, make_test_lsp_client
+from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
 from kit import schema_errors
 from lsp_kit import CLIENTS, PATIENCE, Editor, plain
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.cli import main
 
 LAMP = "            and\n            'the lamp is green' after <evt-end>\n        )"
 
@@ -37,6 +38,19 @@ async def lenses(editor: Editor) -> list[types.Command]:
     document = types.TextDocumentIdentifier(uri=editor.uri)
     found = await editor.client.text_document_code_lens_async(types.CodeLensParams(text_document=document))
     return [lens.command for lens in found or [] if lens.command is not None]
+
+
+async def another_client(folder: Path) -> LanguageClient:
+    """A client of another server in the same workspace."""
+    client = make_test_lsp_client()
+    # The type of its further arguments is left open.
+    start = cast(Any, client).start_io
+    await start(sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
+    root = types.WorkspaceFolder(uri=path_to_uri(folder), name="test")
+    await client.initialize_session(
+        types.InitializeParams(capabilities=client_capabilities("neovim"), workspace_folders=[root])
+    )
+    return client
 
 
 def short(editor: Editor) -> str:
@@ -95,14 +109,7 @@ async def test_results_survive_a_restart_and_are_stale_after_an_edit(editor: Edi
     await execute(editor, "run")
     before = await hints(editor)
     assert [command.title for command in await lenses(editor)][-2:] == ["1 scenario", "1/1 passed"]
-    restarted = make_test_lsp_client()
-    # The type of its further arguments is left open.
-    start = cast(Any, restarted).start_io
-    await start(sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
-    folder = types.WorkspaceFolder(uri=path_to_uri(tmp_path), name="test")
-    await restarted.initialize_session(
-        types.InitializeParams(capabilities=client_capabilities("neovim"), workspace_folders=[folder])
-    )
+    restarted = await another_client(tmp_path)
     later = Editor(restarted, tmp_path)
     later.open(editor.text)
     async with asyncio.timeout(PATIENCE):
@@ -209,3 +216,45 @@ async def test_a_run_of_a_broken_model_says_why_it_cannot_run(editor: Editor) ->
     params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
     await editor.client.workspace_execute_command_async(params)
     assert any("the model has errors" in message.message for message in editor.client.messages)
+
+
+@pytest.mark.physics
+async def test_a_run_is_kept_as_the_command_line_keeps_its_runs(
+    editor: Editor, capsys: pytest.CaptureFixture[str]
+) -> None:
+    editor.open()
+    answer = await execute(editor, "run", variation=2, seed=5)
+    folder = editor.path.parent / ".robbdd" / "runs" / "1"
+    assert plain(answer["stored"]) == {"run": 1, "folder": path_to_uri(folder)}
+    listed = plain(await editor.client.protocol.send_request_async("robbdd/runs", {"uri": editor.uri}))["runs"]
+    assert [(run["run"], run["model"], run["seed"], run["holds"]) for run in listed] == [(1, editor.uri, 5, 1)]
+    shown = await editor.client.protocol.send_request_async("robbdd/trace", {"uri": editor.uri})
+    assert (shown.run, shown.scenario.variation) == (1, 2)
+    assert main(["replay", "latest", "--store", str(folder.parent)]) == 0
+    assert main(["judge", "latest", str(editor.path)]) == 0
+    assert "1 of 1 traces are the same" in capsys.readouterr().out
+
+
+@pytest.mark.physics
+async def test_a_folder_that_cannot_be_written_does_not_keep_a_run_from_being_looked_at(editor: Editor) -> None:
+    (editor.path.parent / ".robbdd").write_text("in the way", encoding="utf-8")
+    editor.open(short(editor))
+    answer = await execute(editor, "run")
+    assert answer["holds"] == 1
+    (told,) = editor.client.messages
+    assert "this run is kept in" in told.message
+    assert "cannot be written" in told.message
+    shown = await editor.client.protocol.send_request_async("robbdd/trace", {"uri": editor.uri})
+    assert shown.folder == plain(answer["stored"])["folder"]
+    assert {label[0] for label in (await hints(editor)).values()} == {"✔"}
+
+
+@pytest.mark.physics
+async def test_two_servers_run_one_model_at_once(editor: Editor, tmp_path: Path) -> None:
+    other = Editor(await another_client(tmp_path), tmp_path)
+    for one in (editor, other):
+        one.open(short(one))
+    answers = await asyncio.gather(execute(editor, "run"), execute(other, "run"))
+    assert {plain(answer["stored"])["run"] for answer in answers} == {1, 2}
+    assert {answer["holds"] for answer in answers} == {1}
+    await other.client.shutdown_session()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -62,7 +61,9 @@ def load_models(path: Path) -> list[Loaded] | None:
 
 def digest(models: Sequence[Loaded]) -> str:
     """Return a digest of the graphs of models together."""
-    return hashlib.sha256("".join(sorted(one.digest for one in models)).encode()).hexdigest()
+    from robbdd_tools.graph.digest import joint_digest
+
+    return joint_digest(one.digest for one in models)
 
 
 def requests(models: Sequence[Loaded], choice: Choice) -> list[RunRequest] | str:
@@ -117,15 +118,14 @@ def requests(models: Sequence[Loaded], choice: Choice) -> list[RunRequest] | str
 
 def _load(path: Path) -> Loaded | None:
     from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.digest import graph_digest
     from robbdd_tools.graph.places import placed_model
-    from robbdd_tools.graph.serialize import serialize
 
     snapshot = sound_model(path)
     if snapshot is None:
         return None
     built = build_graph(snapshot, path_to_uri(path))
-    text = serialize(built.graph, "nt")
-    return Loaded(path, placed_model(built, snapshot), hashlib.sha256(text.encode()).hexdigest())
+    return Loaded(path, placed_model(built, snapshot), graph_digest(built))
 
 
 def _unknown_names(models: Sequence[Loaded], names: Sequence[str]) -> str:

@@ -28,7 +28,7 @@ class Judgement:
 
     ``outcome`` is ``holds``, ``violated``, ``unknown`` or ``undefined`` (no step can judge it); ``margin`` and ``said``
     are words, the latter with instant and reason; of several the one of the smallest ``rank`` is the worst. ``digest``
-    is that of the clause's text at the time.
+    is that of the clause's text at the time; ``line`` that of its step in the feature.
     """
 
     name: str
@@ -37,6 +37,7 @@ class Judgement:
     rank: float
     said: str
     digest: str
+    line: int = 0
 
 
 @dataclass(slots=True)
@@ -44,6 +45,7 @@ class JudgedScenario:
     """A scenario that was run: number ``variation`` of a variant, its values in words, its clauses by IRI.
 
     ``digest`` is that of the text of the variant and its template, ``row`` that of its row in a table (empty without).
+    ``run`` is the number of the stored run that has it as scenario number ``index``; 0 where none is known.
     """
 
     model: str
@@ -54,6 +56,8 @@ class JudgedScenario:
     row: str
     clauses: dict[str, Judgement] = field(default_factory=dict[str, Judgement])
     finished: bool = False
+    run: int = 0
+    index: int = 0
 
     @property
     def outcome(self) -> str:

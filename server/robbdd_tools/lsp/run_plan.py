@@ -19,6 +19,7 @@ from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest
 
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.feature import Numbered
+    from robbdd_tools.graph.built import BuiltGraph
     from robbdd_tools.graph.model import Variant
     from robbdd_tools.lsp.convert import Converter
     from robbdd_tools.names.project import Snapshot
@@ -91,18 +92,25 @@ _TYPES = {
 
 @dataclass(frozen=True, slots=True)
 class RunPlan:
-    """What to run, and the text that it is about: digests, and the places of clauses, variants and rows."""
+    """What to run, and the text that it is about: digests, and the places of clauses, variants and rows.
+
+    ``digest`` is that of the graph.
+    """
 
     request: RunRequest
     uris: tuple[str, ...]
     digests: Digests
     places: Mapping[str, types.Location]
     rows: Mapping[Scenario, types.Location]
+    digest: str
 
 
 def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed: Collection[Scenario]) -> RunPlan:
     """Return the plan of a run; ``failed`` are the scenarios that did not hold. Raises ``ModelError``."""
-    model = feature_plan(snapshot, options.uri).model
+    from robbdd_tools.graph.digest import graph_digest, joint_digest
+
+    built = _sound_graph(snapshot, options.uri)
+    model = _plan(built, snapshot).model
     every = [variant for story in model.stories for variant in story.variants]
     choice = options.choice()
     chosen = [
@@ -136,19 +144,28 @@ def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed
     variants = {variant.iri for variant in chosen}
     request = RunRequest(model, options.uri, options.seed, variants, scenarios)
     uris, places, rows = places_of(snapshot, convert, options.uri)
-    return RunPlan(request, uris, digests_of(snapshot, options.uri), places, rows)
+    digest = joint_digest([graph_digest(built)])
+    return RunPlan(request, uris, digests_of(snapshot, options.uri), places, rows, digest)
 
 
 def feature_plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
     """Return what to write of a file without errors; raises ``ModelError``."""
-    from robbdd_tools.gherkin.files import clause_origins, whole_plan
+    return _plan(_sound_graph(snapshot, uri), snapshot)
+
+
+def _sound_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
     from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.places import placed_model
 
     errors = [found for found in all_diagnostics(snapshot, uri) if found.severity is Severity.ERROR]
     if errors:
         raise ModelError(f"the model has errors, the first: {errors[0].message}")
-    built = build_graph(snapshot, uri)
+    return build_graph(snapshot, uri)
+
+
+def _plan(built: BuiltGraph, snapshot: Snapshot) -> FeaturePlan:
+    from robbdd_tools.gherkin.files import clause_origins, whole_plan
+    from robbdd_tools.graph.places import placed_model
+
     model = placed_model(built, snapshot)
     if not any(story.variants for story in model.stories):
         raise ModelError("the model has no scenario to run")

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import shutil
-import tempfile
 from collections import Counter
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 
-from robbdd_tools.base.files import path_to_uri
+from robbdd_tools import __version__
+from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.results import JudgedScenario, Judgement
-from robbdd_tools.lsp.kept_results import FOLDER, save_results
+from robbdd_tools.lsp.kept_results import save_results
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_plan import ModelError, RunOptions, RunPlan, plan_run
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.pictures import NoPictures, render_moments
-from robbdd_tools.run.prepare import prepare
+from robbdd_tools.run.prepare import prepare_all
 from robbdd_tools.run.protocol import (
     NO_STEP,
     ClauseJudged,
@@ -33,9 +31,13 @@ from robbdd_tools.run.protocol import (
 from robbdd_tools.run.report import margin, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import CANCELLED, Scheduler
+from robbdd_tools.run.store import RunRecord, origin, shown_path
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.run.store import StoredRun
 
 PICTURES = "pictures"
 _LOG = logging.getLogger(__name__)
@@ -64,26 +66,29 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
     if ls.run is not None:
         ls.tell("a run is going on: cancel it first")
         return {}
-    folder = Path(tempfile.mkdtemp(prefix="robbdd-"))
     try:
         options = RunOptions.of({**argument, **more})
-        ls.run = run = ActiveRun(options, options.token or folder.name)
+        ls.run = run = ActiveRun(options, options.token or f"robbdd-run-{next(ls.run_numbers)}")
         failed = [(known.variant, known.variation) for known in ls.results if known.outcome != "holds"]
         plan = await ls.in_background(lambda snapshot: plan_run(snapshot, ls.convert, options, failed), options.uri)
-        manifest = await asyncio.to_thread(prepare, plan.request, folder)
-        follower = _Follower(ls, run, plan, RunResults(manifest))
-        run.scheduler = Scheduler(folder, manifest, watch=follower.hear)
+        place, excuse = await asyncio.to_thread(ls.stores.begin, options.uri)
+        if excuse:
+            ls.tell(excuse)
+        request = plan.request
+        manifest = await asyncio.to_thread(prepare_all, [request], request.name, request.seed, place.folder, True)
+        follower = _Follower(ls, run, plan, RunResults(manifest), place)
+        run.scheduler = Scheduler(place.folder, manifest, watch=follower.hear)
         if run.cancelled:
             run.scheduler.cancel()
         await follower.follow()
-        pictures = await _record(ls, run, folder) if options.record else []
-        return {**follower.summary(), "pictures": pictures}
+        pictures = await _record(ls, place) if options.record else []
+        stored = {"run": place.number, "folder": path_to_uri(place.folder)}
+        return {**follower.summary(), "stored": stored, "pictures": pictures}
     except (ModelError, OSError) as error:
         ls.tell(str(error))
         return {}
     finally:
         ls.run = None
-        await asyncio.to_thread(shutil.rmtree, folder, True)
 
 
 def cancel_run(ls: RobbddServer) -> None:
@@ -95,8 +100,10 @@ def cancel_run(ls: RobbddServer) -> None:
 class _Follower:
     """Takes what the agents of one run say, at once and in the event loop, whichever of them says it."""
 
-    def __init__(self, ls: RobbddServer, run: ActiveRun, plan: RunPlan, results: RunResults) -> None:
+    def __init__(self, ls: RobbddServer, run: ActiveRun, plan: RunPlan, results: RunResults, place: StoredRun) -> None:
         self._ls = ls
+        self._place = place
+        self._simulator = ""
         self._run = run
         self._plan = plan
         self._results = results
@@ -129,7 +136,13 @@ class _Follower:
         self._ls.work_done_progress.end(self._run.id, types.WorkDoneProgressEnd(message=self._told()))
         self._ls.show_results(self._plan.uris)
         await self._ls.show_changed()
-        await asyncio.to_thread(save_results, self._ls.folders(), list(self._ls.results))
+        await asyncio.to_thread(self._keep, list(self._ls.results))
+
+    def _keep(self, results: list[JudgedScenario]) -> None:
+        """Keep the run, and what is known of all scenarios now."""
+        self._place.write_record(_record_of(self._plan, self._place.folder, self._simulator))
+        self._place.write_results(self._results.as_json())
+        save_results(self._ls.folders(), results)
 
     def summary(self) -> dict[str, Any]:
         """Return how the run went, for the client that asked for it."""
@@ -140,6 +153,8 @@ class _Follower:
     def _take(self, message: RunMessage) -> None:
         self._results.apply(message)
         match message:
+            case RunStarted():
+                self._simulator = message.simulator
             case ScenarioStarted(index):
                 self._scenario(index)
             case ClauseJudged():
@@ -162,6 +177,8 @@ class _Follower:
                 values_words(spec),
                 digests.variants.get(spec.variant, ""),
                 digests.rows.get((spec.variant, spec.variation), ""),
+                run=self._place.number,
+                index=index,
             )
             begun = self._begun.setdefault(spec.variant, set())
             if spec.variation not in begun:
@@ -185,6 +202,7 @@ class _Follower:
             _BADNESS[outcome] + (message.robustness or 0.0),
             verdict_words(message),
             self._plan.digests.clauses.get(clause.iri, ""),
+            message.line,
         )
         self._scenario(message.index).judge(clause.iri, judgement)
         self._ls.show_results(self._plan.uris)
@@ -209,16 +227,19 @@ class _Follower:
         return f"{self._results.count(Outcome.HOLDS)} of {len(self._results.scenarios)} scenarios hold"
 
 
-async def _record(ls: RobbddServer, run: ActiveRun, folder: Path) -> list[str]:
-    """Picture the violations of a run into the workspace's folder and return the pictures' URIs."""
-    target = next((place for place in ls.folders(run.options.uri)), None)
-    if target is None:
-        ls.tell("there are no pictures: the model lies in no folder of the workspace")
-        return []
-    pictures = target / FOLDER / PICTURES / run.id
+async def _record(ls: RobbddServer, place: StoredRun) -> list[str]:
+    """Picture the violations of a run into its folder and return the pictures' URIs."""
+    pictures = place.folder / PICTURES
     try:
-        await asyncio.to_thread(render_moments, folder, pictures)
+        await asyncio.to_thread(render_moments, place.folder, pictures)
     except NoPictures as error:
         ls.tell(f"there are no pictures: {error}")
         return []
     return [path_to_uri(path) for path in sorted(pictures.glob("*.png"))]
+
+
+def _record_of(plan: RunPlan, folder: Path, simulator: str) -> RunRecord:
+    uri = plan.request.name
+    path = uri_to_path(uri)
+    shown, start = (uri, uri) if path is None else (shown_path(path), origin(path, folder))
+    return RunRecord(shown, start, plan.digest, plan.request.seed, __version__, simulator)

@@ -23,6 +23,7 @@ from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.kept_results import load_results
 from robbdd_tools.lsp.settings import Settings
 from robbdd_tools.lsp.shapes import ShapeValidator
+from robbdd_tools.lsp.stores import Stores
 from robbdd_tools.lsp.worker import Answer, Request
 from robbdd_tools.names.project import Project, Snapshot
 
@@ -51,6 +52,8 @@ class RobbddServer(LanguageServer):
         self.findings = NOTHING
         """What runs have found, as it is shown."""
         self.run: ActiveRun | None = None
+        self.run_numbers = count(1)
+        self.stores = Stores()
         self._shapes: dict[str, tuple[Diagnostic, ...]] = {}
         self._shaped_texts: dict[str, dict[str, str]] = {}
         self._requested_texts: dict[str, dict[str, str]] = {}
@@ -178,6 +181,7 @@ class RobbddServer(LanguageServer):
             self.run.cancel()
         self.validator.stop()
         self._background.stop()
+        self.stores.close()
         self._analysis.shutdown(wait=False, cancel_futures=True)
 
     async def _publish_one(self, uri: str) -> None:

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.lsp.run_plan import places_of
 from robbdd_tools.run.shown import NoTrace, find_trace, scenarios, shown_trace, summary
-from robbdd_tools.run.store import NoSuchRun, RunStore, store_beside
+from robbdd_tools.run.store import NoSuchRun, RunStore
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -29,8 +29,8 @@ def register_stored_runs(server: RobbddServer) -> None:
     """Add the requests to a server."""
 
     @server.feature(RUNS)
-    async def runs(params: Any) -> dict[str, Any]:
-        return await _answered(lambda: _runs(params))
+    async def runs(ls: RobbddServer, params: Any) -> dict[str, Any]:
+        return await _answered(lambda: _runs(ls.stores.of(str(params.uri)), params))
 
     @server.feature(TRACE)
     async def trace(ls: RobbddServer, params: Any) -> dict[str, Any]:
@@ -38,15 +38,15 @@ def register_stored_runs(server: RobbddServer) -> None:
             files = [str(params.uri), found["model"]]
             return {iri: place for uri in files for iri, place in places_of(snapshot, ls.convert, uri)[1].items()}
 
-        found = await _answered(lambda: _trace(params))
+        found = await _answered(lambda: _trace(ls.stores.of(str(params.uri)), params))
         placed = await ls.in_background(places)
         del found["model"]
         clauses = [{**clause, "source": placed.get(clause["iri"])} for clause in found["clauses"]]
         return {**found, "source": placed.get(found["scenario"]["variant"]), "clauses": clauses}
 
 
-def _runs(params: Any) -> dict[str, Any]:
-    store, word = _store(params), getattr(params, "run", None)
+def _runs(store: RunStore, params: Any) -> dict[str, Any]:
+    word = getattr(params, "run", None)
     if word is None:
         listed = [summary(run) for run in store.runs()]
     else:
@@ -55,8 +55,7 @@ def _runs(params: Any) -> dict[str, Any]:
     return {"store": path_to_uri(store.folder), "runs": listed}
 
 
-def _trace(params: Any) -> dict[str, Any]:
-    store = _store(params)
+def _trace(store: RunStore, params: Any) -> dict[str, Any]:
     # The parameters are a named tuple, which has an ``index`` of its own.
     given: dict[str, Any] = params._asdict()
     word, index, *scenario = map(given.get, ("run", "index", "variant", "variation", "repetition"))
@@ -66,13 +65,6 @@ def _trace(params: Any) -> dict[str, Any]:
     else:
         run = store.find(word or "latest")
     return {**shown_trace(run, int(index)), "model": path_to_uri(run.model())}
-
-
-def _store(params: Any) -> RunStore:
-    path = uri_to_path(str(params.uri))
-    if path is None:
-        raise NoTrace("save the model first: its runs are kept beside it")
-    return store_beside(path)
 
 
 async def _answered(work: Callable[[], Result]) -> Result:

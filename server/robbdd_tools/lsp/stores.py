@@ -1,0 +1,56 @@
+"""Where runs from the editor are kept: beside their models, or in a folder of the server's own where that fails."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from pathlib import Path
+from threading import Lock
+
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.run.store import RunStore, StoredRun, project_root, store_beside
+
+
+class Stores:
+    """The stores of the projects that one server works on."""
+
+    def __init__(self) -> None:
+        self._own: dict[Path | None, RunStore] = {}
+        self._folder: Path | None = None
+        self._lock = Lock()
+
+    def of(self, uri: str) -> RunStore:
+        """Return the store of a document's project."""
+        path = uri_to_path(uri)
+        own = self._own.get(None if path is None else project_root(path))
+        if own is not None:
+            return own
+        return self._made(None) if path is None else store_beside(path)
+
+    def begin(self, uri: str) -> tuple[StoredRun, str]:
+        """Make the folder of a new run; returns it, and why it goes with the server where it does.
+
+        Raises ``OSError`` where not even that can be written.
+        """
+        path = uri_to_path(uri)
+        if path is None:
+            return self.of(uri).begin(), ""
+        store = self.of(uri)
+        try:
+            return store.begin(), ""
+        except OSError as error:
+            own = self._made(project_root(path))
+            why = f"{store.folder} cannot be written ({error.strerror or error})"
+            return own.begin(), f"this run is kept in {own.folder} until the server ends: {why}"
+
+    def close(self) -> None:
+        """Remove what goes with the server."""
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _made(self, root: Path | None) -> RunStore:
+        with self._lock:
+            if root not in self._own:
+                self._folder = self._folder or Path(tempfile.mkdtemp(prefix="robbdd-"))
+                self._own[root] = RunStore(self._folder / str(len(self._own) + 1))
+            return self._own[root]
