@@ -14,10 +14,9 @@ from robbdd_tools.catalog.settings import SETTINGS, SettingError, setting_of
 from robbdd_tools.checks.finding import change, finding, related_to
 from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.names.types import Written, variable_key, written_elements
-from robbdd_tools.names.uses import clauses_of
+from robbdd_tools.names.uses import Clauses, clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
-from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
@@ -31,7 +30,7 @@ LEAST_ALIKE = 0.6
 def setting(site: Site) -> Iterator[Diagnostic]:
     """Report unknown names where they are written, and values in the variations that give them."""
     for clauses in clauses_of(site.placed.declaration):
-        for use in _uses(clauses.node):
+        for use in _uses(clauses):
             if use.name.text not in SETTINGS:
                 yield _unknown(site, use.name)
     for scenario in scenarios(site):
@@ -49,10 +48,8 @@ class _Use:
         self.name, self.value = name, value
 
 
-def _uses(node: tree.Node) -> Iterator[_Use]:
-    for part in walk(node):
-        if isinstance(part, tree.PhraseUse) and part.word == "has-config":
-            yield _Use(part)
+def _uses(clauses: Clauses) -> Iterator[_Use]:
+    return (_Use(phrase) for phrase in clauses.phrases if phrase.word == "has-config")
 
 
 def _unknown(site: Site, name: tree.Name) -> Diagnostic:
@@ -70,7 +67,7 @@ def _misfits(scenario: Scenario) -> Iterator[Diagnostic]:
     for site, clauses in ((scenario.site, scenario.clauses), (scenario.template, outer)):
         if site is None or clauses is None:
             continue
-        for use in _uses(clauses.node):
+        for use in _uses(clauses):
             variable = site.target(use.value)
             if variable is not None and use.name.text in SETTINGS:
                 given.setdefault(variable_key(variable), (site, use.name))

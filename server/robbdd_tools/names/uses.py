@@ -53,10 +53,12 @@ class Use:
 class Clauses:
     """The clauses of one template or variant.
 
-    ``once`` are the durations outside of every ``for all``, whose events come again in each round.
+    ``phrases`` are in the order of the text. ``once`` are the durations outside of every ``for all``, whose events come
+    again in each round.
     """
 
     node: tree.Template | tree.Variant
+    phrases: tuple[tree.PhraseUse, ...]
     uses: tuple[Use, ...]
     bounds: tuple[Bound, ...]
     durations: tuple[tree.During, ...]
@@ -80,11 +82,13 @@ def _collected(node: tree.Template | tree.Variant, parts: tuple[tree.Node | None
     for part in parts:
         collector.visit(part, {}, repeated=False)
     uses = tuple(sorted(collector.uses, key=lambda use: use.ref.span))
-    return Clauses(node, uses, tuple(collector.bounds), tuple(collector.durations), tuple(collector.once))
+    phrases = tuple(sorted(collector.phrases, key=lambda phrase: phrase.span))
+    return Clauses(node, phrases, uses, tuple(collector.bounds), tuple(collector.durations), tuple(collector.once))
 
 
 @dataclass(slots=True)
 class _Collector:
+    phrases: list[tree.PhraseUse] = field(default_factory=list[tree.PhraseUse])
     uses: list[Use] = field(default_factory=list[Use])
     bounds: list[Bound] = field(default_factory=list[Bound])
     durations: list[tree.During] = field(default_factory=list[tree.During])
@@ -124,6 +128,7 @@ class _Collector:
             refs = [(argument.value, ANYTHING) for argument in node.arguments]
             phrase = "pred(…)"
         else:
+            self.phrases.append(node)
             slots, phrase = slot_kinds(node.word), phrase_words(node.word)
             refs = [(value, slots[name]) for name, value in node.arguments if isinstance(value, tree.Ref)]
         self.uses += [Use(ref, kinds, phrase, bound.get(ref.path)) for ref, kinds in refs]

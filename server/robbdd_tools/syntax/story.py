@@ -8,7 +8,7 @@ tells how another one is to be read; and an error costs no more than its own sce
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import chain, pairwise
@@ -23,8 +23,9 @@ from robbdd_tools.syntax.recover import HOLE
 from robbdd_tools.syntax.salvage import salvage, salvage_scenario, with_lost
 from robbdd_tools.syntax.symbols import references, symbols, variant_symbols
 
-KEPT_SCENARIOS = 1000
-"""Scenarios by their text, and the same in their places: enough for stories of tens of thousands of lines."""
+KEPT_FRAMES = 1000
+KEPT_LETTERS = 500_000
+"""Letters of scenarios that are kept beside those of the story that was read last, however long that is."""
 STAND_IN = f"Scenario {HOLE}{{template:<{HOLE}>scene:<{HOLE}>variation:var<{HOLE}>:{{}}}}\n"
 _NAME = r"[^\W\d][\w\-]*"
 _STRING = r"\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?"
@@ -136,12 +137,47 @@ class _Scenario:
     faults: tuple[SyntaxFault, ...]
 
 
+Key = tuple[str, str, str | None, int]
+"""Text, story, namespace and offset."""
+
+
+class _Kept:
+    """Scenarios as they were read: those of the latest stories, never only a part of the latest one."""
+
+    def __init__(self) -> None:
+        self._latest: dict[Key, tuple[_Scenario, ...]] = {}
+        self._older: dict[Key, tuple[_Scenario, ...]] = {}
+        self._letters = 0
+
+    def begin(self) -> None:
+        """Begin to read a story: what it does not use may be forgotten."""
+        if self._letters > KEPT_LETTERS:
+            self._older, self._latest, self._letters = self._latest, {}, 0
+
+    def get(self, key: Key, read: Callable[[Key], tuple[_Scenario, ...]]) -> tuple[_Scenario, ...]:
+        """Return what was read before, else what ``read`` returns."""
+        found = self._latest.get(key)
+        if found is None:
+            found = self._older.get(key)
+            self._latest[key] = found = read(key) if found is None else found
+            self._letters += len(key[0])
+        return found
+
+
+_kept = _Kept()
+_kept_in_place = _Kept()
+
+
 def read_story(cut: Cut) -> Declaration:
     """Return the declaration of a story, of which only scenarios with a new text are parsed."""
+    _kept.begin()
+    _kept_in_place.begin()
     frame = _frame(cut.head, cut.tail)
     own = [replace(symbol, extent=_stretched(symbol.extent, cut)) for symbol in frame.symbols]
     path, namespace = (own[0].path, own[0].namespace) if own else ("", None)
-    found = [one for start, text in cut.scenarios() for one in _placed(text, path, namespace, start)]
+    found = [
+        one for start, text in cut.scenarios() for one in _kept_in_place.get((text, path, namespace, start), _placed)
+    ]
     outside = (_outside(fault, cut) for fault in frame.faults)
     faults = sorted(chain(outside, *(one.faults for one in found)), key=lambda fault: fault.span)
     story = frame.story
@@ -153,7 +189,7 @@ def read_story(cut: Cut) -> Declaration:
     return Declaration(cut.text, story, symbols, references, tuple(faults))
 
 
-@lru_cache(maxsize=KEPT_SCENARIOS)
+@lru_cache(maxsize=KEPT_FRAMES)
 def _frame(head: str, tail: str) -> _Frame:
     text = head + STAND_IN + tail
     piece = read_piece("bdd", text)
@@ -194,8 +230,8 @@ def _unframed(offset: int, cut: Cut) -> int:
     return cut.end if offset < behind else offset - behind + cut.end
 
 
-@lru_cache(maxsize=KEPT_SCENARIOS)
-def _placed(text: str, story: str, namespace: str | None, offset: int) -> tuple[_Scenario, ...]:
+def _placed(key: Key) -> tuple[_Scenario, ...]:
+    text, story, namespace, offset = key
     return tuple(
         _Scenario(
             moved_node(one.variant, offset),
@@ -203,13 +239,13 @@ def _placed(text: str, story: str, namespace: str | None, offset: int) -> tuple[
             tuple(moved_reference(reference, offset) for reference in one.references),
             tuple(moved_fault(fault, offset) for fault in one.faults),
         )
-        for one in _scenarios(text, story, namespace)
+        for one in _kept.get((text, story, namespace, 0), _scenarios)
     )
 
 
-@lru_cache(maxsize=KEPT_SCENARIOS)
-def _scenarios(text: str, story: str, namespace: str | None) -> tuple[_Scenario, ...]:
+def _scenarios(key: Key) -> tuple[_Scenario, ...]:
     """Return what a text says that begins with a scenario; what stands behind its end may be another one."""
+    text, story, namespace, _ = key
     found: list[_Scenario] = []
     start = 0
     while True:
