@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 
 from kit import MODEL, MODELS, ROOT, SCENE, fixture
-from robbdd_tools.base.document import Span
+from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features import semantic_tokens as feature
 from robbdd_tools.features.semantic_tokens import semantic_tokens
-from robbdd_tools.lsp.tokens import APPEARANCES, LEGEND, SentTokens
+from robbdd_tools.lsp.convert import Converter
+from robbdd_tools.lsp.tokens import APPEARANCES, LEGEND, Encoder, SentTokens, encoded
 from robbdd_tools.names.project import Project
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -141,3 +142,35 @@ def test_only_what_has_changed_is_sent_again() -> None:
         (5, 1, [2])
     ]
     assert list(getattr(sent.difference("a", first.result_id, [7]), "data", ())) == [7]
+
+
+def test_tokens_kept_over_edits_are_sent_as_those_of_a_fresh_project() -> None:
+    uri, edited, encoder, convert = "file:///main.bdd", Project(), Encoder(), Converter()
+    first = MODEL.replace('import "lab.scene"', SCENE)
+    changes = [
+        ("Event (ns=t) start", "// 😀 above\nEvent (ns=t) start"),
+        ("before <pick-start>", "before  <pick-start>"),
+        ("ws set (ns=env) places", "ws set (ns=env) spots"),
+        ("scene (ns=env) bench_scene", "scene (ns=env) bench_scene {} scene (ns=env) other"),
+    ]
+    text = first
+    for version, (old, new) in enumerate([("", ""), *changes]):
+        assert old in text
+        text = text.replace(old, new, 1)
+        edited.open(uri, version, text)
+        fresh = Project()
+        fresh.open(uri, version, text)
+        document = Document(uri, version, text)
+        whole = encoder.whole(convert, document, feature.coloured(edited.snapshot(), uri))
+        assert whole == encoded(convert, document, semantic_tokens(fresh.snapshot(), uri))
+
+
+def test_a_piece_that_an_edit_left_alone_is_not_coloured_again() -> None:
+    uri, project = "file:///main.bdd", Project()
+    text = MODEL.replace('import "lab.scene"', SCENE)
+    project.open(uri, 1, text)
+    before = feature.coloured(project.snapshot(), uri)
+    project.open(uri, 2, text.replace("before <pick-start>", "before  <pick-start>", 1))
+    after = feature.coloured(project.snapshot(), uri)
+    changed = [old for (_, old), (_, new) in zip(before, after, strict=True) if old is not new]
+    assert len(changed) == 1

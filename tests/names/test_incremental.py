@@ -20,6 +20,7 @@ from kit import EXAMPLES, MODEL, SCENE
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.checks.memo import nothing_kept
 from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.semantic_tokens import semantic_tokens
 from robbdd_tools.names.analysis import FileAnalysis
 from robbdd_tools.names.project import Project
 
@@ -136,7 +137,7 @@ def known(project: Project, uri: str) -> object:
         path: (found.span, found.extent, found.kind, found.iri) for path, found in analysis.definitions.items()
     }
     targets = [(placed.offset, dict(placed.targets)) for placed in analysis.declarations]
-    return fast_diagnostics(snapshot, uri), definitions, targets, analysis.imports
+    return fast_diagnostics(snapshot, uri), definitions, targets, analysis.imports, semantic_tokens(snapshot, uri)
 
 
 @settings(

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
+from robbdd_tools.names.table import changed_paths
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.chunk import grammar_text
 from robbdd_tools.syntax.symbols import walk
@@ -22,6 +24,8 @@ from robbdd_tools.syntax.symbols import walk
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.resolve import Resolution
+    from robbdd_tools.names.table import NameTable
     from robbdd_tools.syntax.declaration import Declaration, Reference
 
 COMMENT, STRING, NUMBER, KEYWORD = "comment", "string", "number", "keyword"
@@ -49,76 +53,138 @@ class Token:
     is_declaration: bool = False
 
 
+@dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
+class Coloured:
+    """The tokens of a piece of text, in order and apart; spans count from its start."""
+
+    tokens: tuple[Token, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """The colours of a declaration, with the ``paths`` that they depend on beside what its references lead to.
+
+    ``tables`` are those of the files in which the paths were looked up.
+    """
+
+    tables: tuple[NameTable, ...]
+    paths: frozenset[str]
+    coloured: Coloured
+
+
 def semantic_tokens(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[Token]:
-    """Return the tokens of a file, or of the declarations that touch a part of it, in order and apart."""
+    """Return the tokens of a file, or those that touch a part of it, in order and apart."""
+    return [
+        Token(token.span.shifted(offset), token.concept, token.is_declaration)
+        for offset, piece in coloured(snapshot, uri, within)
+        for token in piece.tokens
+        if within is None or (token.span.start + offset < within.end and within.start < token.span.end + offset)
+    ]
+
+
+def coloured(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[tuple[int, Coloured]]:
+    """Return the tokens of a file, or of its pieces that touch a part of it, piece by piece behind each one's offset.
+
+    A piece that an edit leaves as it was stays the same object.
+    """
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
-    text = analysis.document.text
-    found: list[Token] = []
+    text, tables = analysis.document.text, snapshot.scope(uri).tables
+    found: list[tuple[int, Coloured]] = []
     end = 0
     for placed in analysis.declarations:
-        found += _lead(text, end, placed.offset)
+        found.append((end, _between(text[end : placed.offset])))
         end = placed.span.end
         if within is None or (placed.offset <= within.end and within.start <= end):
-            found += _of_declaration(snapshot, analysis, placed)
-    found += _lead(text, end, len(text))
-    lined = [piece for token in found for piece in _lines(text, token)]
-    if within is None:
-        return lined
-    return [token for token in lined if token.span.start < within.end and within.start < token.span.end]
+            found.append((placed.offset, _of_declaration(snapshot, analysis, placed, tables)))
+    found.append((end, _between(text[end:])))
+    return found
 
 
-def _of_declaration(snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration) -> Iterator[Token]:
-    used = {reference.ref.span: reference for reference in placed.declaration.references}
-    for token in _own(language_of(file.document.uri), placed.declaration):
-        span = token.span.shifted(placed.offset)
-        if token.concept != NAME:
-            yield Token(span, token.concept, token.is_declaration)
-            continue
-        reference = used.get(token.span)
-        if reference is None:
-            yield from _unread(snapshot, file, span)
-        else:
-            yield from _reference(snapshot, file, placed, reference)
+def _of_declaration(
+    snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, tables: tuple[NameTable, ...]
+) -> Coloured:
+    """Return the colours of a declaration, those that it had where nothing that they depend on has changed."""
+    known = _known.get(placed.targets.resolution)
+    if known is not None and known.tables is tables:
+        return known.coloured
+    if known is not None and known.paths.isdisjoint(_changed(known.tables, tables)):
+        found, paths = known.coloured, known.paths
+    else:
+        reader = _Names(snapshot, file, placed)
+        found = Coloured(tuple(piece for token in reader.tokens() for piece in _lines(placed.declaration.text, token)))
+        paths = frozenset(reader.paths)
+    _known[placed.targets.resolution] = _Known(tables, paths, found)
+    return found
 
 
-def _reference(
-    snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, reference: Reference
-) -> Iterator[Token]:
-    """Yield a token for each segment of a qualified name, as far as it leads somewhere."""
-    ref = reference.ref
-    target = placed.targets.get(ref)
-    if target is None:
-        return
-    start = ref.span.start + placed.offset
-    *outer, last = ref.path.split(".")
-    home = snapshot.file(target.uri)
-    prefix = target.symbol.path.split(".")[: -1 - len(outer)] if len(outer) < target.symbol.path.count(".") else []
-    for number, segment in enumerate(outer):
-        path = ".".join([*prefix, *outer[: number + 1]])
-        owner = home.definitions.get(path) if home is not None else None
-        kind = owner.kind if owner is not None else _kind(snapshot, file, ".".join(outer[: number + 1]))
-        if kind is not None:
-            yield Token(Span(start, start + len(segment)), kind)
-        start += len(segment) + 1
-    yield Token(Span(start, start + len(last)), target.kind)
+_known: WeakKeyDictionary[Resolution, _Known] = WeakKeyDictionary()
 
 
-def _unread(snapshot: Snapshot, file: FileAnalysis, span: Span) -> Iterator[Token]:
-    """Yield the tokens of a name in angle brackets that the parser did not get to."""
-    start = span.start
-    path = file.document.text[span.start : span.end]
-    segments = path.split(".")
-    for number, segment in enumerate(segments):
-        kind = _kind(snapshot, file, ".".join(segments[: number + 1]))
-        if kind is not None and segment:
-            yield Token(Span(start, start + len(segment)), kind)
-        start += len(segment) + 1
+@lru_cache(maxsize=2)
+def _changed(before: tuple[NameTable, ...], after: tuple[NameTable, ...]) -> frozenset[str]:
+    pairs = zip(before, after, strict=True)
+    return frozenset(path for old, new in pairs for path in changed_paths(old, new))
 
 
-def _kind(snapshot: Snapshot, file: FileAnalysis, path: str) -> str | None:
-    return next((declared.symbol.kind for _, declared in snapshot.scope(file.document.uri).find(path)), None)
+@dataclass(slots=True)
+class _Names:
+    """Tells what the names in a declaration are; ``paths`` are those that it looked up on the way."""
+
+    snapshot: Snapshot
+    file: FileAnalysis
+    placed: PlacedDeclaration
+    paths: set[str] = field(default_factory=set[str])
+
+    def tokens(self) -> Iterator[Token]:
+        """Yield the tokens of the declaration; spans count from its start."""
+        declaration = self.placed.declaration
+        used = {reference.ref.span: reference for reference in declaration.references}
+        for token in _own(language_of(self.file.document.uri), declaration):
+            if token.concept != NAME:
+                yield token
+                continue
+            reference = used.get(token.span)
+            if reference is None:
+                yield from self._unread(token.span)
+            else:
+                yield from self._reference(reference)
+
+    def _reference(self, reference: Reference) -> Iterator[Token]:
+        """Yield a token for each segment of a qualified name, as far as it leads somewhere."""
+        ref = reference.ref
+        target = self.placed.targets.get(ref)
+        if target is None:
+            return
+        start = ref.span.start
+        *outer, last = ref.path.split(".")
+        home = self.snapshot.file(target.uri)
+        prefix = target.symbol.path.split(".")[: -1 - len(outer)] if len(outer) < target.symbol.path.count(".") else []
+        for number, segment in enumerate(outer):
+            path = ".".join([*prefix, *outer[: number + 1]])
+            self.paths.add(path)
+            owner = home.definitions.get(path) if home is not None else None
+            kind = owner.kind if owner is not None else self._kind(".".join(outer[: number + 1]))
+            if kind is not None:
+                yield Token(Span(start, start + len(segment)), kind)
+            start += len(segment) + 1
+        yield Token(Span(start, start + len(last)), target.kind)
+
+    def _unread(self, span: Span) -> Iterator[Token]:
+        """Yield the tokens of a name in angle brackets that the parser did not get to."""
+        start = span.start
+        segments = self.placed.declaration.text[span.start : span.end].split(".")
+        for number, segment in enumerate(segments):
+            kind = self._kind(".".join(segments[: number + 1]))
+            if kind is not None and segment:
+                yield Token(Span(start, start + len(segment)), kind)
+            start += len(segment) + 1
+
+    def _kind(self, path: str) -> str | None:
+        self.paths.add(path)
+        found = self.snapshot.scope(self.file.document.uri).find(path)
+        return next((declared.symbol.kind for _, declared in found), None)
 
 
 @lru_cache(maxsize=KEPT_DECLARATIONS)
@@ -195,10 +261,11 @@ def _keywords(language: str) -> frozenset[str]:
     return frozenset(re.findall(r"'([^\W\d][^']*)'", grammar_text(language)))
 
 
-def _lead(text: str, start: int, end: int) -> Iterator[Token]:
-    """Yield the comments between two declarations."""
-    for match in re.finditer(r"//[^\n]*", text[start:end]):
-        yield Token(Span(match.start() + start, match.end() + start), COMMENT)
+@lru_cache(maxsize=KEPT_DECLARATIONS)
+def _between(text: str) -> Coloured:
+    """Return the comments between two declarations."""
+    found = re.finditer(r"//[^\n]*", text)
+    return Coloured(tuple(Token(Span(match.start(), match.end()), COMMENT) for match in found))
 
 
 def _lines(text: str, token: Token) -> Iterator[Token]:

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from weakref import WeakKeyDictionary
 
 from lsprotocol import types
 
-from robbdd_tools.base.document import Document, Span
+from robbdd_tools.base.document import Document
 from robbdd_tools.features import semantic_tokens as feature
-from robbdd_tools.features.semantic_tokens import Token, semantic_tokens
+from robbdd_tools.features.semantic_tokens import Coloured, Token, coloured, semantic_tokens
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
@@ -134,16 +135,44 @@ def encoded(convert: Converter, document: Document, tokens: Sequence[Token]) -> 
     return data
 
 
+class Encoder:
+    """Encodes whole documents, each piece that stays the same but once."""
+
+    def __init__(self) -> None:
+        self._kept: WeakKeyDictionary[Coloured, tuple[Converter, list[int]]] = WeakKeyDictionary()
+
+    def whole(self, convert: Converter, document: Document, pieces: Sequence[tuple[int, Coloured]]) -> list[int]:
+        """Return the tokens of all pieces (behind their offsets) of a document."""
+        data: list[int] = []
+        line, column = 0, 0
+        for offset, piece in pieces:
+            if not piece.tokens:
+                continue
+            start = convert.position(document, offset + piece.tokens[0].span.start)
+            known = self._kept.get(piece)
+            if known is None or known[0] is not convert:
+                # Only where the first token stands depends on what is before the piece.
+                placed = [
+                    Token(token.span.shifted(offset), token.concept, token.is_declaration) for token in piece.tokens
+                ]
+                known = self._kept[piece] = (convert, encoded(convert, document, placed)[2:])
+            data += (start.line - line, start.character - (column if start.line == line else 0))
+            data += known[1]
+            last = convert.position(document, offset + piece.tokens[-1].span.start)
+            line, column = last.line, last.character
+        return data
+
+
 def register_tokens(server: RobbddServer) -> None:
     """Add the methods to a server."""
     sent = SentTokens()
     server.when_closed.append(sent.forget)
 
-    async def data_of(ls: RobbddServer, uri: str, range: types.Range | None = None) -> list[int]:
+    encoder = Encoder()
+
+    async def data_of(ls: RobbddServer, uri: str) -> list[int]:
         def find(snapshot: Snapshot) -> list[int]:
-            document = document_of(snapshot, uri)
-            within: Span | None = None if range is None else ls.convert.span(document, range)
-            return encoded(ls.convert, document, semantic_tokens(snapshot, uri, within))
+            return encoder.whole(ls.convert, document_of(snapshot, uri), coloured(snapshot, uri))
 
         return await ls.analyse(find)
 
@@ -161,10 +190,21 @@ def register_tokens(server: RobbddServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, LEGEND)
     async def part(ls: RobbddServer, params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
-        return types.SemanticTokens(data=await data_of(ls, params.text_document.uri, params.range))
+        def find(snapshot: Snapshot) -> list[int]:
+            document = document_of(snapshot, params.text_document.uri)
+            within = ls.convert.span(document, params.range)
+            return encoded(ls.convert, document, semantic_tokens(snapshot, document.uri, within))
+
+        return types.SemanticTokens(data=await ls.analyse(find))
 
 
 def _common(one: Sequence[int], other: Sequence[int]) -> int:
-    """Return how many tokens two results begin with in common, counted in numbers."""
-    length = next((at for at, (left, right) in enumerate(zip(one, other, strict=False)) if left != right), None)
-    return min(len(one), len(other)) if length is None else length
+    """Return how many numbers two results begin with in common."""
+    same, different = 0, min(len(one), len(other)) + 1
+    while different - same > 1:
+        middle = (same + different) // 2
+        if one[same:middle] == other[same:middle]:
+            same = middle
+        else:
+            different = middle
+    return same

@@ -58,7 +58,7 @@ def analyse(
     resolutions = resolve_file(scope, before and before.scope, known)
     made: dict[Target, Definition] = {}
     placed = tuple(
-        PlacedDeclaration(entry.declaration, entry.offset, Targets(scope, resolution.targets, made))
+        PlacedDeclaration(entry.declaration, entry.offset, Targets(scope, resolution, made))
         for entry, resolution in zip(index.declarations, resolutions, strict=True)
     )
     diagnostics = [*syntax_errors(index), *repeated(scope), *without_namespace(index), *broken]

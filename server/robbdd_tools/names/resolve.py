@@ -38,11 +38,12 @@ class Unresolved:
     other: Target | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
 class Resolution:
     """What the references of one declaration lead to; ``looked_up`` are all paths that the answer depends on.
 
-    ``through_others`` when it also depends on what other names stand for, which no path tells.
+    It stays the same object as long as no edit can have changed it. ``through_others`` when it also depends on what
+    other names stand for, which no path tells.
     """
 
     declaration: Declaration
@@ -58,11 +59,12 @@ class Targets(Mapping["Ref", Definition]):
     ``made`` keeps those of all declarations of a file: many refer to the same few names.
     """
 
-    __slots__ = ("_made", "_scope", "_targets")
+    __slots__ = ("_made", "_scope", "_targets", "resolution")
 
-    def __init__(self, scope: Scope, targets: Mapping[Ref, Target], made: dict[Target, Definition]) -> None:
+    def __init__(self, scope: Scope, resolution: Resolution, made: dict[Target, Definition]) -> None:
         self._scope = scope
-        self._targets = targets
+        self.resolution = resolution
+        self._targets = resolution.targets
         self._made = made
 
     def __getitem__(self, ref: Ref) -> Definition:
