@@ -6,17 +6,19 @@ import type { PreviewView } from "./preview/view";
 import { newProject } from "./projects";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
+import type { TestingView } from "./testing/view";
 
 /** What shows something of a model beside its text. */
 export interface Views {
   readonly previews: PreviewView;
   readonly graphs: GraphView;
+  readonly tests: TestingView;
 }
 
 export function registerCommands(
   server: Server,
   runs: RunMonitor,
-  { previews, graphs }: Views,
+  { previews, graphs, tests }: Views,
   log: vscode.LogOutputChannel,
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
@@ -28,6 +30,7 @@ export function registerCommands(
       withModel(target, (uri) => {
         graphs.open(vscode.Uri.parse(uri));
       }),
+    "robbdd.importResults": (target) => tests.importResults(target instanceof vscode.Uri ? target : undefined),
     "robbdd.newProject": () => newProject(server),
     "robbdd.installServer": () => server.install(),
     "robbdd.restartServer": () => server.restart(),

@@ -39,7 +39,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     previews,
     graphs,
     tests,
-    ...registerCommands(started, runs, { previews, graphs }, log),
+    ...registerCommands(started, runs, { previews, graphs, tests }, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
         void started.restart();

@@ -4,7 +4,8 @@ import type { Factory, Item, Items } from "../src/testing/items";
 import { type Ask, type ListedTest, type Listing, type Place, isListing } from "../src/testing/listing";
 import { outcomeOf } from "../src/testing/outcomes";
 import { fileRuns } from "../src/testing/selection";
-import { RunFollower } from "../src/testing/follower";
+import { RunFollower, type Sink } from "../src/testing/follower";
+import { isFoundResults, showResults } from "../src/testing/results";
 import type { RunMessage } from "../src/runs/messages";
 import { TestTree } from "../src/testing/tree";
 
@@ -299,24 +300,26 @@ const words = (name: string, position: number) => ({
   source: at(3),
 });
 
+/** A run that writes down what it is told. */
+function recorded(): { told: string[]; sink: Sink<Node> } {
+  const told: string[] = [];
+  const label = (item: Node) => `${item.parent?.label ?? ""} / ${item.label}`;
+  const sink: Sink<Node> = {
+    started: (item) => told.push(`started ${label(item)}`),
+    passed: (item, duration) => told.push(`passed ${label(item)} ${duration ?? "?"}`),
+    failed: (item, failure, place) => told.push(`failed ${label(item)} ${failure.text} @${place?.range.start.line ?? "?"}`),
+    errored: (item, failure) => told.push(`errored ${label(item)} ${failure.text}`),
+    output: () => undefined,
+    end: () => told.push("end"),
+  };
+  return { told, sink };
+}
+
 test("a run turns clauses of files that nobody has opened, and ends", async () => {
   const world = new World();
-  const told: string[] = [];
   let clock = 0;
-  const label = (item: Node) => `${item.parent?.label ?? ""} / ${item.label}`;
-  const follower = new RunFollower<Node>(
-    world.tree,
-    {
-      started: (item) => told.push(`started ${label(item)}`),
-      passed: (item, duration) => told.push(`passed ${label(item)} ${duration ?? "?"}`),
-      failed: (item, failure, place) => told.push(`failed ${label(item)} ${failure.text} @${place?.range.start.line ?? "?"}`),
-      errored: (item, failure) => told.push(`errored ${label(item)} ${failure.text}`),
-      output: () => undefined,
-      end: () => told.push("end"),
-    },
-    "fetch.bdd",
-    () => (clock += 10),
-  );
+  const { told, sink } = recorded();
+  const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => (clock += 10));
   const judged = { type: "ClauseJudged", index: 0, line: 7, robustness: 0.01, unit: "m", at: 1, reason: "" } as const;
   const messages: RunMessage[] = [
     { type: "RunStarted", total: 1, simulator: "mujoco" },
@@ -342,6 +345,37 @@ test("a run turns clauses of files that nobody has opened, and ends", async () =
   await world.tree.expand(world.item("tidy", "fetch"));
   assert.equal(world.item("tidy", "fetch", "part = cube2", "Then placed"), item);
   assert.equal(item.description, "−20.0 mm · at 1.00 s · cube is placed");
+});
+
+const found = { uri: FILE, variant: "t:fetch", variation: 2, values: "part = cube2", seconds: null, stale: false };
+const held = { clause: null, position: 0, sentence: "cube is held", verdict: "holds", margin: "", said: "✔" } as const;
+
+test("imported results are shown by position, with their words and their share of the time", async () => {
+  const world = new World();
+  const { told, sink } = recorded();
+  const placed = { ...held, position: 1, verdict: "violated", margin: "−3.0 mm", said: "✗ −3.0 mm at 2.00 s" } as const;
+  const clauses = [held, placed].map((clause) => ({ ...clause, stale: false }));
+  assert.deepEqual(await showResults(world.tree, [{ ...found, seconds: 1, clauses }], sink), []);
+  assert.deepEqual(told, [
+    "passed part = cube2 / Then held 500",
+    "failed part = cube2 / Then placed ✗ −3.0 mm at 2.00 s [part = cube2] @3",
+  ]);
+  assert.equal(world.item("tidy", "fetch", "part = cube2", "Then placed").description, "−3.0 mm · cube is placed");
+});
+
+test("kept results are shown by IRI; stale ones are told, and variants that are gone are passed over", async () => {
+  const world = new World();
+  const { told, sink } = recorded();
+  const unknown = { ...held, clause: "t:placed", position: null, verdict: "unknown", said: "? unknown", stale: true } as const;
+  const gone = { ...found, variant: "t:gone", clauses: [unknown] };
+  const outdated = await showResults(world.tree, [{ ...found, clauses: [unknown] }, gone], sink);
+  assert.deepEqual(told, ["errored part = cube2 / Then placed ? unknown [part = cube2]"]);
+  assert.deepEqual(outdated, [world.item("tidy", "fetch", "part = cube2", "Then placed")]);
+});
+
+test("an answer of another shape is not taken for results", () => {
+  assert.ok(isFoundResults({ problem: null, left: 0, scenarios: [] }));
+  assert.ok(!isFoundResults({ problem: null, scenarios: [] }));
 });
 
 test("an answer of another shape is not taken for a listing", () => {

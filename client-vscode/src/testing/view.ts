@@ -6,6 +6,7 @@ import type { RunMonitor } from "../runs/monitor";
 import { RunFollower, type Sink } from "./follower";
 import type { Factory } from "./items";
 import { type Place, type Question, isListing } from "./listing";
+import { type FoundScenario, isFoundResults, showResults } from "./results";
 import { type FileRun, fileRuns } from "./selection";
 import { TestTree } from "./tree";
 
@@ -34,6 +35,7 @@ export class TestingView implements vscode.Disposable {
   private readonly timers = new Map<string, NodeJS.Timeout>();
   private watcher: vscode.FileSystemWatcher | undefined;
   private runs = 0;
+  private restored: Promise<void> | undefined;
 
   constructor(
     private readonly server: Server,
@@ -72,10 +74,36 @@ export class TestingView implements vscode.Disposable {
 
   /** The server can be asked now. */
   async serverReady(): Promise<void> {
+    this.restored = undefined;
     if (this.watcher !== undefined) {
       await this.tree.discover();
+      await this.restore();
     }
     await this.showVisible();
+  }
+
+  /** Show the results that a file holds, which `robbdd run` wrote here or in CI. */
+  async importResults(file?: vscode.Uri): Promise<void> {
+    const chosen = file ?? (await chooseFile());
+    if (chosen === undefined || !(await this.server.ready())) {
+      return;
+    }
+    const answer = await this.server.request("robbdd/importResults", { uri: chosen.toString() });
+    if (!isFoundResults(answer)) {
+      return;
+    }
+    const { problem, scenarios, left } = answer;
+    const name = vscode.workspace.asRelativePath(chosen);
+    if (problem !== null) {
+      void vscode.window.showErrorMessage(`RobBDD: ${problem}`);
+    } else if (scenarios.length === 0) {
+      void vscode.window.showWarningMessage(`RobBDD: ${name} has no results of a scenario in this workspace.`);
+    } else {
+      await this.showFound(scenarios, name, true);
+      const rest = left > 0 ? `; ${left} of scenarios that the workspace does not have are left out` : "";
+      void vscode.window.showInformationMessage(`RobBDD: ${scenarios.length} results of ${name} are shown${rest}.`);
+      await vscode.commands.executeCommand("workbench.view.testing.focus");
+    }
   }
 
   dispose(): void {
@@ -93,11 +121,33 @@ export class TestingView implements vscode.Disposable {
     return isListing(answer) ? { ...answer, files: answer.files.map(normal) } : undefined;
   }
 
+  /** Show once what the server kept of runs, those of earlier sessions too. */
+  private restore(): Promise<void> {
+    this.restored ??= (async () => {
+      const answer = await this.server.request("robbdd/testResults", {});
+      if (isFoundResults(answer) && answer.scenarios.length > 0) {
+        await this.showFound(answer.scenarios, "Kept results", false);
+      }
+    })();
+    return this.restored;
+  }
+
+  private async showFound(scenarios: readonly FoundScenario[], name: string, persist: boolean): Promise<void> {
+    const found = scenarios.map((scenario) => ({ ...scenario, uri: normal(scenario.uri) }));
+    const run = this.controller.createTestRun(new vscode.TestRunRequest(undefined, undefined, this.run), name, persist);
+    const outdated = await showResults(this.tree, found, sinkOf(run));
+    run.end();
+    if (outdated.length > 0) {
+      this.controller.invalidateTestResults(outdated);
+    }
+  }
+
   private async resolve(item: vscode.TestItem | undefined): Promise<void> {
     if (item === undefined) {
       this.watch();
     }
     await this.tree.expand(item);
+    await this.restore();
   }
 
   /** From the first opening of the view on the tree knows all files of the workspace, so that it has to follow them. */
@@ -129,6 +179,7 @@ export class TestingView implements vscode.Disposable {
       if (again || !this.tree.knows(uri)) {
         await this.tree.load(uri);
         await this.tree.expandSmall(uri);
+        await this.restore();
       }
     }
   }
@@ -334,7 +385,8 @@ function sinkOf(run: vscode.TestRun, onEnd: () => void = () => undefined): Sink<
     },
     failed: (item, { text, expected, actual }, place, duration) => {
       open(() => {
-        const message = vscode.TestMessage.diff(text, expected ?? "", actual ?? "");
+        const compared = expected !== undefined && actual !== undefined;
+        const message = compared ? vscode.TestMessage.diff(text, expected, actual) : new vscode.TestMessage(text);
         run.failed(item, located(message, place), duration);
       });
     },
@@ -377,6 +429,12 @@ function located(message: vscode.TestMessage, place: Place | null): vscode.TestM
 
 function rangeOf({ range: { start, end } }: Place): vscode.Range {
   return new vscode.Range(start.line, start.character, end.line, end.character);
+}
+
+async function chooseFile(): Promise<vscode.Uri | undefined> {
+  const filters = { "Results of robbdd run": ["json", "xml"] };
+  const [file] = (await vscode.window.showOpenDialog({ filters, openLabel: "Show Results" })) ?? [];
+  return file;
 }
 
 function picturesOf(answer: unknown): string[] {

@@ -19,6 +19,7 @@ from robbdd_tools.lsp.reading import register_reading
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.settings import follow_settings, register_settings
 from robbdd_tools.lsp.stored_runs import register_stored_runs
+from robbdd_tools.lsp.test_results import register_test_results
 from robbdd_tools.lsp.tests import register_tests
 from robbdd_tools.lsp.tokens import register_tokens
 from robbdd_tools.lsp.ways import register_ways
@@ -42,6 +43,7 @@ def create_server() -> RobbddServer:
     register_stored_runs(server)
     register_projects(server)
     register_tests(server)
+    register_test_results(server)
     return server
 
 

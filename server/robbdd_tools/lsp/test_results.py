@@ -1,0 +1,135 @@
+"""The requests ``robbdd/testResults`` and ``robbdd/importResults``: what runs before, or elsewhere, have found.
+
+The first has no parameters; the second takes the ``uri`` of a file that ``robbdd run --json`` or ``--junit`` wrote.
+Both answers are described by ``docs/schemas/testresults.schema.json``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.base.files import Unreadable, read_text, uri_to_path
+from robbdd_tools.features.results import Digests, JudgedScenario, digests_of
+from robbdd_tools.features.stories import stories_in, story_files
+from robbdd_tools.run.imported import BrokenResults, ImportedScenario, read_results
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.names.project import Snapshot
+
+KEPT = "robbdd/testResults"
+IMPORT = "robbdd/importResults"
+_NO_STEP = {"undefined": "unknown"}
+
+
+def register_test_results(server: RobbddServer) -> None:
+    """Add the requests to a server."""
+
+    @server.feature(KEPT)
+    async def kept(ls: RobbddServer, _: Any) -> dict[str, Any]:
+        scenarios = list(ls.results)
+        models = sorted({scenario.model for scenario in scenarios})
+        return await ls.in_background(lambda snapshot: _kept(snapshot, scenarios, models), *models)
+
+    @server.feature(IMPORT)
+    async def imported(ls: RobbddServer, params: Any) -> dict[str, Any]:
+        uri, folders = str(params.uri), list(ls.workspace.folders)
+        read = await ls.in_background(lambda _: _read(uri))
+        if isinstance(read, str):
+            return {"problem": read, "left": 0, "scenarios": []}
+        files = await ls.in_background(lambda snapshot: story_files(snapshot, folders))
+        return await ls.in_background(lambda snapshot: _matched(snapshot, read, files), *files)
+
+
+def _kept(snapshot: Snapshot, scenarios: Sequence[JudgedScenario], models: Iterable[str]) -> dict[str, Any]:
+    digests = {uri: digests_of(snapshot, uri) for uri in models if snapshot.file(uri) is not None}
+    known = [scenario for scenario in scenarios if scenario.model in digests]
+    return {
+        "problem": None,
+        "left": len(scenarios) - len(known),
+        "scenarios": [_kept_scenario(scenario, digests[scenario.model]) for scenario in known],
+    }
+
+
+def _kept_scenario(scenario: JudgedScenario, now: Digests) -> dict[str, Any]:
+    row = now.rows.get((scenario.variant, scenario.variation), "")
+    return {
+        "uri": scenario.model,
+        "variant": scenario.variant,
+        "variation": scenario.variation,
+        "values": scenario.values,
+        "seconds": None,
+        "stale": scenario.digest != now.variants.get(scenario.variant) or scenario.row != row,
+        "clauses": [
+            {
+                "clause": iri,
+                "position": None,
+                "sentence": "",
+                "verdict": _NO_STEP.get(judgement.outcome, judgement.outcome),
+                "margin": judgement.margin,
+                "said": judgement.said,
+                "stale": judgement.digest != now.clauses.get(iri),
+            }
+            for iri, judgement in scenario.clauses.items()
+        ],
+    }
+
+
+def _read(uri: str) -> list[ImportedScenario] | str:
+    """Return what a results file holds, or why that cannot be told."""
+    path = uri_to_path(uri)
+    text = Unreadable("file-missing", f"'{uri}' is no file") if path is None else read_text(path)
+    if isinstance(text, Unreadable):
+        return text.reason
+    try:
+        return read_results(text)
+    except BrokenResults as error:
+        name = uri if path is None else path.name
+        return f"{name}, line {error.line}, column {error.column}: {error}"
+
+
+def _matched(snapshot: Snapshot, scenarios: Sequence[ImportedScenario], files: Sequence[str]) -> dict[str, Any]:
+    """Find the variants that results are about: by IRI, else by the names of story and variant."""
+    places: dict[str, list[tuple[str, str]]] = {}
+    for uri in files:
+        for story in stories_in(snapshot, uri):
+            for variant in story.variants:
+                place = (uri, variant.placed.iri)
+                named = f"{story.definition.symbol.name} {variant.placed.definition.symbol.name}"
+                for key in (variant.placed.iri, named):
+                    places.setdefault(key, []).append(place)
+    found = [(scenario, _place(scenario, places)) for scenario in scenarios]
+    answers = [_imported_scenario(scenario, *place) for scenario, place in found if place is not None]
+    return {"problem": None, "left": len(scenarios) - len(answers), "scenarios": answers}
+
+
+def _place(scenario: ImportedScenario, places: Mapping[str, Sequence[tuple[str, str]]]) -> tuple[str, str] | None:
+    """Return file and IRI of the variant; of several files the one that the results name."""
+    candidates = places.get(scenario.variant) or places.get(f"{scenario.story} {scenario.variant}") or ()
+    name = scenario.model.replace("\\", "/").rsplit("/", 1)[-1]
+    return next((place for place in candidates if name and place[0].endswith(f"/{name}")), next(iter(candidates), None))
+
+
+def _imported_scenario(scenario: ImportedScenario, uri: str, variant: str) -> dict[str, Any]:
+    return {
+        "uri": uri,
+        "variant": variant,
+        "variation": scenario.variation,
+        "values": scenario.values,
+        "seconds": scenario.seconds,
+        "stale": False,
+        "clauses": [
+            {
+                "clause": clause.iri,
+                "position": position,
+                "sentence": clause.sentence,
+                "verdict": clause.verdict,
+                "margin": clause.margin,
+                "said": clause.said,
+                "stale": False,
+            }
+            for position, clause in enumerate(scenario.clauses)
+        ],
+    }

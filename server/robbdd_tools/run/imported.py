@@ -1,0 +1,196 @@
+"""Reads the results of a run elsewhere, as ``robbdd run --json`` or ``--junit`` wrote them."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, cast
+from xml.etree import ElementTree
+
+from robbdd_tools.run.protocol import ClauseJudged
+from robbdd_tools.run.report import SIGNS, margin, plain_sentence, value_words, verdict_words
+
+_VERDICTS = tuple(str(outcome) for outcome in SIGNS)
+_CASE = re.compile(r"(?:[^\s:]*:)?(?P<variant>\S+) -- (?P<number>\d+)[^\[]*(?:\[(?P<values>.*)\])?", re.DOTALL)
+_CLAUSE = re.compile(
+    r"^(?P<sign>[✔✗?])(?P<said>.*?)  \[(?:Given|When|Then) (?P<sentence>[^\n]*)\]$", re.DOTALL | re.MULTILINE
+)
+"""A clause in a test case's output; only a reason may run over several lines."""
+_MARGIN = re.compile(r" ([+−][\d.]+ [^\s:]+)")
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedClause:
+    """A clause of an execution, in the order of its judgement.
+
+    ``iri`` is ``None`` where the file does not tell it; ``said`` is the verdict in words, ``margin`` that alone.
+    """
+
+    iri: str | None
+    sentence: str
+    verdict: str
+    margin: str
+    said: str
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedScenario:
+    """An execution: number ``variation`` of a variant; ``variant`` is its IRI, or its name alone from JUnit XML.
+
+    ``model`` is the model file as it was named there (empty from JUnit XML), ``story`` the story's name; ``seconds``
+    is time on the clock where that is told.
+    """
+
+    model: str
+    story: str
+    variant: str
+    variation: int
+    values: str
+    seconds: float | None
+    clauses: tuple[ImportedClause, ...]
+
+
+class BrokenResults(Exception):
+    """The text holds no results; the message says why, for the user, ``line`` and ``column`` (from 1) where."""
+
+    def __init__(self, message: str, line: int = 1, column: int = 1) -> None:
+        super().__init__(message)
+        self.line = line
+        self.column = column
+
+
+def read_results(text: str) -> list[ImportedScenario]:
+    """Return the executions of a results file, which may begin with a byte-order mark; raises ``BrokenResults``."""
+    text = text.removeprefix("\ufeff")
+    return _from_junit(text) if text.lstrip().startswith("<") else _from_json(text)
+
+
+def _from_json(text: str) -> list[ImportedScenario]:
+    try:
+        data: object = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise BrokenResults(f"this is neither JSON nor XML: {error.msg}", error.lineno, error.colno) from None
+    except RecursionError:
+        raise BrokenResults("this is no results file: it is nested too deeply") from None
+    scenarios = _Reader("", data).mapping("scenarios")
+    return [_scenario(entry) for entry in scenarios.entries()]
+
+
+def _scenario(entry: _Reader) -> ImportedScenario:
+    values = entry.mapping("values")
+    return ImportedScenario(
+        entry.text("model", ""),
+        _local(entry.text("story")),
+        entry.text("variant"),
+        entry.number("variation"),
+        ", ".join(value_words(name, value) for name, value in values.items()),
+        None,
+        tuple(_clause(clause) for clause in entry.mapping("clauses").entries()),
+    )
+
+
+def _clause(entry: _Reader) -> ImportedClause:
+    verdict = entry.text("verdict")
+    if verdict not in _VERDICTS:
+        raise BrokenResults(f"{entry.path}.verdict: expected one of {', '.join(_VERDICTS)}, got '{verdict}'")
+    robustness, at = entry.measure("robustness"), entry.measure("at")
+    judged = ClauseJudged(0, 0, verdict, robustness, entry.text("unit", ""), at, entry.text("reason", ""))
+    sentence = plain_sentence(entry.text("sentence"))
+    return ImportedClause(
+        entry.text("iri"), sentence, verdict, margin(judged.robustness, judged.unit), verdict_words(judged)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    """A value of a JSON document and its path, for messages."""
+
+    path: str
+    value: object
+
+    def mapping(self, name: str) -> _Reader:
+        path = f"{self.path}.{name}".lstrip(".")
+        found = self._object()
+        if name not in found:
+            raise BrokenResults(f"{path}: missing: is this what robbdd run --json wrote?")
+        return _Reader(path, found[name])
+
+    def entries(self) -> Iterator[_Reader]:
+        value = self.value
+        if not isinstance(value, list):
+            raise BrokenResults(f"{self.path}: expected a list")
+        for number, entry in enumerate(cast("list[object]", value)):
+            yield _Reader(f"{self.path}[{number}]", entry)
+
+    def items(self) -> Iterator[tuple[str, object]]:
+        yield from self._object().items()
+
+    def text(self, name: str, otherwise: str | None = None) -> str:
+        return self._of(name, (str,), "a text", otherwise)
+
+    def number(self, name: str) -> int:
+        return self._of(name, (int,), "a whole number", None)
+
+    def measure(self, name: str) -> float | None:
+        found = self._of(name, (int, float, type(None)), "a number or null", None)
+        return None if found is None else float(found)
+
+    def _object(self) -> dict[str, object]:
+        value = self.value
+        if not isinstance(value, dict):
+            raise BrokenResults(f"{self.path or 'the file'}: expected an object, as robbdd run --json writes it")
+        return cast("dict[str, object]", value)
+
+    def _of(self, name: str, kinds: tuple[type[Any], ...], wanted: str, otherwise: Any) -> Any:
+        if otherwise is not None and name not in self._object():
+            return otherwise
+        found = self.mapping(name)
+        if not isinstance(found.value, kinds) or isinstance(found.value, bool):
+            raise BrokenResults(f"{found.path}: expected {wanted}")
+        return found.value
+
+
+def _from_junit(text: str) -> list[ImportedScenario]:
+    try:
+        root = ElementTree.fromstring(text)
+    except ElementTree.ParseError as error:
+        line, column = error.position
+        raise BrokenResults(f"this is no well-formed XML: {error}", line, column + 1) from None
+    suites = [root] if root.tag == "testsuite" else list(root.iter("testsuite"))
+    if root.tag not in ("testsuite", "testsuites"):
+        raise BrokenResults(f"this is no JUnit XML: its element is <{root.tag}>, not <testsuites>")
+    cases = [(suite.get("name", ""), case) for suite in suites for case in suite.findall("testcase")]
+    found = [scenario for story, case in cases if (scenario := _case(story, case)) is not None]
+    if cases and not found:
+        raise BrokenResults("these test results are not those of robbdd: no test case names a scenario")
+    return found
+
+
+def _case(story: str, case: ElementTree.Element) -> ImportedScenario | None:
+    named = _CASE.fullmatch(case.get("name", ""))
+    if named is None:
+        return None
+    clauses = tuple(map(_told, _CLAUSE.finditer(case.findtext("system-out", ""))))
+    return ImportedScenario(
+        "", story, named["variant"], int(named["number"]), named["values"] or "", _seconds(case.get("time")), clauses
+    )
+
+
+def _told(found: re.Match[str]) -> ImportedClause:
+    verdict = next(str(outcome) for outcome, sign in SIGNS.items() if sign == found["sign"])
+    measured = _MARGIN.match(found["said"])
+    said = f"{found['sign']}{found['said']}"
+    return ImportedClause(None, found["sentence"], verdict, measured[1] if measured else "", said)
+
+
+def _seconds(text: str | None) -> float | None:
+    try:
+        return None if text is None else float(text)
+    except ValueError:
+        return None
+
+
+def _local(iri: str) -> str:
+    return iri.replace("#", "/").rsplit("/", 1)[-1]
