@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import shutil
 from pathlib import Path
 from typing import Any, cast
 
@@ -10,11 +11,39 @@ import pytest
 from lsprotocol import types
 from pytest_lsp import LanguageClient
 
+from kit import EXAMPLES
 from robbdd_tools.base.files import path_to_uri
 
 PATIENCE = 60.0
 CLIENTS = pytest.mark.parametrize("client", ["visual-studio-code", "neovim", "emacs"], indirect=True)
 """For tests whose answer depends on what the client can do."""
+ASKED = (
+    types.WORKSPACE_INLAY_HINT_REFRESH,
+    types.WORKSPACE_CODE_LENS_REFRESH,
+    types.WORKSPACE_SEMANTIC_TOKENS_REFRESH,
+    types.WORKSPACE_DIAGNOSTIC_REFRESH,
+    types.CLIENT_REGISTER_CAPABILITY,
+)
+"""Requests of the server whose answer is empty."""
+
+
+async def begin_session(client: LanguageClient, folder: Path, capabilities: types.ClientCapabilities) -> list[str]:
+    """Open a folder with a copy of the example; returns the list of what the server asks of the client, as it grows."""
+    asked: list[str] = []
+
+    def listen(method: str) -> None:
+        def hear(*_: object) -> None:
+            asked.append(method)
+
+        # In place of what pytest-lsp may do by itself; pygls leaves the type of its table open.
+        client.protocol.fm.features[method] = hear  # pyright: ignore[reportUnknownMemberType]
+
+    for method in ASKED:
+        listen(method)
+    shutil.copytree(EXAMPLES / "pickplace", folder / "pickplace")
+    folders = [types.WorkspaceFolder(uri=path_to_uri(folder), name="test")]
+    await client.initialize_session(types.InitializeParams(capabilities=capabilities, workspace_folders=folders))
+    return asked
 
 
 def plain(value: Any) -> Any:

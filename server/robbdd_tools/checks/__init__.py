@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.checks.catalog_entry import catalog_entry
 from robbdd_tools.checks.catalog_models import catalog_models
 from robbdd_tools.checks.contradictory_order import contradictory_order
@@ -79,5 +80,8 @@ def run_checks(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     file = snapshot.file(uri)
     if file is None:
         return []
-    found = [diagnostic for rule in FILE_RULES for diagnostic in rule(snapshot, file)]
+    found: list[Diagnostic] = []
+    for rule in FILE_RULES:
+        checkpoint()
+        found += rule(snapshot, file)
     return [*found, *findings_in(snapshot, file, DECLARATION_RULES)]

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.checks.facts import facts_of
 from robbdd_tools.names.anchors import Anchored, Anchors
 from robbdd_tools.names.elements import Site
@@ -73,7 +74,10 @@ def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...])
         entry = entries.get(declaration) or known.get(declaration)
         if entry is None:
             site = Site(snapshot, file, placed)
-            found = [diagnostic for rule in rules for diagnostic in rule(site)]
+            found: list[Diagnostic] = []
+            for rule in rules:
+                checkpoint()
+                found += rule(site)
             names, around = _around(scope, declaration)
             entry = _Entry(names, around, tuple(anchors.loosened(diagnostic, uri, placed) for diagnostic in found))
         entries[declaration] = entry

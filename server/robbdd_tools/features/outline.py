@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ def project_names(snapshot: Snapshot, query: str, most: int = 200) -> list[Defin
     """Return the definitions of all files whose qualified name has the query's letters in order."""
     found: list[Definition] = []
     for uri in sorted(snapshot.sources):
+        checkpoint()
         analysis = snapshot.file(uri)
         for path in analysis.definitions if analysis is not None else ():
             if _has_letters(path.lower(), query.lower()):

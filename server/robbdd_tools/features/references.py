@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.definition import symbol_at
 
@@ -47,6 +48,7 @@ def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Use]:
     for uri in sorted({definition.uri, *snapshot.importers(definition.uri)}):
         analysis = snapshot.file(uri)
         for placed in analysis.declarations if analysis is not None else ():
+            checkpoint()
             for ref in placed.targets:
                 # Reading the written name is cheap; only what may mean the definition is followed.
                 if name not in ref.path and not ref.path.startswith(path):

@@ -13,6 +13,7 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
@@ -94,6 +95,7 @@ def coloured(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[t
     found: list[tuple[int, Coloured]] = []
     end = 0
     for placed in analysis.declarations:
+        checkpoint()
         found.append((end, _between(text[end : placed.offset])))
         end = placed.span.end
         if within is None or (placed.offset <= within.end and within.start <= end):

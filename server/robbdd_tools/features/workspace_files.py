@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.unimported import file_on_disk
 from robbdd_tools.names.index import FileIndex, language_of
@@ -34,6 +35,7 @@ def model_files(folders: Iterable[str]) -> list[str]:
 def workspace_indices(snapshot: Snapshot, folders: Iterable[str]) -> Iterator[FileIndex]:
     """Yield every readable model file: as the project has it, else as it is on disk."""
     for uri in sorted({*model_files(folders), *snapshot.sources}):
+        checkpoint()
         source = snapshot.sources.get(uri)
         index = source if isinstance(source, FileIndex) else None if source is not None else file_on_disk(uri)
         if index is not None:

@@ -51,6 +51,9 @@ def _register_documents(server: RobbddServer) -> None:
     @server.feature(types.INITIALIZED)
     async def initialized(ls: RobbddServer, _: types.InitializedParams) -> None:
         ls.convert = Converter(ls.workspace.position_encoding or types.PositionEncodingKind.Utf16)
+        general = ls.client_capabilities.general
+        stale = general.stale_request_support if general is not None else None
+        ls.requests.repeated = frozenset(stale.retry_on_content_modified if stale is not None else ())
         ls.spawn(follow_settings(ls))
         await ls.load_results()
 

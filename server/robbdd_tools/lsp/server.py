@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Callable, Coroutine, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from robbdd_tools import __version__
@@ -18,9 +19,12 @@ from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.results import NOTHING, Results
+from robbdd_tools.lsp.analysis import AnalysisThread
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.kept_results import load_results
+from robbdd_tools.lsp.protocol import Protocol
+from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
 from robbdd_tools.lsp.settings import Settings
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.stores import Stores
@@ -31,6 +35,7 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.runs import ActiveRun
 
 Result = TypeVar("Result")
+_LOG = logging.getLogger(__name__)
 GATHERING = 0.03
 """Seconds that results wait for others that come right behind them."""
 
@@ -44,7 +49,9 @@ class RobbddServer(LanguageServer):
 
     def __init__(self) -> None:
         # pygls leaves the types of its own further arguments open.
-        super().__init__("robbdd-lsp", __version__)  # pyright: ignore[reportUnknownMemberType]
+        super().__init__(  # pyright: ignore[reportUnknownMemberType]
+            "robbdd-lsp", __version__, protocol_cls=Protocol
+        )
         self.project = Project()
         self.convert = Converter()
         self.settings = Settings()
@@ -57,22 +64,39 @@ class RobbddServer(LanguageServer):
         self._shapes: dict[str, tuple[Diagnostic, ...]] = {}
         self._shaped_texts: dict[str, dict[str, str]] = {}
         self._requested_texts: dict[str, dict[str, str]] = {}
-        self._analysis = ThreadPoolExecutor(1, thread_name_prefix="analysis")
+        self._analysis = AnalysisThread()
+        self.requests = Requests()
         self._background = Background()
         self.validator = ShapeValidator(self._shapes_found)
-        self._requests = count(1)
+        self._orders = count(1)
         self._opened: dict[str, None] = {}
         self.when_closed: list[Callable[[str], None]] = []
         """Called with the URI of each document that the client closes."""
         self._tasks: set[asyncio.Task[None]] = set()
+        self._publishing: dict[str, asyncio.Task[None]] = {}
         self._changed: dict[str, None] = {}
 
-    async def analyse(self, work: Callable[[Snapshot], Result]) -> Result:
+    def feature(self, feature_name: str, options: Any | None = None) -> Callable[[Handler], Handler]:
+        """Register the handler of a method; its errors stay inside."""
+        register = super().feature(feature_name, options)
+        return lambda handler: register(self.requests.guarded(feature_name, handler))
+
+    def command(self, command_name: str) -> Callable[[Handler], Handler]:
+        """Register a command; its errors stay inside."""
+        register = super().command(command_name)
+        return lambda handler: register(self.requests.guarded(command_name, handler))
+
+    def report_server_error(self, error: Exception, source: Any) -> None:
+        """Keep an error that no request waits for in the log; handlers have told theirs with its context."""
+        if not isinstance(error, JsonRpcException):
+            _LOG.error("internal error (%s)", source, exc_info=error)
+
+    async def analyse(self, work: Callable[[Snapshot], Result], urgent: bool = True) -> Result:
         """Run ``work`` on the newest snapshot in the analysis thread."""
-        return await self._in_thread(lambda: work(self.project.snapshot()))
+        return await self._analysis.do(lambda: work(self.project.snapshot()), urgent)
 
     async def _in_thread(self, work: Callable[[], Result]) -> Result:
-        return await asyncio.get_running_loop().run_in_executor(self._analysis, work)
+        return await self._analysis.do(work)
 
     async def in_background(self, work: Callable[[Snapshot], Result], *unopened: str) -> Result:
         """Run ``work`` on the newest texts in a thread of its own: what is asked for meanwhile does not wait for it.
@@ -85,6 +109,7 @@ class RobbddServer(LanguageServer):
     async def text_changed(self, uri: str, version: int, text: str) -> None:
         """Take a new text of an open document and publish what it means."""
         self._opened.setdefault(uri)
+        self.requests.text_changed(uri)
         await self._in_thread(lambda: self.project.open(uri, version, text))
         await self.publish(uri)
 
@@ -92,6 +117,8 @@ class RobbddServer(LanguageServer):
         """Go back to the file on disk and take its diagnostics from the editor."""
         self._opened.pop(uri, None)
         self._shapes.pop(uri, None)
+        if (publishing := self._publishing.pop(uri, None)) is not None:
+            publishing.cancel()
         self.validator.forget(uri)
         for forget in self.when_closed:
             forget(uri)
@@ -122,16 +149,22 @@ class RobbddServer(LanguageServer):
             return [uri for uri in self._opened if uri == changed or uri in importers]
 
         for uri in await self.analyse(affected):
-            await self._publish_one(uri)
-            request, self._requested_texts[uri] = await self.analyse(
-                lambda snapshot, uri=uri: self._order(snapshot, uri)
-            )
-            self.validator.request(request)
+            # What is being found in an older text is of no use any more.
+            if (older := self._publishing.get(uri)) is not None:
+                older.cancel()
+            self._publishing[uri] = self.spawn(self._publish_and_order(uri))
+
+    async def _publish_and_order(self, uri: str) -> None:
+        await self._publish_one(uri)
+        request, self._requested_texts[uri] = await self.analyse(
+            lambda snapshot: self._order(snapshot, uri), urgent=False
+        )
+        self.validator.request(request)
 
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
         """Return the request to validate a file, with the texts that its answer will be about."""
         texts = {index.document.uri: index.document.text for index in snapshot.scope(uri).files}
-        return Request(next(self._requests), uri, self.project.texts(), self.settings.shapes(uri)), texts
+        return Request(next(self._orders), uri, self.project.texts(), self.settings.shapes(uri)), texts
 
     async def load_results(self) -> None:
         """Show what earlier runs have found in the workspace."""
@@ -182,7 +215,7 @@ class RobbddServer(LanguageServer):
         self.validator.stop()
         self._background.stop()
         self.stores.close()
-        self._analysis.shutdown(wait=False, cancel_futures=True)
+        self._analysis.stop()
 
     async def _publish_one(self, uri: str) -> None:
         def find(snapshot: Snapshot) -> tuple[int, list[types.Diagnostic]]:
@@ -191,7 +224,7 @@ class RobbddServer(LanguageServer):
             document = document_of(snapshot, uri)
             return document.version, [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
 
-        version, diagnostics = await self.analyse(find)
+        version, diagnostics = await self.analyse(find, urgent=False)
         self._send(uri, version, diagnostics)
 
     def _valid_shapes(self, snapshot: Snapshot, uri: str) -> list[Diagnostic]:
@@ -214,11 +247,13 @@ class RobbddServer(LanguageServer):
 
         self.spawn(show())
 
-    def spawn(self, work: Coroutine[Any, Any, None]) -> None:
+    def spawn(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         """Start work that nobody waits for; it is kept from being collected until it ends."""
-        task = asyncio.get_running_loop().create_task(work)
+        task = asyncio.get_running_loop().create_task(work, name=work.__qualname__)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+        task.add_done_callback(lambda done: log_background_error(done, f"the background work {done.get_name()}"))
+        return task
 
     def _send(self, uri: str, version: int | None, diagnostics: list[types.Diagnostic]) -> None:
         self.text_document_publish_diagnostics(

@@ -11,6 +11,7 @@ from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from typing import Any
 
+from robbdd_tools.lsp.requests import log_background_error
 from robbdd_tools.lsp.worker import LENGTH, Answer, Forget, Request, frame
 
 PAUSE = 0.02
@@ -126,10 +127,5 @@ class ShapeValidator:
         task = asyncio.get_running_loop().create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
-        task.add_done_callback(_report)
+        task.add_done_callback(lambda done: log_background_error(done, "the validation of shapes"))
         return task
-
-
-def _report(task: asyncio.Task[None]) -> None:
-    if not task.cancelled() and task.exception() is not None:
-        _LOG.error("validation stopped", exc_info=task.exception())

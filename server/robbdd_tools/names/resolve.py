@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.names.analysis import Definition
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.table import changed_paths
@@ -115,6 +116,7 @@ def _still_valid(scope: Scope, before: Scope | None, known: tuple[Resolution, ..
 
 
 def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
+    checkpoint()
     targets: dict[Ref, Target] = {}
     unresolved: list[Unresolved] = []
     looked_up: set[str] = set()

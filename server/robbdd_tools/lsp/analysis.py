@@ -1,0 +1,88 @@
+"""The one thread that holds the project: work in the order of the messages, what nobody waits for last."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from robbdd_tools.base.checkpoint import Abandoned, watched
+
+Result = TypeVar("Result")
+
+
+@dataclass(eq=False)
+class _Job:
+    work: Callable[[], Any]
+    urgent: bool
+    done: Future[Any] = field(default_factory=Future[Any])
+    abandoned: bool = False
+
+
+class AnalysisThread:
+    """Does urgent work (edits and requests) in the order in which it comes, other work when there is none.
+
+    At a checkpoint work that is not urgent lets the urgent go first, and work whose caller was cancelled ends. So a
+    hover never waits for the diagnostics of a large file, and nothing is computed that nobody will see.
+    """
+
+    def __init__(self) -> None:
+        self._urgent: deque[_Job] = deque()
+        self._later: deque[_Job] = deque()
+        self._running: list[_Job] = []
+        self._changed = threading.Condition()
+        self._stopped = False
+        threading.Thread(target=self._work, name="analysis", daemon=True).start()
+
+    async def do(self, work: Callable[[], Result], urgent: bool = True) -> Result:
+        """Return the result of ``work``; when the caller is cancelled, it is left out or ends at a checkpoint."""
+        job = _Job(work, urgent)
+        with self._changed:
+            (self._urgent if urgent else self._later).append(job)
+            self._changed.notify()
+        try:
+            return await asyncio.wrap_future(job.done)
+        except asyncio.CancelledError:
+            job.abandoned = True
+            raise
+
+    def stop(self) -> None:
+        """Begin nothing more."""
+        with self._changed:
+            self._stopped = True
+            self._urgent.clear()
+            self._later.clear()
+            self._changed.notify()
+
+    def _work(self) -> None:
+        with watched(self._look):
+            while (job := self._next()) is not None:
+                self._run(job)
+
+    def _next(self) -> _Job | None:
+        with self._changed:
+            self._changed.wait_for(lambda: self._urgent or self._later or self._stopped)
+            return None if self._stopped else (self._urgent or self._later).popleft()
+
+    def _run(self, job: _Job) -> None:
+        if not job.done.set_running_or_notify_cancel():
+            return
+        self._running.append(job)
+        try:
+            job.done.set_result(job.work())
+        # Whatever it is, it is the caller's: this thread must live.
+        except BaseException as error:
+            job.done.set_exception(error)
+        finally:
+            self._running.pop()
+
+    def _look(self) -> None:
+        job = self._running[-1]
+        while not job.urgent and self._urgent:
+            self._run(self._urgent.popleft())
+        if job.abandoned or self._stopped:
+            raise Abandoned

@@ -1,0 +1,73 @@
+"""pygls' protocol with its costly part off the event loop: what is sent is written out in a thread of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Generator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from typing import Any
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
+from pygls.protocol import LanguageServerProtocol, lsp_method
+from pygls.protocol.json_rpc import JsonRPCNotification
+
+_LOG = logging.getLogger(__name__)
+
+
+class Protocol(LanguageServerProtocol):
+    """Messages leave in the order in which they are given to be sent."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._outbox = ThreadPoolExecutor(1, thread_name_prefix="outbox")
+
+    def set_writer(self, writer: Any, include_headers: bool = True) -> None:
+        """Send to this writer from now on."""
+        if isinstance(writer, asyncio.StreamWriter):
+            writer = LoopWriter(writer)
+        super().set_writer(writer, include_headers)
+
+    @lsp_method(types.EXIT)
+    def lsp_exit(self, *arguments: Any) -> Generator[Any, Any, None]:
+        """End the server when all is sent."""
+        self._outbox.shutdown(wait=True)
+        # pygls leaves the types of these arguments open.
+        yield from super().lsp_exit(*arguments)  # pyright: ignore[reportUnknownMemberType]
+
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """Read a message; one with unusable parameters is answered, as nobody else will."""
+        try:
+            return super().structure_message(data)
+        except JsonRpcException as error:
+            if "id" in data and "method" in data:
+                told = f"the parameters of {data['method']} are not as the protocol has them"
+                self._send_response(data["id"], error=JsonRpcInvalidParams(told).to_response_error())
+            _LOG.warning("%s cannot be read: %s", data.get("method", "a response"), error)
+            return JsonRPCNotification(method="$/unreadable", jsonrpc=self.VERSION, params=None)
+
+    def _send_data(self, data: Any) -> None:
+        self._outbox.submit(self._write, data)
+
+    def _write(self, data: Any) -> None:
+        super()._send_data(data)
+
+
+class LoopWriter:
+    """Writes to a stream of asyncio, which knows its event loop's thread only, from any thread."""
+
+    def __init__(self, stream: asyncio.StreamWriter) -> None:
+        self._stream = stream
+        self._loop = asyncio.get_running_loop()
+
+    def write(self, data: bytes) -> None:
+        """Write soon, in the order of the calls."""
+        self._loop.call_soon_threadsafe(self._stream.write, data)
+
+    async def close(self) -> None:
+        """Close when all is written: this runs after what was called for before."""
+        self._stream.close()
+        with suppress(ConnectionError):
+            await self._stream.wait_closed()

@@ -1,0 +1,105 @@
+"""What every handler has in common: errors stay inside, and answers about a text that has changed are not given."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import logging
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import wraps
+from typing import Any
+
+from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcInternalError
+
+_LOG = logging.getLogger(__name__)
+Handler = Callable[..., Any]
+
+
+@dataclass(eq=False)
+class _Waiting:
+    """A request in progress, with the document that it is about."""
+
+    method: str
+    uri: str
+    task: asyncio.Task[Any] | None
+    outdated: bool = False
+
+
+class Requests:
+    """The requests in progress. ``repeated`` are methods that the client asks again when the text has moved on."""
+
+    def __init__(self) -> None:
+        self.repeated: frozenset[str] = frozenset()
+        self._waiting: set[_Waiting] = set()
+
+    def text_changed(self, uri: str) -> None:
+        """Answer with ``ContentModified`` what the client asks again anyway, and leave the work on it."""
+        for waiting in self._waiting:
+            if waiting.uri == uri and waiting.method in self.repeated and waiting.task is not None:
+                waiting.outdated = True
+                waiting.task.cancel()
+
+    def guarded(self, method: str, handler: Handler) -> Handler:
+        """Return a handler whose errors are logged with their context; the client hears a sentence."""
+        if inspect.iscoroutinefunction(handler):
+
+            @wraps(handler)
+            async def guarded(*arguments: Any) -> Any:
+                waiting = _Waiting(method, _uri(arguments), asyncio.current_task())
+                self._waiting.add(waiting)
+                try:
+                    with _inside(method, arguments):
+                        return await handler(*arguments)
+                except asyncio.CancelledError:
+                    if waiting.outdated:
+                        raise JsonRpcContentModified() from None
+                    raise
+                finally:
+                    self._waiting.discard(waiting)
+
+            return guarded
+
+        @wraps(handler)
+        def guarded_at_once(*arguments: Any) -> Any:
+            with _inside(method, arguments):
+                return handler(*arguments)
+
+        return guarded_at_once
+
+
+@contextmanager
+def _inside(method: str, arguments: tuple[Any, ...]) -> Generator[None]:
+    try:
+        yield
+    except JsonRpcException:
+        # An answer of its own, such as a refused name.
+        raise
+    except Exception as error:
+        _LOG.exception("internal error in %s", _context(method, arguments))
+        message = f"internal error in {method} ({type(error).__name__}); the server's log has the details"
+        raise JsonRpcInternalError(message) from None
+
+
+def log_background_error(task: asyncio.Task[Any], what: str) -> None:
+    """Log the error of a task that nobody waits for, if it had one."""
+    if not task.cancelled() and (error := task.exception()) is not None:
+        _LOG.error("internal error in %s", what, exc_info=error)
+
+
+def _context(method: str, arguments: tuple[Any, ...]) -> str:
+    position = getattr(arguments[-1], "position", None) if arguments else None
+    place = f", line {position.line + 1}, character {position.character}" if position is not None else ""
+    return f"{method} {_uri(arguments)}{place}".rstrip()
+
+
+def _uri(arguments: tuple[Any, ...]) -> str:
+    """Return the document that parameters speak of, if any."""
+    params = arguments[-1] if arguments else None
+    if isinstance(params, dict):
+        return str(params.get("uri", ""))  # pyright: ignore[reportUnknownMemberType, reportUnknownArgumentType]
+    for holder in (getattr(params, "text_document", None), getattr(params, "item", None), params):
+        if isinstance(uri := getattr(holder, "uri", None), str):
+            return uri
+    return ""
