@@ -3,6 +3,7 @@ import * as vscode from "vscode";
 import type { Server } from "./client";
 import type { GraphView } from "./panels/graph/view";
 import type { PreviewView } from "./preview/view";
+import { modelFor, openModel } from "./models";
 import { newProject } from "./projects";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
@@ -32,6 +33,7 @@ export function registerCommands(
       }),
     "robbdd.importResults": (target) => tests.importResults(target instanceof vscode.Uri ? target : undefined),
     "robbdd.newProject": () => newProject(server),
+    "robbdd.openModel": () => openModel(),
     "robbdd.installServer": () => server.install(),
     "robbdd.restartServer": () => server.restart(),
     "robbdd.showLog": () => {
@@ -45,16 +47,11 @@ export function registerCommands(
   return Object.entries(handlers).map(([name, handler]) => vscode.commands.registerCommand(name, handler));
 }
 
-/** Apply a task to the model that a menu names, or to the one in the active editor. */
 async function withModel(target: unknown, task: (uri: string) => unknown): Promise<void> {
-  const document = vscode.window.activeTextEditor?.document;
-  const active = document?.languageId === "robbdd" ? document.uri : undefined;
-  const uri = target instanceof vscode.Uri ? target : active;
-  if (uri === undefined) {
-    void vscode.window.showInformationMessage("Open a .bdd file first: its scenarios are what this command is about.");
-    return;
+  const uri = await modelFor(target);
+  if (uri !== undefined) {
+    await task(uri.toString());
   }
-  await task(uri.toString());
 }
 
 async function chooseAction(): Promise<void> {

@@ -2,6 +2,7 @@
 import * as vscode from "vscode";
 import { Server } from "./client";
 import { registerCommands } from "./commands";
+import { noticeModels } from "./milestones";
 import { GraphView } from "./panels/graph/view";
 import { PreviewView } from "./preview/view";
 import { onInterpreterChange } from "./python";
@@ -39,6 +40,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     previews,
     graphs,
     tests,
+    noticeModels(),
     ...registerCommands(started, runs, { previews, graphs, tests }, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {

@@ -1,6 +1,8 @@
 // Begins projects from the templates that the server knows.
 import * as vscode from "vscode";
 import type { Server } from "./client";
+import { show } from "./models";
+import { reach } from "./milestones";
 import { isRecord } from "./values";
 
 interface Template {
@@ -34,6 +36,7 @@ export async function newProject(server: Server): Promise<void> {
     void vscode.window.showErrorMessage(`No project was begun: ${problem}`);
     return;
   }
+  reach("projectBegun");
   await open(folder, isRecord(begun) ? begun["models"] : []);
 }
 
@@ -63,7 +66,7 @@ function askName(template: string): Thenable<string | undefined> {
 async function open(folder: vscode.Uri, models: unknown): Promise<void> {
   const first: unknown = Array.isArray(models) ? models[0] : undefined;
   if (typeof first === "string") {
-    await vscode.window.showTextDocument(vscode.Uri.parse(first));
+    await show(vscode.Uri.parse(first));
   }
   if (vscode.workspace.getWorkspaceFolder(folder) === undefined) {
     vscode.workspace.updateWorkspaceFolders(vscode.workspace.workspaceFolders?.length ?? 0, 0, { uri: folder });

@@ -1,5 +1,6 @@
 // Runs under way: prints their messages and keeps the status item up to date.
 import * as vscode from "vscode";
+import { reach } from "../milestones";
 import type { RunProgress } from "../presentation";
 import type { RunNotification } from "./messages";
 import { RunReport } from "./report";
@@ -31,6 +32,9 @@ export class RunMonitor implements vscode.Disposable {
     this.settle(uri, report);
     this.publish();
     this.heard.fire(notification);
+    if (message.type === "ClauseJudged" && message.verdict === "holds") {
+      reach("somethingHeld");
+    }
   }
 
   /** The server has nothing more to say about a run. */

@@ -1,0 +1,22 @@
+// How far the walkthrough has come: context keys that end its steps, each set once in a window.
+import * as vscode from "vscode";
+
+const reached = new Set<string>();
+
+export function reach(milestone: "projectBegun" | "modelShown" | "somethingHeld"): void {
+  if (!reached.has(milestone)) {
+    reached.add(milestone);
+    void vscode.commands.executeCommand("setContext", `robbdd.${milestone}`, true);
+  }
+}
+
+/** Notice when a model is shown. */
+export function noticeModels(): vscode.Disposable {
+  const notice = (editor: vscode.TextEditor | undefined): void => {
+    if (editor?.document.languageId === "robbdd") {
+      reach("modelShown");
+    }
+  };
+  notice(vscode.window.activeTextEditor);
+  return vscode.window.onDidChangeActiveTextEditor(notice);
+}
