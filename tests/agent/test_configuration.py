@@ -159,7 +159,7 @@ def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
     [
         (
             [(CUBE, "colour", "red")],
-            "there is no configuration 'colour'; the known ones are approach_speed, displacement_limit,",
+            "there is no configuration 'colour'; the known ones are approach_speed, belt_speed,",
         ),
         ([(CUBE, "mass", "heavy")], "'env:cube1' cannot be configured: 'mass' cannot be 'heavy': it is a number"),
         ([(CUBE, "ee_speed", "1")], "'env:cube1' has no ee_speed: that is of an agent"),

@@ -85,7 +85,7 @@ def test_a_second_robot_faces_the_first_across_the_table() -> None:
 @pytest.mark.parametrize(
     ("scene", "message"),
     [
-        (replace(SCENE, objects=("env:gizmo",)), "no model for object 'env:gizmo': .* one of ball, bench, bin, "),
+        (replace(SCENE, objects=("env:gizmo",)), "no model for object 'env:gizmo': .* one of ball, belt, bench, bin, "),
         (replace(SCENE, agents=("env:hal",)), "no model for agent 'env:hal': .* one of franka, gen3, kinova, panda"),
         (replace(SCENE, agents=("t:panda1", "t:panda2", "t:panda3")), "room for two agents"),
         (replace(SCENE, places={CUBE: "env:void_ws"}), "'env:cube1' is to be at 'env:void_ws', but nothing"),

@@ -20,6 +20,7 @@ def test_every_configuration_says_what_it_is_and_reads_its_own_values(setting: S
 def test_the_documented_names_are_known() -> None:
     assert list(SETTINGS) == [
         "approach_speed",
+        "belt_speed",
         "displacement_limit",
         "ee_speed",
         "exactly_one",
@@ -39,7 +40,7 @@ def test_the_documented_names_are_known() -> None:
 
 def test_an_unknown_name_is_told_the_known_ones() -> None:
     with pytest.raises(
-        SettingError, match="no configuration 'colour'; the known ones are approach_speed, displacement_limit"
+        SettingError, match="no configuration 'colour'; the known ones are approach_speed, belt_speed"
     ):
         setting_of("colour")
 

@@ -42,3 +42,17 @@ def test_an_unknown_template_is_told_the_known_ones(tmp_path: Path, capsys: pyte
     assert main(["new", str(tmp_path / "cell"), "--template", "nothing"]) == 2
     assert capsys.readouterr().err == f"robbdd: there is no template 'nothing'; there are {', '.join(TEMPLATES)}\n"
     assert not (tmp_path / "cell").exists()
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("template", ["pick-place", "sorting", "conveyor", "shelf"])
+def test_a_new_project_runs_and_every_clause_holds(
+    template: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Those that are about failures (``tworobots``) or need a scene of their own (``ownrobot``) are left out."""
+    folder = tmp_path / "cell"
+    assert main(["new", str(folder), "--template", template]) == 0
+    for seed in ("1", "2"):
+        capsys.readouterr()
+        assert main(["run", str(folder), "--seed", seed]) == 0
+        assert " 0 violated, 0 unknown" in capsys.readouterr().out

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from math import hypot
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.agent.belts import belt_speed, belts_of
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, Vector
 from robbdd_tools.catalog.registry import load_catalog
@@ -71,6 +73,8 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
             settings[name, "mass"] = (float(body.mass[0]),)
         if thing.graspable:
             settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
+        for servo in belts_of(model, name)[:1]:
+            settings[name, "belt_speed"] = (belt_speed(model, servo),)
         if thing.free and thing.region is not None:
             settings[name, "height_scale"] = (_top(model, geoms) / _height(load_catalog().objects[thing.name]),)
     for name, robot in simulation.robots.items():
@@ -104,6 +108,8 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
             found.objects[element] = replace(thing, mass=value[0])
         case "friction" if thing is not None:
             found.objects[element] = replace(thing, friction=value[0])
+        case "belt_speed" if thing is not None and _has_belt(thing):
+            found.objects[element] = _driven(thing, value[0])
         case "height_scale" if thing is not None and thing.free and thing.region is not None:
             found.objects[element] = _scaled(thing, value[0])
         case name if thing is None and robot is None:
@@ -115,6 +121,24 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
 def _loose(found: Configured) -> list[str]:
     """What is laid out at random and has no range of its own."""
     return [name for name in found.objects if found.objects[name].graspable and name not in found.ranges]
+
+
+def _has_belt(model: ObjectModel) -> bool:
+    return any(shape.surface is not None for shape in model.shapes)
+
+
+def _driven(model: ObjectModel, speed: float) -> ObjectModel:
+    """Let the belts of an object run at another speed (m/s), in their directions."""
+
+    def at_speed(velocity: Vector) -> Vector:
+        x, y, z = velocity
+        factor = speed / hypot(x, y, z)
+        return (factor * x, factor * y, factor * z)
+
+    shapes = (
+        shape if shape.surface is None else replace(shape, surface=at_speed(shape.surface)) for shape in model.shapes
+    )
+    return replace(model, shapes=tuple(shapes))
 
 
 def _scaled(model: ObjectModel, factor: float) -> ObjectModel:

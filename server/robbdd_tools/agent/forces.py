@@ -21,7 +21,9 @@ class Forces:
         self._model = model
         owners = [str(model.body(int(body)).name) for body in model.geom_bodyid]
         self._agents = {name: {geom for geom, o in enumerate(owners) if o.startswith(f"{name}/")} for name in agents}
-        self._things = {name: {geom for geom, owner in enumerate(owners) if owner == name} for name in things}
+        # A belt belongs to the object that it is a part of.
+        bodies = [owner.partition("/belt")[0] for owner in owners]
+        self._things = {name: {geom for geom, owner in enumerate(bodies) if owner == name} for name in things}
         self._rows: dict[tuple[str, str], list[float]] = {(a, t): [] for t in targets for a in self._agents}
         self._peaks = dict.fromkeys(self._rows, 0.0)
 

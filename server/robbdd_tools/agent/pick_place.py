@@ -27,6 +27,12 @@ if TYPE_CHECKING:
 
 SLIPPED = 3
 """Ticks in a row without grip that count as a loss."""
+STILL, STILL_TURN, STILL_FOR = 2e-3, 0.02, 0.3
+"""A thing on a belt is at rest when it has stayed within this distance (m) and angle (rad) for this time (s): the
+slowest belt moves it by 3 mm; one that slips below it makes it tremble by some tenths of a millimetre and milliradians.
+"""
+PATIENCE = 30.0
+"""How long the arm waits for a thing to come to rest, s."""
 RISE = 1e-3
 """Difference in height (m) from which on the tool first rises and then travels: on a slant it would hit the place."""
 
@@ -50,7 +56,11 @@ class PickPlace:
         self._grasp: Grasp | None = None
 
     def pick(self, name: str) -> Step:
-        """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``."""
+        """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``.
+
+        Where a belt runs, it first waits until the object has come to rest.
+        """
+        yield from self._until_at_rest(name)
         self._emit("pick-start")
         best = self._choose_grasp(name)
         yield from self._gripper.release(self)
@@ -90,6 +100,19 @@ class PickPlace:
             yield from self.move(self._at_travel(present_pose(self._arm, self._joints)))
         except BehaviourError:
             return
+
+    def _until_at_rest(self, name: str) -> Step:
+        if not self._simulation.belts or name not in self._simulation.world.cast.objects:
+            return
+        last, since = self._simulation.pose(name), 0
+        for _ in range(round(PATIENCE / TICK)):
+            yield from self.wait(1)
+            here, since = self._simulation.pose(name), since + 1
+            if _has_moved(last, here):
+                last, since = here, 0
+            if since * TICK >= STILL_FOR:
+                return
+        raise BehaviourError(f"{name} has not come to rest within {PATIENCE:g} s")
 
     def _choose_grasp(self, name: str) -> Approach:
         """Return the grasp with the most room for the hand."""
@@ -168,3 +191,9 @@ class PickPlace:
         for _ in range(ticks):
             self._simulation.command(self._robot, self._joints, self.control)
             yield
+
+
+def _has_moved(last: tuple[FloatArray, FloatArray], here: tuple[FloatArray, FloatArray]) -> bool:
+    """Whether a pose (position m, rotation matrix) is further from another than what rests may tremble."""
+    turned = np.arccos(np.clip((np.trace(last[1].T @ here[1]) - 1.0) / 2.0, -1.0, 1.0))
+    return bool(np.linalg.norm(here[0] - last[0]) > STILL or turned > STILL_TURN)

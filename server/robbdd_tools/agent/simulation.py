@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.agent.belts import Belts
 from robbdd_tools.agent.engine import SUBSTEPS, TICK, mujoco
 from robbdd_tools.agent.errors import SimulationError
 from robbdd_tools.agent.forces import Forces
@@ -77,6 +78,7 @@ class Simulation:
         starts = self.model.jnt_qposadr[addresses].reshape(-1, 1)
         self._speeds = self.model.jnt_dofadr[addresses].reshape(-1, 1) + np.arange(6)
         names = (*world.cast.objects, *world.cast.agents)
+        self.belts = Belts(self.model, list(world.cast.objects))
         self._column = {name: index for index, name in enumerate(names)}
         self._grips = Grips(self.model, self.robots, self._column, self._free)
         # Views of the engine's memory, which stays where it is: to ask for them anew in every tick takes longer.
@@ -127,8 +129,9 @@ class Simulation:
         self.restart()
 
     def restart(self) -> None:
-        """Forget what was recorded and count time from now."""
+        """Forget what was recorded and count time from now; belts run from now on."""
         self.ticks = 0
+        self.belts.start(self.data)
         self.recorder.clear()
         if self.forces is not None:
             self.forces.clear()
@@ -197,6 +200,7 @@ class Simulation:
             mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
         else:
             self._step_and_look(self.forces)
+        self.belts.set_back(self.data)
         self.stepping += perf_counter() - began
         # A target that nobody moves on stays where it is.
         self._ctrl[self._servos] = 0.0

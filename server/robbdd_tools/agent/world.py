@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.agent.belts import add_belt
 from robbdd_tools.agent.engine import TIMESTEP, mujoco
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.placement import TABLE_TOP, Pose, arrange, mounts
@@ -148,8 +149,9 @@ def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: in
     if model.free:
         body.add_freejoint()
     volumes = [_volume(shape) for shape in model.shapes]
-    for shape, volume in zip(model.shapes, volumes, strict=True):
-        geom = body.add_geom(type=_geom_type(shape.kind), size=list(shape.size), pos=list(shape.position))
+    for index, (shape, volume) in enumerate(zip(model.shapes, volumes, strict=True)):
+        carrier = body if shape.surface is None else add_belt(spec, body, f"{name}/belt{index}", shape.surface)
+        geom = carrier.add_geom(type=_geom_type(shape.kind), size=list(shape.size), pos=list(shape.position))
         geom.mass = model.mass * volume / sum(volumes)
         geom.friction = [model.friction, TORSION, ROLLING]
         geom.condim = 4 if shape.kind is ShapeKind.BOX else 6

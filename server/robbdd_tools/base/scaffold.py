@@ -41,16 +41,18 @@ def templates() -> dict[str, Template]:
 def begin_project(folder: Path, template: str) -> list[Path]:
     """Copy a template into ``folder``, which must not hold anything yet; returns its models.
 
-    Raises ``ScaffoldProblem`` and ``OSError``.
+    Hyphens in the template's name do not count: ``pick-place`` is ``pickplace``. Raises ``ScaffoldProblem`` and
+    ``OSError``.
     """
     known = templates()
-    if template not in known:
+    chosen = known.get(template.replace("-", ""))
+    if chosen is None:
         raise ScaffoldProblem(f"there is no template '{template}'; there are {', '.join(known)}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ScaffoldProblem(f"{folder} is there already; name a new or an empty folder")
     name = re.sub(r"[^a-z0-9]+", "-", folder.absolute().name.lower()).strip("-") or "project"
     folder.mkdir(parents=True, exist_ok=True)
-    for path in sorted(known[template].folder.iterdir()):
+    for path in sorted(chosen.folder.iterdir()):
         if path.is_file() and not path.name.startswith("."):
             text = path.read_text(encoding="utf-8").replace(EXAMPLE_NAMESPACE, f"https://example.org/{name}/")
             (folder / path.name).write_text(text, encoding="utf-8", newline="\n")

@@ -192,12 +192,14 @@ class Shape:
     """A primitive in the object's frame.
 
     ``size`` in metres: half edges of a box; (radius, 0, 0) of a sphere; (radius, half length, 0) of a cylinder
-    along z. ``position`` is its centre.
+    along z. ``position`` is its centre. ``surface`` is the velocity (m/s, along one axis) at which the surface of a
+    driven belt runs, ``None`` for a shape that is at rest in its object.
     """
 
     kind: ShapeKind
     size: Vector
     position: Vector = (0.0, 0.0, 0.0)
+    surface: Vector | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,6 +77,7 @@ _EVERY = (
         words=(("normal", NORMAL), ("dense", DENSE)),
     ),
     Setting("height_scale", "", "a bin, tray or shelf", 0.2, 3.0, "height as a multiple of the catalog's"),
+    Setting("belt_speed", "m/s", "a conveyor", 0.01, 0.5, "speed of its belt"),
     Setting("ee_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool along its planned path"),
     Setting("approach_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool as it descends or lowers"),
     Setting("travel_height", "m", "an agent", 0.15, 1.0, "height in the world frame at which the tool travels"),
