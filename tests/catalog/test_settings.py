@@ -39,9 +39,7 @@ def test_the_documented_names_are_known() -> None:
 
 
 def test_an_unknown_name_is_told_the_known_ones() -> None:
-    with pytest.raises(
-        SettingError, match="no configuration 'colour'; the known ones are approach_speed, belt_speed"
-    ):
+    with pytest.raises(SettingError, match="no configuration 'colour'; the known ones are approach_speed, belt_speed"):
         setting_of("colour")
 
 
