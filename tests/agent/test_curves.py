@@ -48,7 +48,7 @@ def test_a_behaviour_lasts_from_its_first_event_to_its_last(tmp_path: Path) -> N
     assert behaviour_curves(doing, a_trace(), {"t:x": "pick-start"}) == ()
     (found,) = behaviour_curves(doing, a_trace(), EVENTS)
     assert (found.start, found.end) == (0.2, 0.2)
-    write_curves(tmp_path / "margins" / "000000.json", {7: (found,)}, a_trace())
+    write_curves(tmp_path / "margins" / "000000.json", ("t:v", 1), {7: (found,)}, a_trace())
     document = json.loads((tmp_path / "margins" / "000000.json").read_text(encoding="utf-8"))
     assert document["events"] == [{"name": "t:e", "time": 0.2}]
     assert document["clauses"]["7"][0]["start"] == 0.2

@@ -216,3 +216,23 @@ def test_a_clause_repeated_in_a_scenario_is_as_good_as_its_worst() -> None:
 def test_a_scenario_comes_back_from_plain_data() -> None:
     scenario = JudgedScenario("m", "v", 1, "part = 1", "d", "r", {IRI: VIOLATED}, True)
     assert from_json(as_json(scenario)) == scenario
+
+
+def test_a_clause_that_could_not_have_failed_is_marked_quietly() -> None:
+    vacuous = replace(HOLDS, vacuous="a set is empty")
+    assert hints(vacuous, vacuous) == ["in-tray ✔ 2/2  worst +31 mm (vacuous)"]
+    assert hints(vacuous, HOLDS) == ["in-tray ✔ 2/2  worst +31 mm"]
+    case = fixture(MODEL)
+    findings = judged(case, vacuous)
+    (found,) = clause_diagnostics(case.snapshot, case.uri, findings)
+    assert (found.severity, found.code) == (Severity.HINT, "clause-vacuous")
+    assert found.message == "This clause could not have failed in the last run: a set is empty."
+    (hint,) = clause_hints(case.snapshot, case.uri, findings)
+    assert hint.tooltip.startswith("It could not have failed: a set is empty.\n")
+
+
+def test_a_scenario_takes_the_reasons_of_its_own_clauses() -> None:
+    scenario = JudgedScenario("m", "v", 1, "", "", "", {IRI: HOLDS})
+    scenario.mark_vacuous({IRI: "constant", "other": "constant"})
+    assert scenario.clauses == {IRI: replace(HOLDS, vacuous="constant")}
+    assert from_json(as_json(scenario)) == scenario

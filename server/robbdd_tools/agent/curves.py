@@ -43,9 +43,13 @@ def behaviour_curves(doing: Doing, trace: Trace, emitters: Mapping[str, str]) ->
     return (Curve(min(times), max(times)),) if times else ()
 
 
-def write_curves(path: Path, by_line: Mapping[int, tuple[Curve, ...]], trace: Trace) -> None:
-    """Write curves by the feature lines of their clauses, with the events; raises ``OSError``."""
+def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tuple[Curve, ...]], trace: Trace) -> None:
+    """Write curves by the feature lines of their clauses, with the events; raises ``OSError``.
+
+    ``scenario`` is the IRI of its variant with its number.
+    """
     document = {
+        "scenario": scenario,
         "duration": trace.end,
         "remark": trace.remark,
         "events": [asdict(stamp) for stamp in sorted(trace.events, key=lambda stamp: stamp.time)],

@@ -2,7 +2,8 @@
 
 ``python -m robbdd_tools.agent.render RUN_FOLDER INDEX FILE.png`` renders the initial scene of scenario number INDEX
 (from 0); ``… RUN_FOLDER moments FOLDER`` the moment of every clause that was violated; ``… RUN_FOLDER videos FOLDER``
-every scenario from beginning to end, executed again: the same seed gives the same bits.
+every scenario from beginning to end, executed again: the same seed gives the same bits;
+``… RUN_FOLDER thumbnails FOLDER INDEX:LINE …`` small pictures of some violations (scenario, feature line).
 
 Exit codes: 0 done; 2 the scene cannot be set up or a file not be read or written; 3 nothing here can render (the
 environment variable ``MUJOCO_GL`` chooses among ``egl``, ``osmesa`` and ``glfw``). Messages are on standard error,
@@ -12,24 +13,33 @@ the names of the pictures on standard output.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.run.protocol import read_manifest
+from robbdd_tools.run.protocol import read_manifest, thumbnail_file
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.moments import Moment
     from robbdd_tools.run.protocol import Manifest, ScenarioSpec
 
 FAILED, NO_GRAPHICS = 2, 3
-MOMENTS, VIDEOS = "moments", "videos"
-USAGE = "usage: python -m robbdd_tools.agent.render RUN_FOLDER (INDEX FILE.png | moments FOLDER | videos FOLDER)"
+MOMENTS, VIDEOS, THUMBNAILS = "moments", "videos", "thumbnails"
+USAGE = (
+    "usage: python -m robbdd_tools.agent.render RUN_FOLDER "
+    "(INDEX FILE.png | moments FOLDER | videos FOLDER | thumbnails FOLDER INDEX:LINE …)"
+)
+SMALL = (440, 275)
+"""Width and height of a small picture, pixels."""
+COARSE = np.uint8(0xF0)
+"""Bits of a small picture's colours that are kept: it is to be sent within a text of some ten thousand letters."""
 
 
-def render(folder: Path, what: str, output: Path) -> int:
+def render(folder: Path, what: str, output: Path, chosen: Sequence[str] = ()) -> int:
     """Write the pictures that are asked for; returns the exit code."""
     try:
         from robbdd_tools.agent.picture import NoPicture
@@ -39,7 +49,9 @@ def render(folder: Path, what: str, output: Path) -> int:
         return NO_GRAPHICS
     try:
         manifest = read_manifest(folder)
-        if what in (MOMENTS, VIDEOS):
+        if what == THUMBNAILS:
+            pictures = _thumbnails(folder, manifest, output, chosen)
+        elif what in (MOMENTS, VIDEOS):
             output.mkdir(parents=True, exist_ok=True)
             pictures = (_moments if what == MOMENTS else _videos)(folder, manifest, output)
         else:
@@ -69,6 +81,17 @@ def _moments(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
         yield from _pictures(spec, ((output / f"{stem}-{names[moment.line]}.png", moment) for moment in moments))
 
 
+def _thumbnails(folder: Path, manifest: Manifest, output: Path, chosen: Sequence[str]) -> Iterator[Path]:
+    from robbdd_tools.agent.moments import Moments
+
+    output.mkdir(parents=True, exist_ok=True)
+    wanted = {tuple(map(int, word.split(":"))) for word in chosen}
+    moments = [moment for moment in Moments(folder) if (moment.index, moment.line) in wanted]
+    for index, group in groupby(moments, key=lambda moment: moment.index):
+        pictures = ((thumbnail_file(output, index, moment.line), moment) for moment in group)
+        yield from _pictures(manifest.scenarios[index], pictures, small=True)
+
+
 def _videos(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
     from robbdd_tools.agent.execution import Execution
     from robbdd_tools.agent.moments import Moments
@@ -92,7 +115,7 @@ def _stem(spec: ScenarioSpec) -> str:
     return spec.name.rpartition(":")[2].replace(" -- ", "-")
 
 
-def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]]) -> Iterator[Path]:
+def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]], small: bool = False) -> Iterator[Path]:
     """Write pictures of one scenario: of a moment, or of the initial scene; yields their paths."""
     from robbdd_tools.agent.execution import Execution
     from robbdd_tools.agent.picture import Camera
@@ -102,11 +125,11 @@ def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]]) 
     calls = calls_of(spec)
     focus = next((call.arguments["object"] for call in calls if "object" in call.arguments), None)
     simulation = Execution(spec, calls).simulation
-    camera = Camera(simulation)
+    camera = Camera(simulation, SMALL, plain=True) if small else Camera(simulation)
     try:
         for path, moment in wanted:
             pixels = camera.take(simulation.data) if moment is None else camera.take_state(moment.state, focus)
-            write_png(path, pixels)
+            write_png(path, pixels & COARSE if small else pixels)
             yield path
     finally:
         camera.close()
@@ -114,8 +137,8 @@ def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]]) 
 
 def _main() -> int:
     try:
-        folder, what, output = sys.argv[1:]
-        return render(Path(folder), what, Path(output))
+        folder, what, output, *chosen = sys.argv[1:]
+        return render(Path(folder), what, Path(output), chosen)
     except (ValueError, IndexError) as error:
         print(f"{USAGE} ({error})", file=sys.stderr)
         return FAILED

@@ -184,7 +184,8 @@ class ScenarioRun:
         seen = chain(views(execution.simulation, trace), verdict_views(self._spec, self._verdicts, trace.end))
         try:
             write_trace(trace_file(folder, self._index), Evidence(trace, execution.regions), seen)
-            write_curves(curves_file(folder, self._index), dict(self._curves(execution, trace)), trace)
+            found = dict(self._curves(execution, trace))
+            write_curves(curves_file(folder, self._index), (self._spec.variant, self._spec.variation), found, trace)
         except (OSError, TypeError) as error:
             self._channel.send(LogLine("warning", f"{self._spec.name}: the trace is not kept: {error}"))
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.variants import PlacedVariant
 
 SIGNS = {"holds": "✔", "violated": "✗", "unknown": "?", "undefined": "?"}
-STALE = "(stale)"
+STALE, VACUOUS = "(stale)", "(vacuous)"
 _CHANGED = "The text has changed since this was judged: run it again."
 _BADNESS = ("violated", "undefined", "unknown", "holds")
 MOST_LINES = 20
@@ -32,7 +32,8 @@ class ResultHint:
     """What to show behind a clause or row at ``span`` (absolute); ``lines`` tell of variations, the worst first.
 
     ``outcome`` is the worst one; ``stale`` tells that the text has changed since. ``failing`` are the verdicts on a
-    clause that did not hold, the worst first.
+    clause that did not hold, the worst first; ``worst`` is the worst of all. ``vacuous`` says why the clause could not
+    have failed.
     """
 
     span: Span
@@ -41,12 +42,14 @@ class ResultHint:
     lines: tuple[str, ...]
     stale: bool = False
     failing: tuple[Judged, ...] = ()
+    worst: Judged | None = None
+    vacuous: str = ""
 
     @property
     def tooltip(self) -> str:
         """Everything that is known, shortened where there are many variations."""
-        shown = _shortened(self.lines, MOST_LINES)
-        return "\n".join((_CHANGED, *shown) if self.stale else shown)
+        remarks = [_CHANGED] * self.stale + [f"It could not have failed: {self.vacuous}."] * bool(self.vacuous)
+        return "\n".join((*remarks, *_shortened(self.lines, MOST_LINES)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +110,9 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings) -> list
     rows = _rows(snapshot, uri) if findings.clauses else {}
     found: list[Diagnostic] = []
     for hint in clause_hints(snapshot, uri, findings):
+        if hint.vacuous and not hint.stale:
+            message = f"This clause could not have failed in the last run: {hint.vacuous}."
+            found.append(Diagnostic(uri, hint.span, Severity.HINT, "clause-vacuous", message))
         if hint.failing and not hint.stale:
             lines = _shortened([_line(entry) for entry in hint.failing], MOST_TOLD)
             severity = Severity.ERROR if hint.outcome == "violated" else Severity.WARNING
@@ -144,8 +150,9 @@ def _clause_hint(span: Span, judged: Sequence[Judged], *, stale: bool) -> Result
         label = f"{sign} {holding}/{len(judged)}" + (f"  worst {worst.margin}" if worst.margin else "")
     if worst.outcome == "undefined":
         label += " no step"
-    shown = f"{label} {STALE}" if stale else label
-    return ResultHint(span, shown, worst.outcome, tuple(map(_line, ranked)), stale, failing)
+    vacuous = worst.vacuous if all(judgement.vacuous for _, judgement in judged) else ""
+    shown = " ".join((label, *[VACUOUS] * bool(vacuous), *[STALE] * stale))
+    return ResultHint(span, shown, worst.outcome, tuple(map(_line, ranked)), stale, failing, ranked[0], vacuous)
 
 
 def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -> ResultHint:

@@ -8,22 +8,25 @@ from typing import TYPE_CHECKING
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.variants import Scenario, scenarios
-from robbdd_tools.features.clause_results import clause_hints
+from robbdd_tools.features.clause_results import clause_hints, pass_rate
 from robbdd_tools.features.references import uses
 from robbdd_tools.features.results import NOTHING
 from robbdd_tools.features.sentences import clause_sentence, time_meaning, word_meaning, word_of
 from robbdd_tools.names.elements import elements_of, scene_members, site_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.types import variable_type
+from robbdd_tools.names.variants import variants_of as placed_variants
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
+    from robbdd_tools.features.clause_results import ResultHint
     from robbdd_tools.features.results import Findings
     from robbdd_tools.names.analysis import Definition
     from robbdd_tools.names.elements import Element, Site
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.variants import PlacedVariant
 
 MOST_LISTED = 8
 """Members or results that are listed one by one."""
@@ -146,12 +149,45 @@ def _members(members: tuple[Element, ...] | None) -> Iterator[str]:
 
 
 def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> Iterator[str]:
-    if definition.kind is not SymbolKind.FLUENT:
+    match definition.kind:
+        case SymbolKind.FLUENT | SymbolKind.BEHAVIOUR:
+            for hint in clause_hints(snapshot, definition.uri, findings):
+                if hint.span == definition.extent:
+                    yield result_words(hint)
+        case SymbolKind.VARIANT | SymbolKind.STORY:
+            inside = [
+                variant
+                for variant in placed_variants(snapshot, definition.uri)
+                if definition.extent.start <= variant.definition.span.start < definition.extent.end
+            ]
+            lines = [line for variant in inside for line in _rate(snapshot, variant, findings)]
+            if lines:
+                yield "Last results:\n\n" + "\n".join(lines)
+        case _:
+            pass
+
+
+def result_words(hint: ResultHint) -> str:
+    """Return the last results of a clause as a list in Markdown."""
+    age = "Last results, of the text before it was edited" if hint.stale else "Last results"
+    lines = [f"- {line}" for line in hint.lines[:MOST_LISTED]]
+    vacuous = [f"- it could not have failed: {hint.vacuous}"] if hint.vacuous else []
+    return f"{age}:\n\n" + "\n".join((*lines, *vacuous))
+
+
+def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Iterator[str]:
+    """Yield how often a variant passed, and in which scenarios it did not."""
+    rate = pass_rate(snapshot, variant, findings)
+    if rate is None:
         return
-    for hint in clause_hints(snapshot, definition.uri, findings):
-        if hint.span == definition.extent:
-            age = "Last results, of the text before it was edited" if hint.stale else "Last results"
-            yield f"{age}:\n\n" + "\n".join(f"- {line}" for line in hint.lines[:MOST_LISTED])
+    yield f"- `{variant.definition.symbol.name}`: {rate.label}"
+    failed = [scenario for scenario in findings.variants[variant.iri] if scenario.outcome != "holds"]
+    for scenario in failed[:MOST_LISTED]:
+        judged = sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)
+        words = ", ".join(f"{one.name} {one.said}" for one in judged if one.outcome != "holds")
+        yield f"  - {scenario.values}: {words}"
+    if len(failed) > MOST_LISTED:
+        yield f"  - … and {len(failed) - MOST_LISTED} more"
 
 
 def _used(snapshot: Snapshot, definition: Definition) -> str:

@@ -6,24 +6,32 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.definition import symbol_at
-from robbdd_tools.features.describe import describe
+from robbdd_tools.features.describe import describe, result_words
 from robbdd_tools.features.results import NOTHING
 from robbdd_tools.features.sentences import time_meaning, word_meaning, word_of
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
-    from robbdd_tools.features.results import Findings
+    from robbdd_tools.features.results import Findings, Judged
+    from robbdd_tools.names.analysis import Definition
     from robbdd_tools.names.project import Snapshot
 
 
 @dataclass(frozen=True, slots=True)
 class Hover:
-    """Markdown about the text in ``span`` (absolute)."""
+    """Markdown about the text in ``span`` (absolute).
+
+    ``judged`` is the result that it speaks of, if any: of a clause the worst one, of a scenario that of its worst
+    clause.
+    """
 
     markdown: str
     span: Span
+    judged: Judged | None = None
 
 
 def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHING) -> Hover | None:
@@ -31,9 +39,21 @@ def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHIN
 
     ``findings`` are the last results of clauses.
     """
+    hint = next((one for one in clause_hints(snapshot, uri, findings) if one.span.contains(offset)), None)
     found = symbol_at(snapshot, uri, offset)
     if found is not None:
-        return Hover(describe(snapshot, found[1], findings), found[0])
+        definition = found[1]
+        judged = _worst_of(definition, findings)
+        if hint is not None and definition.extent == hint.span and definition.uri == uri:
+            judged = hint.worst
+        return Hover(describe(snapshot, definition, findings), found[0], judged)
+    words = _words(snapshot, uri, offset)
+    if words is None or hint is None:
+        return words
+    return Hover(f"{words.markdown}\n\n{result_words(hint)}", words.span, hint.worst)
+
+
+def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
     analysis = snapshot.file(uri)
     for placed in analysis.declarations if analysis is not None else ():
         root = placed.declaration.tree
@@ -48,3 +68,16 @@ def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHIN
             if isinstance(node, tree.During | tree.Before | tree.After):
                 return Hover(time_meaning(node), span)
     return None
+
+
+def _worst_of(definition: Definition, findings: Findings) -> Judged | None:
+    """Return the worst result of a variant that did not hold."""
+    if definition.kind is not SymbolKind.VARIANT or definition.iri is None:
+        return None
+    every = (
+        (scenario, judgement)
+        for scenario in findings.variants.get(definition.iri, ())
+        for judgement in scenario.clauses.values()
+        if judgement.outcome != "holds"
+    )
+    return min(every, key=lambda judged: judged[1].rank, default=None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -28,7 +28,8 @@ class Judgement:
 
     ``outcome`` is ``holds``, ``violated``, ``unknown`` or ``undefined`` (no step can judge it); ``margin`` and ``said``
     are words, the latter with instant and reason; of several the one of the smallest ``rank`` is the worst. ``digest``
-    is that of the clause's text at the time; ``line`` that of its step in the feature.
+    is that of the clause's text at the time; ``line`` that of its step in the feature. ``vacuous`` says why the clause
+    could not have failed in the whole run, nothing where it could.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Judgement:
     said: str
     digest: str
     line: int = 0
+    vacuous: str = ""
 
 
 @dataclass(slots=True)
@@ -72,6 +74,11 @@ class JudgedScenario:
         known = self.clauses.get(iri)
         if known is None or judgement.rank < known.rank:
             self.clauses[iri] = judgement
+
+    def mark_vacuous(self, reasons: Mapping[str, str]) -> None:
+        """Take why clauses (by IRI) could not have failed in the run."""
+        for iri in self.clauses.keys() & reasons.keys():
+            self.clauses[iri] = replace(self.clauses[iri], vacuous=reasons[iri])
 
 
 Judged = tuple[JudgedScenario, Judgement]

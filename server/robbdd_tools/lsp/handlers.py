@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 from lsprotocol import types
 
@@ -48,6 +49,11 @@ def create_server() -> RobbddServer:
 
 
 def _register_documents(server: RobbddServer) -> None:
+    @server.feature(types.INITIALIZE)
+    def initialize(ls: RobbddServer, params: types.InitializeParams) -> None:
+        wanted = params.initialization_options
+        ls.shows_pictures = isinstance(wanted, dict) and cast("dict[str, object]", wanted).get("pictures") is True
+
     @server.feature(types.INITIALIZED)
     async def initialized(ls: RobbddServer, _: types.InitializedParams) -> None:
         ls.convert = Converter(ls.workspace.position_encoding or types.PositionEncodingKind.Utf16)

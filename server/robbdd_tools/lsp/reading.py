@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Any, cast
 
 from lsprotocol import types
@@ -9,10 +10,11 @@ from lsprotocol import types
 from robbdd_tools.features.clause_results import clause_hints, row_hints
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe import describe_path, describe_words
-from robbdd_tools.features.hover import hover
+from robbdd_tools.features.hover import Hover, hover
 from robbdd_tools.features.scenario_hints import scenario_hints
 from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import document_of, markup
+from robbdd_tools.lsp.result_hover import pictures_of
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
 
@@ -62,17 +64,22 @@ def _register_completion(server: RobbddServer) -> None:
 def _register_hover(server: RobbddServer) -> None:
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def show_hover(ls: RobbddServer, params: types.HoverParams) -> types.Hover | None:
-        def find(snapshot: Snapshot) -> types.Hover | None:
+        def find(snapshot: Snapshot) -> tuple[Hover, types.Range] | None:
             document = document_of(snapshot, params.text_document.uri)
             found = hover(snapshot, document.uri, ls.convert.offset(document, params.position), ls.findings)
-            if found is None:
-                return None
-            client = ls.client_capabilities.text_document
-            formats = client.hover.content_format if client is not None and client.hover is not None else None
-            contents = markup(found.markdown, formats)
-            return types.Hover(contents=contents, range=ls.convert.range(document, found.span))
+            return None if found is None else (found, ls.convert.range(document, found.span))
 
-        return await ls.analyse(find)
+        answer = await ls.analyse(find)
+        if answer is None:
+            return None
+        found, place = answer
+        markdown = found.markdown
+        if ls.shows_pictures and found.judged is not None:
+            pictures = await asyncio.to_thread(pictures_of, ls.stores, found.judged)
+            markdown = "\n\n".join(filter(None, (markdown, pictures)))
+        client = ls.client_capabilities.text_document
+        formats = client.hover.content_format if client is not None and client.hover is not None else None
+        return types.Hover(contents=markup(markdown, formats), range=place)
 
 
 def _register_hints(server: RobbddServer) -> None:

@@ -12,6 +12,7 @@ from robbdd_tools.run.protocol import (
     ClauseJudged,
     ClauseSpec,
     ClauseStarted,
+    RunFinished,
     RunMessage,
     ScenarioFinished,
     ScenarioStarted,
@@ -52,6 +53,8 @@ def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage
                 }
         case ScenarioFinished(index):
             fields["verdict"] = str(results.scenarios[index].verdict)
+        case RunFinished():
+            fields["vacuous"] = dict(results.vacuous())
         case _:
             pass
     return {"run": run, "uri": plan.request.name, "message": fields}

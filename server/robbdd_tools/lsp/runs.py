@@ -14,6 +14,7 @@ from robbdd_tools import __version__
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.results import JudgedScenario, Judgement
 from robbdd_tools.lsp.kept_results import save_results
+from robbdd_tools.lsp.result_hover import picture_violations
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_plan import ModelError, RunOptions, RunPlan, plan_run
 from robbdd_tools.monitor.verdict import Outcome
@@ -82,6 +83,8 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
             run.scheduler.cancel()
         await follower.follow()
         pictures = await _record(ls, place) if options.record else []
+        if ls.shows_pictures:
+            await asyncio.to_thread(picture_violations, place, list(run.judged.values()))
         stored = {"run": place.number, "folder": path_to_uri(place.folder)}
         return {**follower.summary(), "stored": stored, "pictures": pictures}
     except (ModelError, OSError) as error:
@@ -132,6 +135,8 @@ class _Follower:
         if self._run.options.is_whole and not scheduler.ending:
             for variant, begun in self._begun.items():
                 self._ls.results.drop_others(variant, begun)
+        for scenario in self._run.judged.values():
+            scenario.mark_vacuous(self._results.vacuous())
         self._take(RunFinished(not scheduler.ending))
         self._ls.work_done_progress.end(self._run.id, types.WorkDoneProgressEnd(message=self._told()))
         self._ls.show_results(self._plan.uris)

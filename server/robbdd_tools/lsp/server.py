@@ -61,6 +61,8 @@ class RobbddServer(LanguageServer):
         self.run: ActiveRun | None = None
         self.run_numbers = count(1)
         self.stores = Stores()
+        self.shows_pictures = False
+        """Whether the client shows pictures in Markdown."""
         self._shapes: dict[str, tuple[Diagnostic, ...]] = {}
         self._shaped_texts: dict[str, dict[str, str]] = {}
         self._requested_texts: dict[str, dict[str, str]] = {}

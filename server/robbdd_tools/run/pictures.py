@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 BACK_ENDS = ("egl", "osmesa")
@@ -15,7 +16,7 @@ ADVICE = (
     "nothing here can render without a display: install EGL (libegl1 and libgl1) or OSMesa (libosmesa6), "
     "or set MUJOCO_GL=glfw where there is a display"
 )
-MOMENTS, VIDEOS = "moments", "videos"
+MOMENTS, VIDEOS, THUMBNAILS = "moments", "videos", "thumbnails"
 
 
 class NoPictures(Exception):
@@ -44,10 +45,15 @@ def render_videos(folder: Path, output: Path) -> int:
     return len(_render(folder, VIDEOS, output))
 
 
-def _render(folder: Path, what: str, output: Path) -> list[str]:
+def render_thumbnails(folder: Path, output: Path, chosen: Iterable[tuple[int, int]]) -> int:
+    """Write small pictures of the violations of some clauses (scenario, feature line); raises ``NoPictures``."""
+    return len(_render(folder, THUMBNAILS, output, [f"{index}:{line}" for index, line in chosen]))
+
+
+def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> list[str]:
     """Return the names of the pictures."""
     chosen = os.environ.get("MUJOCO_GL")
-    command = [sys.executable, "-m", "robbdd_tools.agent.render", str(folder), what, str(output.absolute())]
+    command = [sys.executable, "-m", "robbdd_tools.agent.render", str(folder), what, str(output.absolute()), *more]
     tried: list[str] = []
     for back_end in (chosen,) if chosen else BACK_ENDS:
         environment = {**os.environ, "MUJOCO_GL": back_end}

@@ -281,6 +281,11 @@ def curves_file(folder: Path, index: int) -> Path:
     return folder / "margins" / f"{index:06}.json"
 
 
+def thumbnail_file(folder: Path, index: int, line: int) -> Path:
+    """Return where the small picture of a violation is: scenario, feature line of the clause."""
+    return folder / f"{index:06}-{line}.png"
+
+
 def write_manifest(folder: Path, manifest: Manifest) -> None:
     """Write the manifest into a run folder."""
     data = asdict(manifest)

@@ -1,0 +1,75 @@
+"""What a client that shows pictures gets with a clause's last result: the violated moment, the margin over time."""
+
+from __future__ import annotations
+
+import logging
+from base64 import b64encode
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.run.pictures import NoPictures, render_thumbnails
+from robbdd_tools.run.plot import plot
+from robbdd_tools.run.protocol import thumbnail_file
+from robbdd_tools.run.shown import NoTrace, kept_curves
+from robbdd_tools.run.store import NoSuchRun
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from robbdd_tools.features.results import Judged, JudgedScenario
+    from robbdd_tools.lsp.stores import Stores
+    from robbdd_tools.run.store import RunStore, StoredRun
+
+THUMBNAILS = "thumbnails"
+LARGEST = 60_000
+"""Bytes of a picture within a text, of which clients read a hundred thousand letters."""
+MOST = 8
+"""Clauses of a run whose worst violation is pictured."""
+_LOG = logging.getLogger(__name__)
+
+
+def pictures_of(stores: Stores, judged: Judged) -> str:
+    """Return a result's pictures as Markdown, nothing where the stored run is gone."""
+    scenario, judgement = judged
+    try:
+        run = _run_of(stores.of(scenario.model), scenario)
+        kept = kept_curves(run, scenario.index)
+    except (NoSuchRun, NoTrace):
+        return ""
+    if kept.get("scenario") != [scenario.variant, scenario.variation]:
+        return ""
+    return "\n\n".join(_shown(run, scenario.index, judgement.line, plot(kept, judgement.line)))
+
+
+def _run_of(store: RunStore, scenario: JudgedScenario) -> StoredRun:
+    return store.find(str(scenario.run))
+
+
+def _shown(run: StoredRun, index: int, line: int, drawn: str | None) -> Iterator[str]:
+    if drawn is not None:
+        yield f"![margin over time]({_data('image/svg+xml', drawn.encode())})"
+    path = thumbnail_file(run.folder / THUMBNAILS, index, line)
+    if path.is_file():
+        small = path.stat().st_size <= LARGEST
+        yield f"![the moment of the violation]({_data('image/png', path.read_bytes()) if small else path_to_uri(path)})"
+
+
+def _data(kind: str, data: bytes) -> str:
+    return f"data:{kind};base64,{b64encode(data).decode('ascii')}"
+
+
+def picture_violations(run: StoredRun, scenarios: Iterable[JudgedScenario]) -> None:
+    """Take a small picture of the worst violation of each clause, of the first ``MOST``; where that works."""
+    worst: dict[str, tuple[float, int, int]] = {}
+    for scenario in scenarios:
+        for iri, judgement in scenario.clauses.items():
+            if judgement.outcome == "violated":
+                found = (judgement.rank, scenario.index, judgement.line)
+                worst[iri] = min(found, worst.get(iri, found))
+    chosen = sorted({(index, line) for _, index, line in worst.values()})[:MOST]
+    try:
+        if chosen:
+            render_thumbnails(run.folder, run.folder / THUMBNAILS, chosen)
+    except NoPictures as error:
+        _LOG.info("there are no pictures of violations: %s", error)

@@ -1,0 +1,114 @@
+"""A small plot of a clause's margin over time, with its window and the events, as SVG that suits any theme."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+from xml.sax.saxutils import escape
+
+from robbdd_tools.run.report import margin
+
+WIDTH, HEIGHT = 460, 170
+LEFT, RIGHT, TOP, BOTTOM = 64, 12, 34, 20
+"""Room around the plot for numbers and for the names of events, pixels."""
+INK, LINE, GOOD, BAD = "#8a8f98", "#3f8fd6", "#2ea043", "#e5534b"
+"""Colours that are legible on white and on black."""
+LETTER = 5.6
+"""Width of a letter of the names of events, pixels, about."""
+LEVELS = 2
+"""Lines on which names of events stand that would cover each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """Where times (s) and margins lie in the picture."""
+
+    duration: float
+    low: float
+    high: float
+
+    def x(self, time: float) -> float:
+        return round(LEFT + (WIDTH - LEFT - RIGHT) * time / self.duration, 1)
+
+    def y(self, value: float) -> float:
+        return round(TOP + (HEIGHT - TOP - BOTTOM) * (self.high - value) / (self.high - self.low), 1)
+
+
+def plot(kept: Mapping[str, Any], line: int) -> str | None:
+    """Return the plot of the clause on a feature line as SVG, ``None`` where there is nothing to plot.
+
+    ``kept`` is what is kept beside a trace; of several fluents that with the least margin is shown.
+    """
+    parts = [part for part in kept["clauses"].get(str(line), ()) if part["times"]]
+    if not parts:
+        return None
+    part = min(parts, key=lambda part: min(part["margins"]))
+    low, high = min(0.0, *part["margins"]), max(0.0, *part["margins"])
+    room = 0.08 * ((high - low) or 1.0)
+    frame = _Frame(max(kept["duration"], part["times"][-1]) or 1.0, low - room, high + room)
+    body = "".join(
+        (*_window(frame, part), *_axes(frame, part, (low, high)), *_events(frame, kept["events"]), _curve(frame, part))
+    )
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}" '
+        f'font-family="sans-serif" font-size="10" fill="{INK}">{body}{"".join(_decisive(frame, part))}</svg>'
+    )
+
+
+def _window(frame: _Frame, part: Mapping[str, Any]) -> Iterator[str]:
+    if part["start"] is None:
+        return
+    start, end = frame.x(part["start"]), frame.x(part["end"])
+    left, width = (start, end - start) if end - start >= 2 else (start - 1, 2)
+    yield (
+        f'<rect x="{left}" y="{TOP}" width="{width:.1f}" height="{HEIGHT - TOP - BOTTOM}" '
+        f'fill="{LINE}" fill-opacity="0.22"/>'
+    )
+
+
+def _axes(frame: _Frame, part: Mapping[str, Any], bounds: tuple[float, float]) -> Iterator[str]:
+    zero, bottom = frame.y(0.0), HEIGHT - BOTTOM
+    yield f'<line x1="{LEFT}" y1="{zero}" x2="{WIDTH - RIGHT}" y2="{zero}" stroke="{INK}" stroke-dasharray="4 3"/>'
+    yield f'<text x="{LEFT - 6}" y="{zero + 3}" text-anchor="end">0</text>'
+    for value in bounds:
+        # A number that would cover that of the zero line is left out.
+        if abs(frame.y(value) - zero) > 11:
+            words = margin(value, part["unit"]) or f"{value:+.0f}"
+            yield f'<text x="{LEFT - 6}" y="{frame.y(value) + 3}" text-anchor="end">{escape(words)}</text>'
+    yield f'<text x="{LEFT}" y="{bottom + 13}">0 s</text>'
+    yield f'<text x="{WIDTH - RIGHT}" y="{bottom + 13}" text-anchor="end">{frame.duration:.2f} s</text>'
+
+
+def _events(frame: _Frame, events: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+    ends = [0.0] * LEVELS
+    for event in events:
+        name = event["name"].rpartition(":")[2].removeprefix("evt-")
+        x, width = frame.x(event["time"]), LETTER * len(name)
+        yield f'<line x1="{x}" y1="{TOP}" x2="{x}" y2="{HEIGHT - BOTTOM}" stroke="{INK}" stroke-opacity="0.55"/>'
+        left = min(max(x - width / 2, 2.0), WIDTH - width - 2)
+        level = next((level for level in range(LEVELS) if ends[level] < left), None)
+        if level is not None:
+            ends[level] = left + width + 4
+            yield f'<text x="{left:.1f}" y="{TOP - 5 - 13 * level}">{escape(name)}</text>'
+
+
+def _curve(frame: _Frame, part: Mapping[str, Any]) -> str:
+    points: Sequence[tuple[float, float]] = list(zip(part["times"], part["margins"], strict=True))
+    path = " ".join(f"{frame.x(time)},{frame.y(value)}" for time, value in points)
+    return f'<polyline points="{path}" fill="none" stroke="{LINE}" stroke-width="1.6" stroke-linejoin="round"/>'
+
+
+def _decisive(frame: _Frame, part: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the point of the least margin within the window."""
+    if part["start"] is None:
+        return
+    inside = [
+        (value, time)
+        for time, value in zip(part["times"], part["margins"], strict=True)
+        if part["start"] - 1e-6 <= time <= part["end"] + 1e-6
+    ]
+    if inside:
+        value, time = min(inside)
+        color = GOOD if (value >= 0) != part["negated"] else BAD
+        yield f'<circle cx="{frame.x(time)}" cy="{frame.y(value)}" r="4" fill="{color}"/>'
