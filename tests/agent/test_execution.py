@@ -19,9 +19,10 @@ from agent.worlds import (
     execution,
     pick_place,
 )
+from robbdd_tools.agent.course import Call, Timing
 from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.agent.execution import Call, Execution, Timing
+from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.placement import TABLE_TOP
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from agent.worlds import BALL, BIN, BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, execution, pick_place
+from robbdd_tools.agent.course import Timing
 from robbdd_tools.agent.engine import TICK, mujoco
-from robbdd_tools.agent.execution import Execution, Timing
+from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.placement import TABLE_TOP
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge

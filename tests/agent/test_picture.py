@@ -17,10 +17,10 @@ from PIL import Image
 
 from agent.worlds import BIN, BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, Steps, write_run
 from agent.worlds import execution as build_execution
+from robbdd_tools.agent.beginning import calls_of
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.png import SIGNATURE, write_png
-from robbdd_tools.agent.session import calls_of
 from robbdd_tools.agent.video import NoVideo, write_video
 from robbdd_tools.agent.viewer import NoViewer, Viewer
 from robbdd_tools.run.protocol import Execute, encode

@@ -9,7 +9,8 @@ import pytest
 
 from agent.worlds import BALL, BIN, BIN_WS, CUBE, OTHER_BIN, OTHER_WS, SCENE, execution, pick_place
 from robbdd_tools.agent.clauses import decide
-from robbdd_tools.agent.execution import Call, Execution
+from robbdd_tools.agent.course import Call
+from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.kinematics import arm_of
 from robbdd_tools.agent.sentences import read_clause
 from robbdd_tools.catalog.robots.ur10 import UR10

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from robbdd_tools.agent.execution import Call, Execution, Timing
+from robbdd_tools.agent.course import Call, Timing
+from robbdd_tools.agent.execution import Execution
 from robbdd_tools.run.protocol import ClauseSpec, Manifest, ScenarioSpec, SceneSpec, write_manifest
 
 PANDA, CUBE, BALL, BIN, OTHER_BIN = "env:panda", "env:cube1", "env:ball1", "env:bin1", "env:bin2"

@@ -27,6 +27,8 @@ SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
 
 def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[str]) -> Verdict:
     """Judge a clause on what has happened; ``events`` are those that something in the scenario emits."""
+    if trace.unreached:
+        return unknown(trace.unreached)
     match clause:
         case Fluent():
             return _fluent(clause, trace, regions, events)

@@ -12,6 +12,7 @@ import numpy as np
 
 from robbdd_tools.agent.clauses import ways
 from robbdd_tools.agent.sentences import Clause, Doing, Fluent, Junction, Unmatched
+from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.monitor.curve import Curve, curve
 from robbdd_tools.monitor.judge import WindowEvidence
 from robbdd_tools.monitor.time import Window
@@ -36,9 +37,14 @@ def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False
             return
 
 
-def behaviour_curves(doing: Doing, trace: Trace, emitters: Mapping[str, str]) -> tuple[Curve, ...]:
-    """Return the duration of a behaviour, without a margin; ``emitters`` maps events to what emits them."""
+def behaviour_curves(doing: Doing, trace: Trace, emitters: Mapping[str, str], node: str) -> tuple[Curve, ...]:
+    """Return the duration of a behaviour, without a margin; ``emitters`` maps events to what emits them.
+
+    ``node`` is that of the behaviour tree which executes it, if one does.
+    """
     limits = doing.behaviour.events[0], doing.behaviour.events[-1]
+    if node:
+        limits = emitter(node, START), emitter(node, END)
     times = [stamp.time for stamp in trace.events if emitters.get(stamp.name) in limits]
     return (Curve(min(times), max(times)),) if times else ()
 

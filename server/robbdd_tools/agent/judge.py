@@ -75,7 +75,7 @@ class StoredTraces:
             evidence = read_trace(trace_file(self._folder, index))
         except UnreadableTrace:
             return
-        for clause in spec.clauses:
+        for clause in () if evidence.trace.unreached else spec.clauses:
             found = (
                 () if clause.role == "when" else ranges(read_clause(clause.sentence), evidence.trace, evidence.regions)
             )
@@ -87,6 +87,8 @@ class StoredTraces:
         event = read_event(clause.sentence)
         if event is not None:
             time = evidence.trace.event_time(event)
+            if time is None and evidence.trace.unreached:
+                return unknown(evidence.trace.unreached)
             return unknown(f"event {event} never occurred") if time is None else Verdict(Outcome.HOLDS, at=time)
         for entry in self._results[index]["clauses"]:
             if entry["sentence"] == clause.sentence:
@@ -100,6 +102,8 @@ def _change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
     """Say why a trace is no evidence for a scenario any more."""
     if spec.scene != stored.scene:
         return CHANGED.format("the scene")
+    if (spec.tree, spec.node) != (stored.tree, stored.node):
+        return CHANGED.format("the behaviour tree")
     if _behaviours(spec) != _behaviours(stored):
         return CHANGED.format("the behaviour")
     return ""

@@ -93,17 +93,17 @@ def _thumbnails(folder: Path, manifest: Manifest, output: Path, chosen: Sequence
 
 
 def _videos(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
+    from robbdd_tools.agent.beginning import calls_of, timing_of
     from robbdd_tools.agent.execution import Execution
     from robbdd_tools.agent.moments import Moments
     from robbdd_tools.agent.sentences import read_clause
-    from robbdd_tools.agent.session import calls_of, timing_of
     from robbdd_tools.agent.video import Violation, write_video
 
     moments = list(Moments(folder))
     for index, spec in enumerate(manifest.scenarios):
         names = {clause.line: clause.name for clause in spec.clauses}
         clauses = [read_clause(clause.sentence) for clause in spec.clauses if clause.role != "when"]
-        execution = Execution(spec, calls_of(spec), timing_of(clauses))
+        execution = Execution(spec, calls_of(spec), timing_of(spec, clauses))
         execution.advance_until(lambda _: False)
         violations = [Violation(moment.at, names[moment.line]) for moment in moments if moment.index == index]
         path = output / f"{_stem(spec)}.webp"
@@ -117,10 +117,10 @@ def _stem(spec: ScenarioSpec) -> str:
 
 def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]], small: bool = False) -> Iterator[Path]:
     """Write pictures of one scenario: of a moment, or of the initial scene; yields their paths."""
+    from robbdd_tools.agent.beginning import calls_of
     from robbdd_tools.agent.execution import Execution
     from robbdd_tools.agent.picture import Camera
     from robbdd_tools.agent.png import write_png
-    from robbdd_tools.agent.session import calls_of
 
     calls = calls_of(spec)
     focus = next((call.arguments["object"] for call in calls if "object" in call.arguments), None)

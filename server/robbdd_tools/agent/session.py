@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from robbdd_tools.agent.beginning import Courses, call_of, calls_of, timing_of
 from robbdd_tools.agent.clauses import decide, is_closed, ranges
 from robbdd_tools.agent.curves import behaviour_curves, curves, write_curves
 from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.agent.execution import Call, Execution, Timing
+from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.policies import with_policies
-from robbdd_tools.agent.sentences import Clause, Doing, fluents_of, read_clause, read_doing, read_event
+from robbdd_tools.agent.sentences import read_clause, read_doing, read_event
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import verdict_views, write_trace
 from robbdd_tools.agent.viewer import NoViewer, Viewer
 from robbdd_tools.agent.views import views
-from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.protocol import (
     NO_STEP,
@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
     from robbdd_tools.run.protocol import Manifest, ScenarioSpec
 
-LEAD = 0.5
-"""Seconds between the scenario's start and its first behaviour, at least."""
 STRANGER = "the manifest of this run knows no such scenario; was the feature changed?"
 
 
@@ -61,6 +59,7 @@ class ScenarioRun:
         channel: Channel,
         moments: Moments,
         keep: Path | None = None,
+        courses: Courses | None = None,
     ) -> None:
         self._index = index
         self._spec = spec
@@ -77,6 +76,7 @@ class ScenarioRun:
         self._execution: Execution | None = None
         self._viewer: Viewer | None = None
         self._keep = keep
+        self._courses = courses or Courses()
         self._verdicts: list[ClauseJudged] = []
         self._broken = ""
         self._began = perf_counter()
@@ -88,10 +88,13 @@ class ScenarioRun:
             raise SceneError(self._broken)
         if self._execution is None:
             try:
-                calls = [call_of(doing) for doing in self._doings.values()]
-                self._execution = Execution(self._spec, calls, timing_of(self._clauses.values()))
+                doings = self._doings.values()
+                calls = [call_of(doing) for doing in doings] if self._spec.tree is None else calls_of(self._spec)
+                timing = timing_of(self._spec, self._clauses.values())
+                course = self._courses.course(self._spec, calls, timing)
+                self._execution = Execution(self._spec, calls, timing, course)
                 again = self._execution.simulation.world.resampled
-                if again:
+                if again and not self._execution.simulated:
                     text = f"{self._spec.name}: {again} initial places overlapped and were drawn again"
                     self._channel.send(LogLine("info", text))
                 self._show(self._execution)
@@ -132,7 +135,8 @@ class ScenarioRun:
                 return Verdict(Outcome.HOLDS)
             if execution.broken:
                 return unknown(execution.broken)
-            return Verdict(Outcome.VIOLATED, reason=execution.trace.remark)
+            unreached = execution.trace.unreached
+            return unknown(unreached) if unreached else Verdict(Outcome.VIOLATED, reason=execution.failure)
 
         return self._judged(line, verdict)
 
@@ -145,6 +149,8 @@ class ScenarioRun:
                 return unknown(f"nothing in the scenario emits event {event}")
             trace = execution.advance_until(lambda trace: trace.event_time(event) is not None)
             time = trace.event_time(event)
+            if trace.unreached:
+                return unknown(trace.unreached)
             if time is None:
                 return unknown(f"event {event} never occurred" + (f": {trace.remark}" if trace.remark else ""))
             return Verdict(Outcome.HOLDS, at=time)
@@ -174,6 +180,8 @@ class ScenarioRun:
 
     def _tell_ranges(self, execution: Execution) -> None:
         """Tell how far the margins varied in all that happened, for clauses that could not have failed."""
+        if execution.trace.unreached:
+            return
         for line, clause in self._clauses.items():
             found = ranges(clause, execution.measured(clause, execution.trace), execution.regions)
             if found:
@@ -194,7 +202,7 @@ class ScenarioRun:
             if line in self._clauses:
                 yield line, tuple(curves(self._clauses[line], trace, execution.regions))
             elif line in self._doings:
-                yield line, behaviour_curves(self._doings[line], trace, self._spec.events)
+                yield line, behaviour_curves(self._doings[line], trace, self._spec.events, self._spec.node)
 
     def _judged(self, line: int, verdict: Callable[[Execution], Verdict]) -> Verdict:
         if line in self._open:
@@ -235,6 +243,7 @@ class Session:
         self._folder = folder
         self._manifest = manifest
         self._moments = Moments(folder)
+        self._courses = Courses()
         self._present: ScenarioRun | None = None
 
     def start(
@@ -253,7 +262,7 @@ class Session:
         self._moments.clear(index)
         spec = self._manifest.scenarios[index]
         keep = self._folder if self._manifest.traces else None
-        self._present = ScenarioRun(index, spec, texts, self._channel, self._moments, keep)
+        self._present = ScenarioRun(index, spec, texts, self._channel, self._moments, keep, self._courses)
 
     @property
     def scenario(self) -> ScenarioRun:
@@ -272,34 +281,3 @@ class Session:
         if self._present is not None:
             self._present.finish()
             self._present = None
-
-
-def calls_of(spec: ScenarioSpec) -> list[Call]:
-    """Return the behaviours of a scenario; raises ``SceneError`` for one that is not of single elements."""
-    doings = (read_doing(clause.sentence) for clause in spec.clauses if clause.role == "when")
-    return [call_of(doing) for doing in doings if doing is not None]
-
-
-def call_of(doing: Doing) -> Call:
-    """Return a behaviour as it is executed; raises ``SceneError`` when it is not of single elements."""
-    arguments: dict[str, str] = {}
-    for slot, filler in doing.arguments.items():
-        if not isinstance(filler, str):
-            raise SceneError(f"'{doing.behaviour.name}' needs one {slot}, not a set of them")
-        arguments[slot] = filler
-    return Call(doing.behaviour.name, arguments)
-
-
-def timing_of(clauses: Iterable[Clause]) -> Timing:
-    """Leave enough time before and after for the windows that the clauses speak of."""
-    lead, tail = LEAD, 0.0
-    for clause in clauses:
-        for fluent in fluents_of(clause):
-            match fluent.time:
-                case Before(_, float(horizon)):
-                    lead = max(lead, horizon)
-                case After(_, float(horizon)):
-                    tail = max(tail, horizon)
-                case _:
-                    pass
-    return Timing(lead=lead, tail=tail)

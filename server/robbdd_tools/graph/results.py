@@ -87,12 +87,26 @@ class _Writer:
         self.say(node, "rbw:name", _field(entry, "name", str, where))
         self.say(node, "rbw:seed", _field(entry, "seed", int, where))
         self.link(node, "earl:outcome", self._outcome(entry, where))
+        if entry.get("shared") is not None:
+            self._shared(run, node, _object(entry["shared"], f"'shared' of {where}"), where)
         if entry.get("duration") is not None:
             self.say(node, "rbw:duration-seconds", float(_field(entry, "duration", (int, float), where)))
         for place, (variable, value) in enumerate(sorted(_field(entry, "values", dict, where).items()), start=1):
             self._value(node, f"{node}/value/{place}", str(variable), value)
         for place, clause in enumerate(_field(entry, "clauses", list, where), start=1):
             self._clause(node, f"{node}/clause/{place}", _object(clause, f"clause {place} of {where}"), entry)
+
+    def _shared(self, run: URIRef, scenario: URIRef, entry: Json, where: str) -> None:
+        """State the execution of a behaviour tree that a scenario was judged from; others may have been as well."""
+        from urllib.parse import quote
+
+        name = _field(entry, "execution", str, where)
+        execution = self.node(f"{run}/tree/{quote(name, safe='')}", "prov:Activity", "rbw:TreeExecution")
+        self.link(execution, "rbw:run", run)
+        self.link(execution, "rbw:of-tree", _field(entry, "tree", str, where))
+        self.link(scenario, "rbw:judged-from", execution)
+        self.link(scenario, "prov:wasInformedBy", execution)
+        self.link(scenario, "rbw:of-node", _field(entry, "node", str, where))
 
     def _value(self, run: URIRef, iri: str, variable: str, value: object) -> None:
         node = self.node(iri, "rbw:GivenValue")

@@ -41,7 +41,8 @@ class Trace:
     execution's own last word on what went wrong ("gripper lost env:cube1 at 3.42 s"). ``reaches`` maps agent and
     object to reach margins (n,) rad, not a number where none was sampled; ``settings`` maps an element and the name
     of a configuration to its value. ``forces`` maps agent and object to the largest contact force (N) since the sample
-    before (n,), where that was watched; ``outlines`` tells how far objects reach around their position.
+    before (n,), where that was watched; ``outlines`` tells how far objects reach around their position. ``unreached``
+    says why the scenario, a part of a behaviour tree, was never begun, if so: nothing can be told of it then.
     """
 
     names: tuple[str, ...]
@@ -56,6 +57,7 @@ class Trace:
     settings: Mapping[tuple[str, str], str] = field(default_factory=dict[tuple[str, str], str])
     forces: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
     outlines: Mapping[str, Outline] = field(default_factory=dict[str, "Outline"])
+    unreached: str = ""
 
     @property
     def end(self) -> float:

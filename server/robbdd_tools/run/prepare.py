@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.gherkin.feature import Numbered, every_scenario
 from robbdd_tools.gherkin.files import FeaturePlan, only, whole_plan, written_scenarios
 from robbdd_tools.gherkin.skeleton import steps_file
 from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri, Story, Variant
 from robbdd_tools.run.protocol import MANIFEST, ExecutionSpec, Manifest, ScenarioSpec
+from robbdd_tools.run.related import Relations
 from robbdd_tools.run.specs import SpecWriter
 
 DEFAULT_SEED = 1
@@ -118,14 +120,17 @@ def _written(
     with (folder / MANIFEST).open("w", encoding="utf-8", newline="\n") as manifest:
         known = [asdict(part.writer.execution) for part in parts if part.writer.execution is not None]
         head = {"model": name, "seed": seed, "traces": traces, "executions": known}
+        trees: dict[str, TreeSpec] = {}
         manifest.write(json.dumps(head, ensure_ascii=False)[:-1] + ', "scenarios": [')
         separator = "\n"
         for part in parts:
             for spec in part.specs(folder):
                 manifest.write(separator + json.dumps(spec, default=_fields, ensure_ascii=False))
                 separator = ",\n"
+                if spec.tree is not None:
+                    trees[spec.tree.name] = spec.tree
                 yield spec
-        manifest.write("\n]}\n")
+        manifest.write(f'\n], "trees": {json.dumps([asdict(tree) for tree in trees.values()], ensure_ascii=False)}}}\n')
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,8 +161,9 @@ def _parts(
     repeat: int | None,
     chosen: Callable[[ScenarioSpec], bool] | None = None,
 ) -> Iterator[_Part]:
+    relations = Relations(plan.model)
     if not executions:
-        yield _Part(plan, SpecWriter(plan.model, seed, name=model), folder, repeat or 1, chosen)
+        yield _Part(plan, SpecWriter(plan.model, seed, relations, name=model), folder, repeat or 1, chosen)
     names: set[str] = {"steps"}
     for execution in executions:
         own = replace(plan, stories=_stories(plan.stories, lambda iri, execution=execution: iri == execution.variant))
@@ -165,7 +171,7 @@ def _parts(
         name = next(name for n in range(len(executions) + 2) if (name := f"{stem}-{n}" if n else stem) not in names)
         names.add(name)
         own_seed = seed if execution.seed is None else execution.seed
-        writer = SpecWriter(plan.model, own_seed, execution, model)
+        writer = SpecWriter(plan.model, own_seed, relations, execution, model)
         yield _Part(own, writer, f"{folder}/{name}", repeat or execution.repeat, chosen)
 
 
@@ -183,9 +189,11 @@ def write_surroundings(folder: Path, model_name: str, json_ld: str) -> None:
 
 
 def _fields(value: Any) -> object:
-    """Return the fields of a dataclass, for JSON; unlike ``asdict`` it copies nothing. Executions are named."""
+    """Return the fields of a dataclass, for JSON; unlike ``asdict`` it copies nothing. Executions, trees are named."""
     if isinstance(value, ExecutionSpec):
         return value.iri
+    if isinstance(value, TreeSpec):
+        return value.name
     return {name: getattr(value, name) for name in _names(value.__class__)}
 
 

@@ -6,6 +6,7 @@ that both sides share. Every message is a frozen dataclass; ``encode`` and ``dec
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from robbdd_tools.base.plain import from_plain
+from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.verdict import Verdict
@@ -90,7 +92,9 @@ class ScenarioSpec:
     ``events`` maps an event's CURIE to what emits it: ``scenario-start``, ``scenario-end`` or the name of an
     event of the behaviour (``pick-start`` …); ``seed`` decides everything random in it. ``execution`` is how a
     ``.bddx`` wants it executed, ``None`` for a scenario that is run as it is. Repetitions, counted from 1, share the
-    feature's scenario and differ in their seeds. ``model`` is the file's name in reports.
+    feature's scenario and differ in their seeds. ``model`` is the file's name in reports. ``tree`` is the execution
+    of a behaviour tree that scenarios with the same one are judged from together, ``node`` the IRI of the tree's node
+    that this one is linked to; scene and seed are those of that execution then.
     """
 
     feature: str
@@ -107,6 +111,8 @@ class ScenarioSpec:
     execution: ExecutionSpec | None = None
     repetition: int = 1
     model: str = ""
+    tree: TreeSpec | None = None
+    node: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,6 +271,16 @@ def decode_order(line: str) -> Execute:
             raise ValueError(f"not an order: {line[:200]!r}")
 
 
+def scenario_seed(seed: int, variant: str, number: int, repetition: int = 1) -> int:
+    """Return a scenario's seed: the first 32 bits of the SHA-256 of the run's seed, the variant's IRI and its number.
+
+    From the second repetition on, its number follows. So each execution has its own stream of random numbers, whatever
+    else is run. For one that scenarios share, IRI and number are those of the behaviour tree and its execution.
+    """
+    words = f"{seed} {variant} {number}" + (f" {repetition}" if repetition > 1 else "")
+    return int.from_bytes(hashlib.sha256(words.encode()).digest()[:4], "big")
+
+
 def scenario_key(spec: ScenarioSpec) -> str:
     """Return what a scenario is found by in another run, of a model that may have been edited since."""
     execution = None if spec.execution is None else spec.execution.iri
@@ -291,26 +307,32 @@ def write_manifest(folder: Path, manifest: Manifest) -> None:
     data = asdict(manifest)
     for entry in data["scenarios"]:
         entry["execution"] = entry["execution"] and entry["execution"]["iri"]
+        entry["tree"] = entry["tree"] and entry["tree"]["name"]
     executions = {spec.execution.iri: spec.execution for spec in manifest.scenarios if spec.execution is not None}
     data["executions"] = [asdict(execution) for execution in executions.values()]
+    trees = {spec.tree.name: spec.tree for spec in manifest.scenarios if spec.tree is not None}
+    data["trees"] = [asdict(tree) for tree in trees.values()]
     (folder / MANIFEST).write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def read_manifest(folder: Path) -> Manifest:
     """Read the manifest of a run folder; raises ``OSError`` or ``ValueError``.
 
-    Scenarios name their execution by its IRI; the executions are beside them, each once.
+    Scenarios name their execution by its IRI and their tree by its name; these are beside them, each once.
     """
     data = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
     executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
-    scenarios = tuple(_scenario(entry, executions) for entry in data["scenarios"])
+    trees = {entry["name"]: from_plain(TreeSpec, entry) for entry in data.get("trees", ())}
+    scenarios = tuple(_scenario(entry, executions, trees) for entry in data["scenarios"])
     return Manifest(data["model"], data["seed"], scenarios, data.get("traces", False))
 
 
-def _scenario(entry: dict[str, Any], executions: Mapping[str, ExecutionSpec]) -> ScenarioSpec:
+def _scenario(
+    entry: dict[str, Any], executions: Mapping[str, ExecutionSpec], trees: Mapping[str, TreeSpec]
+) -> ScenarioSpec:
     scene = entry.pop("scene")
     clauses = entry.pop("clauses")
-    execution = entry.pop("execution", None)
+    execution, tree = entry.pop("execution", None), entry.pop("tree", None)
     return ScenarioSpec(
         scene=SceneSpec(
             tuple(scene["objects"]),
@@ -322,5 +344,6 @@ def _scenario(entry: dict[str, Any], executions: Mapping[str, ExecutionSpec]) ->
         ),
         clauses=tuple(from_plain(ClauseSpec, clause) for clause in clauses),
         execution=None if execution is None else executions[execution],
+        tree=None if tree is None else trees[tree],
         **entry,
     )

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.protocol import (
     ClauseJudged,
@@ -110,6 +111,7 @@ class RunResults:
                 "model": spec.model,
                 "execution": None if spec.execution is None else spec.execution.name,
                 "repetition": spec.repetition,
+                "shared": None if spec.tree is None else _shared(spec.tree, spec.node),
                 "duration": None if scenario.finished is None else scenario.finished.simulated,
                 "resampled": 0 if scenario.finished is None else scenario.finished.resampled,
                 "verdict": str(scenario.verdict),
@@ -118,6 +120,11 @@ class RunResults:
                     for clause in spec.clauses
                 ],
             }
+
+
+def _shared(tree: TreeSpec, node: str) -> dict[str, Any]:
+    """Return the execution of a behaviour tree that a scenario was judged from, together with others of one name."""
+    return {"execution": tree.name, "tree": tree.tree, "node": node}
 
 
 def _clause(clause: ClauseSpec, judged: ClauseJudged | None, vacuous: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from pathlib import Path
@@ -53,10 +53,14 @@ class Policy:
 
 @dataclass(slots=True, eq=False)
 class _Worker:
-    """An agent, the scenario that it is at, and the instant until which it must have finished or begun with it."""
+    """An agent, the scenario that it is at, and the instant until which it must have finished or begun with it.
+
+    ``following`` are the scenarios that it does next, because they share the execution of this one.
+    """
 
     agent: Agent
     index: int | None = None
+    following: deque[int] = field(default_factory=deque[int])
     deadline: float = inf
     started: bool = False
     failed: bool = False
@@ -64,22 +68,38 @@ class _Worker:
     complaint: str = "the agent cannot work"
     judged: set[int] = field(default_factory=set[int])
 
-    def employ(self, index: int) -> None:
-        """Give it a scenario."""
-        self.index = index
+    def employ(self, task: Iterable[int]) -> None:
+        """Give it scenarios to execute, one after the other."""
+        self.following = deque(task)
+        self.index = index = self.following.popleft()
         self.started = self.failed = False
         self.judged = set()
         self.deadline = monotonic() + STARTUP
         self.agent.execute(index)
 
     def release(self) -> None:
-        """Take note that it has nothing to do."""
+        """Let it go on with what follows; else take note that it has nothing to do."""
         self.index, self.deadline, self.started = None, inf, False
+        if self.following:
+            self.employ(self.following)
 
     def expire(self) -> None:
         """End it because it missed its deadline."""
         self.timed_out, self.deadline = True, inf
         self.agent.kill()
+
+
+def _tasks(manifest: Manifest, indices: Iterable[int]) -> Iterator[tuple[int, ...]]:
+    """Put the scenarios that share an execution together, each task where its first scenario stands."""
+    together: dict[int | str, list[int]] = {}
+    for index in indices:
+        tree = manifest.scenarios[index].tree
+        together.setdefault(index if tree is None else tree.name, []).append(index)
+    return map(tuple, together.values())
+
+
+def _before(index: int, task: Iterable[int]) -> tuple[int, ...]:
+    return tuple(waiting for waiting in task if waiting < index)
 
 
 Event = tuple[_Worker, RunMessage | None]
@@ -95,7 +115,8 @@ class Scheduler:
     ``messages`` is to be consumed by one thread; ``cancel`` may be called from any thread and from a signal handler.
     ``watch`` is told every message when it comes; those that ``messages`` yields are in the manifest's order, so that
     they do not depend on how many processes there are. ``ending`` says why scenarios were left open.
-    ``indices`` are those of the scenarios to be executed, increasing; all when ``None``.
+    ``indices`` are those of the scenarios to be executed, increasing; all when ``None``. Scenarios that share an
+    execution go to one process, one after the other.
     """
 
     def __init__(
@@ -112,7 +133,7 @@ class Scheduler:
         self._watch = watch
         self._events: SimpleQueue[Event | None] = SimpleQueue()
         self._indices = range(len(self._specs)) if indices is None else indices
-        self._waiting = deque(self._indices)
+        self._waiting = deque(_tasks(manifest, self._indices))
         self._workers: list[_Worker] = []
         self._order = InOrder(self._indices)
         self._launched = 0
@@ -234,10 +255,12 @@ class Scheduler:
         """Leave scenarios after one undone; those before it go on, so that the outcome does not depend on timing."""
         if index != self._indices[-1]:
             self.ending = STOPPED
-        self._waiting = deque(waiting for waiting in self._waiting if waiting < index)
+        self._waiting = deque(earlier for task in self._waiting if (earlier := _before(index, task)))
         self._order.forget(index + 1)
         beyond = [worker for worker in self._workers if worker.index is not None and worker.index > index]
         self._workers = [worker for worker in self._workers if worker not in beyond]
+        for worker in self._workers:
+            worker.following = deque(_before(index, worker.following))
         stop(worker.agent for worker in beyond)
 
     def _bury(self, worker: _Worker) -> Iterator[RunMessage]:
@@ -246,6 +269,9 @@ class Scheduler:
             return
         spec = self._specs[worker.index]
         if worker.started:
+            if worker.following:
+                self._waiting.appendleft(tuple(worker.following))
+                worker.following.clear()
             limit = self._limit(worker.index)
             reason = f"timed out after {limit:g} s" if worker.timed_out else worker.agent.ending()
             for clause in spec.clauses:
@@ -256,7 +282,7 @@ class Scheduler:
             yield from self._finish(worker, ScenarioFinished(worker.index, 0.0, 0.0, 0.0))
             return
         self._wasted += 1
-        self._waiting.appendleft(worker.index)
+        self._waiting.appendleft((worker.index, *worker.following))
         if self._wasted == ATTEMPTS:
             late = f"the agent process did not begin within {STARTUP:g} s"
             self.ending = late if worker.timed_out else worker.agent.ending()

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.feature import ScenarioText
@@ -25,7 +25,9 @@ from robbdd_tools.graph.model import (
     Variant,
 )
 from robbdd_tools.monitor.policy import Observation, Policy
-from robbdd_tools.run.protocol import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
+from robbdd_tools.run.protocol import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec, scenario_seed
+from robbdd_tools.run.related import Linked, Relations
+from robbdd_tools.run.tree_specs import TreeSpecWriter
 
 Values = Mapping[Iri, Cell]
 
@@ -42,14 +44,32 @@ class _Shared:
 
 
 class SpecWriter:
-    """Makes the specifications of the scenarios of one model, executed as ``execution`` wants, if there is one."""
+    """Makes the specifications of the scenarios of one model, executed as ``execution`` wants, if there is one.
 
-    def __init__(self, model: AcceptanceModel, seed: int, execution: Execution | None = None, name: str = "") -> None:
+    ``relations`` are those of the whole model, so that a scenario comes out the same whatever else is run.
+    """
+
+    def __init__(
+        self,
+        model: AcceptanceModel,
+        seed: int,
+        relations: Relations,
+        execution: Execution | None = None,
+        name: str = "",
+    ) -> None:
         self._model = model
         self._name = name
         self._seed = seed
+        self._relations = relations
         self._curies: dict[str, str] = {}
         self._variants: dict[Iri, _Shared] = {}
+        self._related = TreeSpecWriter(
+            model,
+            relations,
+            seed,
+            lambda variant, values: self._scene(self._known(variant), variant.scene, values),
+            lambda variant: self._known(variant).events,
+        )
         self.execution = None if execution is None else self._execution(execution)
 
     def _execution(self, execution: Execution) -> ExecutionSpec:
@@ -77,19 +97,16 @@ class SpecWriter:
     def specs(self, feature: str, story: Iri, scenario: ScenarioText, repeat: int = 1) -> Iterator[ScenarioSpec]:
         """Yield the repetitions of a scenario of a feature, which is a path relative to the run's folder."""
         first = self._spec(feature, story, scenario)
-        if repeat == 1:
-            yield first
-            return
+        execution = None if self.execution is None else Iri(self.execution.iri)
         for repetition in range(1, repeat + 1):
-            name = f"{first.name} (repetition {repetition})"
+            name = first.name if repeat == 1 else f"{first.name} (repetition {repetition})"
             seed = scenario_seed(self._seed, first.variant, first.variation, repetition)
-            yield replace(first, name=name, seed=seed, repetition=repetition)
+            again = replace(first, name=name, seed=seed, repetition=repetition)
+            yield self._related.related(again, execution)
 
     def _spec(self, feature: str, story: Iri, scenario: ScenarioText) -> ScenarioSpec:
         variant = scenario.variant
-        shared = self._variants.get(variant.iri)
-        if shared is None:
-            shared = self._variants[variant.iri] = self._shared(variant)
+        shared = self._known(variant)
         curie = self._curie
         return ScenarioSpec(
             feature=feature,
@@ -112,6 +129,12 @@ class SpecWriter:
             model=self._name,
         )
 
+    def _known(self, variant: Variant) -> _Shared:
+        shared = self._variants.get(variant.iri)
+        if shared is None:
+            shared = self._variants[variant.iri] = self._shared(variant)
+        return shared
+
     def _curie(self, iri: str) -> str:
         found = self._curies.get(iri)
         if found is None:
@@ -130,7 +153,7 @@ class SpecWriter:
             (*scene.objects, *(thing for carriers in scene.carriers.values() for thing in carriers)),
             self._named(scene.carriers),
             self._named(scene.contains),
-            {self._curie(event): emitter for event, emitter in _events(variant).items()},
+            {self._curie(event): emits for event, emits in _events(variant, self._relations.node(variant)).items()},
         )
 
     def _named(self, mapping: Mapping[Iri, tuple[Iri, ...]]) -> dict[str, tuple[str, ...]]:
@@ -192,24 +215,17 @@ def _value(term: Iri | str, values: Values) -> Cell:
     return values.get(term, term) if isinstance(term, Iri) else term
 
 
-def scenario_seed(seed: int, variant: str, number: int, repetition: int = 1) -> int:
-    """Return a scenario's seed: the first 32 bits of the SHA-256 of the run's seed, the variant's IRI and its number.
-
-    From the second repetition on, its number follows. So each execution has its own stream of random numbers, whatever
-    else is run.
-    """
-    words = f"{seed} {variant} {number}" + (f" {repetition}" if repetition > 1 else "")
-    return int.from_bytes(hashlib.sha256(words.encode()).digest()[:4], "big")
-
-
-def _events(variant: Variant) -> dict[Iri, str]:
+def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
     """Which emitter stamps which event of the model.
 
     The template's duration is the execution's, a behaviour's duration is that of its first and last emitted event;
-    any other event is the behaviour's inner event of the same name (``evt-pick-end`` is ``pick-end``).
+    any other event is the behaviour's inner event of the same name (``evt-pick-end`` is ``pick-end``). Of a scenario
+    that is ``linked`` to a node of a behaviour tree, the duration is the node's, unless that is the root.
     """
     template = variant.template
     bound = {template.start: "scenario-start", template.end: "scenario-end"}
+    if linked is not None and not linked.is_root:
+        bound = {template.start: emitter(linked.node, START), template.end: emitter(linked.node, END)}
     behaviours = load_catalog().behaviours
     emitted: set[str] = set()
     clauses = tuple(_every((*template.clauses, *variant.clauses)))
@@ -217,12 +233,15 @@ def _events(variant: Variant) -> dict[Iri, str]:
         if isinstance(clause, BehaviourClause):
             events = behaviours[clause.behaviour].events
             emitted.update(events)
-            bound |= {clause.start: events[0], clause.end: events[-1]}
+            first, last = events[0], events[-1]
+            if linked is not None:
+                first, last = emitter(linked.node, START), emitter(linked.node, END)
+            bound |= {clause.start: first, clause.end: last}
     for clause in clauses:
         for event in _named_events(clause):
             name = _event_name(event)
             if name in emitted:
-                bound.setdefault(event, name)
+                bound.setdefault(event, name if linked is None else emitter(linked.node, name))
     return bound
 
 

@@ -1,0 +1,73 @@
+"""What the execution of a scenario begins with: behaviours, times, and the course that related scenarios share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from robbdd_tools.agent.course import TIMEOUT, Call, Course, Timing
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.sentences import Clause, Doing, fluents_of, read_doing
+from robbdd_tools.monitor.time import After, Before
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.protocol import ScenarioSpec
+
+LEAD = 0.5
+"""Seconds between the scenario's start and its first behaviour, at least."""
+KEPT = 8
+"""Courses that are kept for further scenarios. One that is gone is simulated again, to the last bit the same."""
+
+
+class Courses:
+    """The courses of events that several scenarios may be judged from: one for each execution of a behaviour tree."""
+
+    def __init__(self) -> None:
+        self._kept: dict[str, Course] = {}
+
+    def course(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing) -> Course:
+        """Return the course of a scenario, a new one where it shares none; raises ``SceneError``."""
+        if spec.tree is None:
+            return Course(spec, calls, timing)
+        course = self._kept.pop(spec.tree.name, None) or Course(spec, calls, timing)
+        self._kept[spec.tree.name] = course
+        while len(self._kept) > KEPT:
+            del self._kept[next(iter(self._kept))]
+        return course
+
+
+def calls_of(spec: ScenarioSpec) -> list[Call]:
+    """Return the behaviours of a scenario, or of its behaviour tree, as far as it is known what they are about.
+
+    Raises ``SceneError`` for one that is not of single elements.
+    """
+    if spec.tree is not None:
+        return [Call(leaf.behaviour, leaf.arguments) for leaf in spec.tree.leaves() if leaf.behaviour]
+    doings = (read_doing(clause.sentence) for clause in spec.clauses if clause.role == "when")
+    return [call_of(doing) for doing in doings if doing is not None]
+
+
+def call_of(doing: Doing) -> Call:
+    """Return a behaviour as it is executed; raises ``SceneError`` when it is not of single elements."""
+    arguments: dict[str, str] = {}
+    for slot, filler in doing.arguments.items():
+        if not isinstance(filler, str):
+            raise SceneError(f"'{doing.behaviour.name}' needs one {slot}, not a set of them")
+        arguments[slot] = filler
+    return Call(doing.behaviour.name, arguments)
+
+
+def timing_of(spec: ScenarioSpec, clauses: Iterable[Clause]) -> Timing:
+    """Leave enough time before and after for the windows that the clauses speak of, its own or those of its tree."""
+    lead, tail = (LEAD, 0.0) if spec.tree is None else (spec.tree.lead, spec.tree.tail)
+    for clause in clauses if spec.tree is None else ():
+        for fluent in fluents_of(clause):
+            match fluent.time:
+                case Before(_, float(horizon)):
+                    lead = max(lead, horizon)
+                case After(_, float(horizon)):
+                    tail = max(tail, horizon)
+                case _:
+                    pass
+    timeout = None if spec.execution is None else spec.execution.timeout
+    return Timing(lead, tail, timeout or TIMEOUT)

@@ -1,0 +1,236 @@
+"""What happens in the world: behaviours that are executed one after the other, or as a behaviour tree wants."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import ceil
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from robbdd_tools.agent.configuration import read_back
+from robbdd_tools.agent.engine import TICK
+from robbdd_tools.agent.errors import BehaviourError, SceneError, SimulationError, UserError
+from robbdd_tools.agent.frames import at
+from robbdd_tools.agent.outline import outline_of
+from robbdd_tools.agent.pick_place import PickPlace
+from robbdd_tools.agent.reach import ReachSampler
+from robbdd_tools.agent.simulation import Simulation
+from robbdd_tools.agent.user_behaviour import AgentWorld, run_user_behaviour
+from robbdd_tools.agent.world import build_world
+from robbdd_tools.catalog.coordination import emitter
+from robbdd_tools.monitor.trace import EventStamp
+
+if TYPE_CHECKING:
+    from robbdd_tools.agent.behaviour_tree import TreeRun
+    from robbdd_tools.catalog.coordination import TreeSpec
+    from robbdd_tools.catalog.executable import Implementation
+    from robbdd_tools.monitor.judge import Regions
+    from robbdd_tools.run.protocol import ScenarioSpec
+
+START, END = "scenario-start", "scenario-end"
+"""What emits the events that delimit a scenario."""
+REST = 1.0
+"""Seconds between the end of the last behaviour and the end of the scenario, for things to come to rest."""
+TIMEOUT = 60.0
+"""Seconds of simulated time after which an execution is stopped."""
+LOOK = 16
+"""Ticks after which an execution without any news is looked at again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A behaviour (by its catalog name) with the names that fill its slots."""
+
+    behaviour: str
+    arguments: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """Seconds of simulated time: idle before the first behaviour, recorded after the scenario's end, at most."""
+
+    lead: float = 0.5
+    tail: float = 0.0
+    timeout: float = TIMEOUT
+
+
+class Course:
+    """The course of events: the world, settled, at time 0, and what will be done in it.
+
+    ``stamps`` are what emitters have emitted so far; ``completed`` counts the behaviours that went through, of those
+    that are executed one after the other; ``tree`` is the behaviour tree, if one is executed. ``remark`` is the last
+    word on what went wrong; ``broken`` says what is wrong with the user's code or model, if anything is, so that
+    nothing can be concluded. ``wall`` is the time spent, s. Raises ``SceneError`` when the scene cannot be set up.
+    """
+
+    def __init__(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing | None = None) -> None:
+        began = perf_counter()
+        self._calls = tuple(calls)
+        self._timing = timing or Timing()
+        self._last = ceil(self._timing.timeout / TICK - 1e-9)
+        actor = self._calls[0].arguments.get("agent") if self._calls else None
+        how = spec.execution
+        self._implementation = None if how is None else how.implementation
+        _check_implementation(self._implementation, self._calls)
+        self.tree = None if spec.tree is None else _tree_run(spec.tree, self)
+        world = build_world(spec.scene, spec.seed, actor, None if how is None else how.scene)
+        self.simulation = Simulation(world)
+        self.reaches = ReachSampler(self.simulation)
+        self._controllers: dict[str, PickPlace] = {}
+        self.stamps: list[EventStamp] = []
+        self.remark = ""
+        self.finished = False
+        self._muted = False
+        self.completed = 0
+        self.broken = ""
+        self.regions: Regions = world.cast.regions
+        self.settings = read_back(self.simulation, spec.scene)
+        self.outlines = {name: outline_of(model) for name, model in world.cast.objects.items()}
+        self._settle()
+        self._script = self._scenario()
+        self.wall = perf_counter() - began
+
+    def go_on(self) -> None:
+        """Run on until there is news, or for a while."""
+        began = perf_counter()
+        self._run_on()
+        self.wall += perf_counter() - began
+
+    def _run_on(self) -> None:
+        known = len(self.stamps), self.completed
+        for _ in range(LOOK):
+            self._tick()
+            if self.finished or known != (len(self.stamps), self.completed):
+                return
+
+    def _tick(self) -> None:
+        try:
+            next(self._script)
+            self.simulation.tick()
+        except StopIteration:
+            self.finished = True
+            return
+        except UserError as error:
+            self.finished = True
+            self.remark = self.broken = str(error)
+            return
+        except SimulationError as error:
+            self.finished = True
+            self.remark = str(error)
+            return
+        if self.simulation.ticks >= self._last:
+            self.finished = True
+            self._note(f"the execution was stopped after {self._timing.timeout:g} s of simulated time")
+
+    def _scenario(self) -> Iterator[None]:
+        self._emit(START)
+        yield from _idle(self._timing.lead)
+        yield from self._in_turn() if self.tree is None else self.tree.steps()
+        yield from _idle(REST)
+        self._emit(END)
+        yield from _idle(self._timing.tail)
+
+    def _in_turn(self) -> Iterator[None]:
+        for call in self._calls:
+            failure = yield from self.attempt(call)
+            if failure:
+                return
+            self.completed += 1
+
+    def attempt(self, call: Call) -> Generator[None, None, str]:
+        """Execute a behaviour, one control tick after the other; returns why it failed, else nothing."""
+        try:
+            yield from self._behaviour(call)
+        except BehaviourError as error:
+            self.remark = str(error)
+            if not self._is_users():
+                yield from self._controller(call).withdraw()
+            return str(error)
+        return ""
+
+    def _is_users(self) -> bool:
+        return self._implementation is not None and self._implementation.kind == "python"
+
+    def _behaviour(self, call: Call) -> Iterator[None]:
+        controller = self._controller(call)
+        arguments = call.arguments
+        if self._implementation is not None and self._is_users():
+            world = AgentWorld(self.simulation, arguments["agent"], self._emit)
+            return run_user_behaviour(self._implementation, world, call.behaviour, arguments)
+        match call.behaviour:
+            case "pick":
+                return controller.pick(arguments["object"])
+            case "place":
+                return controller.place(arguments["object"], arguments["workspace"])
+            case "pick-place":
+                return controller.pick_place(arguments["object"], arguments["workspace"])
+            case other:
+                raise BehaviourError(f"no agent of this installation can execute the behaviour '{other}'")
+
+    def _controller(self, call: Call) -> PickPlace:
+        agent = call.arguments["agent"]
+        if agent not in self.simulation.robots:
+            raise SceneError(f"the scene has no agent '{agent}'")
+        if agent not in self._controllers:
+            self._controllers[agent] = PickPlace(self.simulation, agent, self._emit)
+        return self._controllers[agent]
+
+    def _settle(self) -> None:
+        for call in self._calls:
+            self._controller(call)
+        try:
+            self.simulation.settle()
+            if self._calls and self._calls[0].behaviour == "place":
+                self._hand_over(self._calls[0])
+        except SimulationError as error:
+            raise SceneError(f"the scene does not come to rest: {error}") from error
+
+    def _hand_over(self, call: Call) -> None:
+        """Let the agent take hold of what it is to place before the scenario starts."""
+        self._muted = True
+        try:
+            for _ in self._controller(call).pick(call.arguments["object"]):
+                self.simulation.tick()
+        except BehaviourError as error:
+            raise SceneError(f"'{call.arguments['object']}' cannot be put into the gripper: {error}") from error
+        self._muted = False
+        self.simulation.restart()
+
+    def stamp(self, name: str) -> None:
+        """Note that an emitter, by its name, emits its event now."""
+        self.stamps.append(EventStamp(name, self.simulation.time))
+
+    def _emit(self, event: str) -> None:
+        if self._muted:
+            return
+        within = () if self.tree is None else self.tree.active
+        for name in [emitter(node, event) for node in within] or [event]:
+            self.stamp(name)
+
+    def _note(self, remark: str) -> None:
+        self.remark = self.remark or remark
+
+
+def _tree_run(spec: TreeSpec, course: Course) -> TreeRun:
+    from robbdd_tools.agent.behaviour_tree import TreeRun
+
+    return TreeRun(spec, lambda leaf: course.attempt(Call(leaf.behaviour, leaf.arguments)), course.stamp)
+
+
+def _check_implementation(implementation: Implementation | None, calls: Iterable[Call]) -> None:
+    """Raise ``SceneError`` when the implementation cannot execute the behaviours in simulation."""
+    if implementation is None or implementation.kind == "python":
+        return
+    place = at(implementation.origin)
+    if implementation.kind == "ros-action":
+        message = f"the ROS action '{implementation.name}' is not available in simulation"
+        raise SceneError(f'{place}{message}: name a behaviour of the catalog or "py {{ module: …, attr: … }}"')
+    for call in calls:
+        if implementation.name not in (call.behaviour, "pick-place"):
+            raise SceneError(f"{place}'{implementation.name}' of the catalog does not execute '{call.behaviour}'")
+
+
+def _idle(seconds: float) -> Iterator[None]:
+    for _ in range(ceil(seconds / TICK - 1e-9)):
+        yield

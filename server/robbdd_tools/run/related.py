@@ -1,0 +1,171 @@
+"""Related scenarios: those that are linked to nodes of one behaviour tree and can be judged from one execution of it.
+
+Scenarios go together when their variables of one name have one value. A scenario that leaves variables open to the
+others (to pick a thing, no matter where to) goes with the first ones that it fits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from robbdd_tools.catalog.executable import Implementation, SceneInstance
+from robbdd_tools.gherkin.feature import every_scenario
+from robbdd_tools.graph.model import (
+    AcceptanceModel,
+    BehaviourClause,
+    BehaviourTree,
+    Cell,
+    Execution,
+    Iri,
+    SceneModel,
+    TreeNode,
+    Variant,
+)
+
+Values = Mapping[Iri, Cell]
+Key = tuple[Iri, Iri | None, int]
+"""A variant, the execution that executes it if there is one, and the number of one of its scenarios."""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A scenario that is linked to a node of a behaviour tree, by the behaviour in its When."""
+
+    variant: Variant
+    execution: Execution | None
+    number: int
+    values: Values
+    link: BehaviourClause
+    node: Iri
+
+    @property
+    def key(self) -> Key:
+        """What it is found by."""
+        return self.variant.iri, None if self.execution is None else self.execution.iri, self.number
+
+
+@dataclass(slots=True)
+class Group:
+    """Scenarios that one execution of a tree is judged for, in the order of the nodes; ``number`` counts from 1.
+
+    ``values`` are those of all of them.
+    """
+
+    tree: BehaviourTree
+    number: int
+    members: list[Member] = field(default_factory=list[Member])
+    values: dict[Iri, Cell] = field(default_factory=dict[Iri, Cell])
+
+    def takes(self, member: Member) -> bool:
+        """Tell whether a scenario agrees with those that are in it; it holds no two scenarios of one variant."""
+        if any(other.key[:2] == member.key[:2] for other in self.members):
+            return False
+        return all(self.values.get(name, value) == value for name, value in member.values.items())
+
+    def add(self, member: Member) -> None:
+        """Take a scenario in."""
+        self.members.append(member)
+        self.values |= member.values
+
+
+@dataclass(frozen=True, slots=True)
+class Linked:
+    """The node of a behaviour tree that a variant is linked to; ``is_root`` when it stands for the whole tree."""
+
+    node: Iri
+    is_root: bool
+
+
+class Relations:
+    """The related scenarios of a model."""
+
+    def __init__(self, model: AcceptanceModel) -> None:
+        trees = {node: tree for tree in model.trees for node in tree.nodes}
+        roots = {tree.root.iri for tree in model.trees if tree.root is not None}
+        self._groups: dict[Key, Group] = {}
+        links = list(_links(model, trees))
+        self._linked = {variant.iri: Linked(node, node in roots) for variant, _, _, _, node in links}
+        self.behaviours: dict[Iri, BehaviourClause] = {}
+        """What each linked node executes, as the first scenario that is linked to it has it."""
+        for _, _, _, link, node in links:
+            self.behaviours.setdefault(node, link)
+        for tree in model.trees:
+            order = {node: place for place, node in enumerate(tree.nodes)}
+            own = [entry for entry in links if entry[-1] in order]
+            for group in _groups(tree, sorted(own, key=lambda entry: order[entry[-1]])):
+                self._groups.update((member.key, group) for member in group.members)
+
+    def node(self, variant: Variant) -> Linked | None:
+        """Return the node that a variant is linked to, if it is."""
+        return self._linked.get(variant.iri)
+
+    def group(self, variant: Iri, execution: Iri | None, number: int) -> Group | None:
+        """Return the scenarios that go with one, itself among them; ``None`` for one without a behaviour tree."""
+        return self._groups.get((variant, execution, number))
+
+
+_Link = tuple[Variant, Execution | None, int, BehaviourClause, Iri]
+"""A linked variant, what executes it, the number of its setting, its behaviour and the node."""
+
+
+def linked_behaviour(variant: Variant) -> BehaviourClause | None:
+    """Return the behaviour that links a variant to a behaviour tree, if one does."""
+    return next((one for one in variant.template.clauses if isinstance(one, BehaviourClause) and one.node), None)
+
+
+def _links(model: AcceptanceModel, trees: Mapping[Iri, BehaviourTree]) -> Iterator[_Link]:
+    settings: list[_Setting] = []
+    for variant in (variant for story in model.stories for variant in story.variants):
+        link = linked_behaviour(variant)
+        if link is None or link.node is None or link.node not in trees:
+            continue
+        executions = [execution for execution in model.executions if execution.variant == variant.iri]
+        for execution in (None, *executions):
+            setting = _setting(variant, execution)
+            if setting not in settings:
+                settings.append(setting)
+            yield variant, execution, settings.index(setting), link, link.node
+
+
+@dataclass(frozen=True, slots=True)
+class _Setting:
+    """What scenarios must have in common to be judged from one execution, besides their values."""
+
+    scene: SceneModel
+    implementation: Implementation | None = None
+    instance: SceneInstance | None = None
+    seed: int | None = None
+    timeout: float | None = None
+
+
+def _setting(variant: Variant, execution: Execution | None) -> _Setting:
+    if execution is None:
+        return _Setting(variant.scene)
+    return _Setting(variant.scene, execution.implementation, execution.scene, execution.seed, execution.timeout)
+
+
+def _groups(tree: BehaviourTree, links: Iterable[_Link]) -> list[Group]:
+    """Return the groups of a tree, their members in the order of ``links``."""
+    found: list[Group] = []
+    by_setting: dict[int, list[Group]] = {}
+    for variant, execution, setting, link, node in links:
+        known = by_setting.setdefault(setting, [])
+        waiting = iter(list(known))
+        for number, values in every_scenario(variant):
+            member = Member(variant, execution, number, values, link, node)
+            # Scenarios mostly come in the same order, so that the next group is the one: the others are a last resort.
+            group = next(waiting, None)
+            if group is None or not group.takes(member):
+                group = next((other for other in known if other.takes(member)), None)
+            if group is None:
+                group = Group(tree, len(found) + 1)
+                found.append(group)
+                known.append(group)
+            group.add(member)
+    return found
+
+
+def roots_of(tree: BehaviourTree) -> tuple[TreeNode, ...]:
+    """Return the nodes that stand at the top: the root or, where code makes the tree, all that it names."""
+    return tuple(TreeNode(node, "leaf") for node in tree.nodes) if tree.root is None else (tree.root,)

@@ -1,0 +1,129 @@
+"""What the agent has to know of an execution of a behaviour tree: what its leaves do, its scene, its events."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
+from robbdd_tools.graph.model import AcceptanceModel, Cell, Clause, Iri, TreeNode, Variant
+from robbdd_tools.monitor.time import After, Before
+from robbdd_tools.run.protocol import ScenarioSpec, SceneSpec, scenario_seed
+from robbdd_tools.run.related import Group, Member, Relations, roots_of
+
+LEAD = 0.5
+"""Seconds recorded before a tree starts, at least."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Shared:
+    """What the scenarios of a group have in common."""
+
+    tree: TreeSpec
+    scene: SceneSpec
+    events: Mapping[str, str]
+
+
+@dataclass(slots=True)
+class TreeSpecWriter:
+    """Makes scenarios that are linked to a behaviour tree share one execution of it.
+
+    ``scene`` tells the scene of a scenario by itself, ``events`` what emits its events, both as CURIEs.
+    """
+
+    model: AcceptanceModel
+    relations: Relations
+    seed: int
+    scene: Callable[[Variant, Mapping[Iri, Cell]], SceneSpec]
+    events: Callable[[Variant], Mapping[str, str]]
+    _shared: dict[int, _Shared] = field(default_factory=dict[int, _Shared])
+
+    def related(self, spec: ScenarioSpec, execution: Iri | None) -> ScenarioSpec:
+        """Return a scenario as it is judged from the execution that it shares; others are returned as they are."""
+        group = self.relations.group(Iri(spec.variant), execution, spec.variation)
+        if group is None:
+            return spec
+        shared = self._shared.get(id(group))
+        if shared is None:
+            shared = self._shared[id(group)] = self._make(group)
+        node = next(member.node for member in group.members if member.key[0] == spec.variant)
+        again = f".{spec.repetition}" if spec.repetition > 1 else ""
+        return replace(
+            spec,
+            tree=replace(shared.tree, name=shared.tree.name + again) if again else shared.tree,
+            node=node,
+            scene=shared.scene,
+            seed=scenario_seed(self.seed, group.tree.iri, group.number, spec.repetition),
+            events={**shared.events, **spec.events},
+        )
+
+    def _make(self, group: Group) -> _Shared:
+        scenes = [self.scene(member.variant, member.values) for member in group.members]
+        events: dict[str, str] = {}
+        for member in reversed(group.members):
+            events |= self.events(member.variant)
+        return _Shared(self._tree(group), _joined(scenes), events)
+
+    def _tree(self, group: Group) -> TreeSpec:
+        tree = group.tree
+        horizons = [found for member in group.members for found in _horizons(member)]
+        lead = max((seconds for before, seconds in horizons if before), default=LEAD)
+        tail = max((seconds for before, seconds in horizons if not before), default=0.0)
+        nodes = tuple(self._node(node, group) for node in roots_of(tree))
+        name = f"{self.model.curie(tree.iri)} {group.number}"
+        return TreeSpec(name, tree.iri, nodes, max(LEAD, lead), tail, tree.source)
+
+    def _node(self, node: TreeNode, group: Group) -> NodeSpec:
+        name = self.model.curie(node.iri).rpartition(":")[2].rpartition(".")[2]
+        if node.kind != "leaf":
+            return NodeSpec(node.iri, name, node.kind, tuple(self._node(child, group) for child in node.children))
+        link = self.relations.behaviours.get(node.iri)
+        if link is None:
+            problem = f"no scenario is linked to {name}, so nothing says what it does"
+            return NodeSpec(node.iri, name, node.kind, problem=problem)
+        arguments = {slot: self._element(term, group.values) for slot, term in link.arguments.items()}
+        missing = [slot for slot, element in arguments.items() if not element]
+        if missing:
+            problem = f"no scenario says which {missing[0]} {name} is about"
+            return NodeSpec(node.iri, name, node.kind, problem=problem)
+        return NodeSpec(node.iri, name, node.kind, behaviour=link.behaviour, arguments=arguments)
+
+    def _element(self, term: Iri | str, values: Mapping[Iri, Cell]) -> str:
+        """Return the CURIE of what a term stands for; nothing where that is no single element."""
+        value = values.get(term, term) if isinstance(term, Iri) else term
+        return self.model.curie(value) if isinstance(value, Iri) and value in self.model.kinds else ""
+
+
+def _joined(scenes: list[SceneSpec]) -> SceneSpec:
+    """Join scenes of one scene model; where they differ, what happens first in the tree has the say."""
+    first = scenes[0]
+    config = {(one.target, one.name): one for scene in reversed(scenes) for one in scene.config}
+    places = {thing: place for scene in reversed(scenes) for thing, place in scene.places.items()}
+    return replace(
+        first,
+        objects=tuple(dict.fromkeys(name for scene in scenes for name in scene.objects)),
+        agents=tuple(dict.fromkeys(name for scene in scenes for name in scene.agents)),
+        places=places,
+        config=tuple(config.values()),
+    )
+
+
+def _horizons(member: Member) -> Iterator[tuple[bool, float]]:
+    """Yield whether a horizon is that of *before*, and its seconds."""
+    for clause in (*member.variant.template.clauses, *member.variant.clauses):
+        yield from _clause_horizons(clause)
+    for policy in () if member.execution is None else member.execution.policies:
+        if policy.horizon is not None:
+            yield from ((True, policy.horizon), (False, policy.horizon))
+
+
+def _clause_horizons(clause: Clause) -> Iterator[tuple[bool, float]]:
+    match getattr(clause, "time", None):
+        case Before(_, float(horizon)):
+            yield True, horizon
+        case After(_, float(horizon)):
+            yield False, horizon
+        case _:
+            pass
+    for inner in getattr(clause, "clauses", getattr(clause, "operands", ())):
+        yield from _clause_horizons(inner)

@@ -1,0 +1,122 @@
+"""Behaviour trees in execution: what is tried, what is stamped, what is said of what was not reached."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from agent.worlds import BALL, BIN_WS, CUBE, EVENTS, PANDA, SCENE, scenario
+from robbdd_tools.agent.beginning import calls_of
+from robbdd_tools.agent.course import Course, Timing
+from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
+from robbdd_tools.catalog.executable import Implementation, Origin
+from robbdd_tools.run.protocol import ConfigSpec, ScenarioSpec
+
+pytestmark = pytest.mark.physics
+HEAVY = replace(SCENE, config=(ConfigSpec(BALL, "mass", "10"),))
+
+
+def pick(name: str, thing: str = CUBE) -> NodeSpec:
+    return NodeSpec(f"t:{name}", name, "leaf", (), "pick", {"agent": PANDA, "object": thing})
+
+
+PLACE = NodeSpec("t:place", "place", "leaf", (), "place", {"agent": PANDA, "object": CUBE, "workspace": BIN_WS})
+
+
+def whole(kind: str, *children: NodeSpec, name: str = "whole") -> NodeSpec:
+    return NodeSpec(f"t:{name}", name, kind, children)
+
+
+def of(node: str, root: NodeSpec, scene: object = SCENE) -> ScenarioSpec:
+    tree = TreeSpec("t:tree 1", "t:tree", (root,), 0.5, 0.0)
+    events = {f"t:{name}-{end}": f"t:{name} {end}" for name in ("first", "second", "place") for end in ("start", "end")}
+    return replace(scenario(HEAVY if scene is HEAVY else SCENE, events=events), tree=tree, node=node)
+
+
+def executed(spec: ScenarioSpec, course: Course | None = None) -> Execution:
+    return Execution(spec, calls_of(spec), Timing(), course)
+
+
+def test_a_tree_of_pick_and_place_is_pick_and_place_to_the_bit() -> None:
+    root = whole("sequence", pick("first"), PLACE)
+    tree = executed(replace(of("t:whole", root), events=EVENTS)).advance_until(lambda _: False)
+    call = replace(calls_of(of("t:whole", root))[0], behaviour="pick-place", arguments=PLACE.arguments)
+    alone = Execution(scenario(), [call], Timing()).advance_until(lambda _: False)
+    assert (tree.positions == alone.positions).all()
+
+
+def test_a_selector_goes_on_where_its_first_part_fails() -> None:
+    root = whole("sequence", whole("selector", pick("first", BALL), pick("second"), name="grasp"), PLACE)
+    run = executed(of("t:whole", root, HEAVY))
+    assert run.run_behaviour(0), run.failure
+    trace = run.advance_until(lambda _: False)
+    times = {stamp.name: stamp.time for stamp in trace.events}
+    assert list(times) == ["t:first-start", "t:second-start", "t:second-end", "t:place-start", "t:place-end"]
+    assert times["t:second-end"] == times["t:place-start"]
+    course = run.course
+    first = executed(of("t:first", root, HEAVY), course)
+    assert not first.run_behaviour(0)
+    assert first.failure.startswith(f"gripper lost {BALL} at ")
+    assert first.trace.unreached == ""
+
+
+def test_what_a_selector_did_not_need_was_not_reached() -> None:
+    root = whole("selector", pick("first"), pick("second"))
+    run = executed(of("t:second", root))
+    assert not run.run_behaviour(0)
+    assert run.trace.unreached == "not reached: first succeeded before, so nothing else was tried"
+
+
+def test_what_follows_a_failure_was_not_reached() -> None:
+    root = whole("sequence", whole("sequence", pick("first", BALL), name="grasp"), whole("sequence", PLACE, name="put"))
+    run = executed(of("t:place", root, HEAVY))
+    assert not run.run_behaviour(0)
+    assert run.trace.unreached.startswith(f"precondition not reached: first failed: gripper lost {BALL} at ")
+
+
+def test_a_leaf_that_nothing_is_known_of_lets_nothing_be_concluded() -> None:
+    open_leaf = NodeSpec("t:place", "place", "leaf", problem="nothing says what place does")
+    run = executed(of("t:whole", whole("sequence", pick("first"), open_leaf)))
+    assert not run.run_behaviour(0)
+    assert run.broken == "nothing says what place does"
+
+
+def made(folder: Path, code: str, *nodes: NodeSpec) -> ScenarioSpec:
+    (folder / f"{folder.name}.py").write_text(code, encoding="utf-8")
+    origin = Origin(str(folder / "m.bdd"), 3, 5)
+    source = Implementation("t:tree", "python", f"{folder.name}:create", origin)
+    tree = TreeSpec("t:tree 1", "t:tree", nodes, 0.5, 0.0, source)
+    return replace(scenario(HEAVY), tree=tree, node=nodes[-1].iri)
+
+
+def test_python_code_puts_a_tree_together(tmp_path: Path) -> None:
+    code = """import py_trees
+
+def create(leaf):
+    again = py_trees.decorators.FailureIsSuccess("whatever", leaf("first"))
+    return py_trees.composites.Sequence("whole", True, [again, leaf("second")])
+"""
+    whole_node = NodeSpec("t:whole", "whole", "leaf", problem="it is made")
+    run = executed(made(tmp_path, code, pick("first", BALL), pick("second"), whole_node))
+    assert run.run_behaviour(0), run.failure
+    assert run.broken == ""
+
+
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        ("def create(leaf): return 3", "create' returned a int, not a behaviour of py_trees"),
+        ("def create(leaf): return leaf('third')", "the model declares no node 'third' of this tree; it has first"),
+        ("def create(leaf): return leaf('first')", "has 0 nodes called 'second': it must have one"),
+        ("def make(leaf): return None", "has no function 'create'"),
+    ],
+)
+def test_code_that_makes_no_tree_is_told(code: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(SceneError) as failure:
+        executed(made(tmp_path, code, pick("first"), pick("second")))
+    assert str(failure.value).startswith("m.bdd:3:5: ")
+    assert words in str(failure.value)

@@ -1,0 +1,197 @@
+"""Related scenarios: stories linked to nodes of one behaviour tree are judged from one execution of it."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from kit import EXAMPLES, schema_errors
+from robbdd_tools.agent import beginning
+from robbdd_tools.agent.channel import Channel
+from robbdd_tools.agent.course import Course
+from robbdd_tools.agent.session import Session
+from robbdd_tools.commands.requests import Choice, load_models, requests
+from robbdd_tools.gherkin.select import Wanted
+from robbdd_tools.monitor.verdict import Verdict
+from robbdd_tools.run.prepare import prepare_all
+from robbdd_tools.run.protocol import Manifest
+
+pytestmark = pytest.mark.physics
+LOST = "precondition not reached: pick failed: gripper lost env:cube0 at "
+
+
+def robbdd(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "robbdd_tools.cli", *arguments]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=folder, env=dict(os.environ))
+    assert "Traceback" not in done.stderr
+    return done
+
+
+def model(folder: Path, weight: float | None = None) -> Path:
+    """Write the example for its cube alone, which weighs so many kg where something is said."""
+    shutil.copy(EXAMPLES / "relatedstories" / "bench.scene", folder)
+    text = (EXAMPLES / "relatedstories" / "stories.bdd").read_text(encoding="utf-8")
+    text = text.replace("{ <cubes.cube0>, <balls.ball0> }", "{ <cubes.cube0> }")
+    if weight is not None:
+        at_source = "at-source: holds(<thing> is located at <source>, before <evt-pick-start>)"
+        heavy = "heavy: holds(<thing> has config mass = <weight>, before <evt-pick-start>)"
+        goal = "var <picking.source>: { <places.table_ws> }"
+        for old, new in (
+            ("    var source\n\n", "    var source\n    var weight\n\n"),
+            (at_source, f"( {at_source} and {heavy} )"),
+            (goal, f"{goal}\n                var <picking.weight>: {{ {weight} }}"),
+        ):
+            assert old in text
+            text = text.replace(old, new, 1)
+    path = folder / "m.bdd"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def run(folder: Path, *arguments: str) -> list[dict[str, Any]]:
+    robbdd(folder, "run", "m.bdd", "--json", "out.json", *arguments)
+    document = json.loads((folder / "out.json").read_text(encoding="utf-8"))
+    assert schema_errors("run.schema.json", document) == []
+    return document["scenarios"]
+
+
+def verdicts(scenarios: list[dict[str, Any]]) -> dict[str, list[str]]:
+    return {
+        scenario["name"].split(":")[1].split(" ")[0]: [clause["verdict"] for clause in scenario["clauses"]]
+        for scenario in scenarios
+    }
+
+
+def prepared(path: Path, folder: Path) -> Manifest:
+    models = load_models(path)
+    assert models is not None
+    found = requests(models, Choice(Wanted(seed=1)))
+    assert not isinstance(found, str)
+    return prepare_all(found, path.name, 1, folder)
+
+
+def judged(folder: Path, manifest: Manifest, order: list[int]) -> dict[str, Verdict]:
+    """Go through scenarios as behave does, in one process."""
+    session = Session(folder, manifest, Channel())
+    found: dict[str, Verdict] = {}
+    for index in order:
+        spec = manifest.scenarios[index]
+        texts = [(clause.line, clause.role, clause.sentence) for clause in spec.clauses]
+        session.start(folder / spec.feature, spec.line, texts)
+        for line, role, sentence in texts:
+            judge = session.scenario.behaviour if role == "when" else session.scenario.clause
+            found[f"{spec.name} {line}"] = judge(line, sentence)
+        session.finish()
+    return found
+
+
+def test_three_stories_are_judged_from_one_simulation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    manifest = prepared(model(tmp_path), tmp_path / "run")
+    courses: list[Course] = []
+
+    def counted(*arguments: Any) -> Course:
+        courses.append(Course(*arguments))
+        return courses[-1]
+
+    monkeypatch.setattr(beginning, "Course", counted)
+    one = judged(tmp_path / "run", manifest, [0, 1, 2])
+    assert len(manifest.scenarios) == 3
+    assert len(courses) == 1
+    assert {verdict.outcome for verdict in one.values()} == {"holds"}
+    apart = {name: entry for index in (2, 0, 1) for name, entry in judged(tmp_path / "run", manifest, [index]).items()}
+    assert len(courses) == 4
+    assert apart == one
+
+
+def test_a_failed_pick_leaves_the_place_story_unknown(tmp_path: Path) -> None:
+    model(tmp_path, weight=10)
+    scenarios = run(tmp_path, "--junit", "out.xml", "--jobs", "2")
+    assert verdicts(scenarios) == {
+        "part-taken": ["holds", "holds", "violated", "unknown"],
+        "part-put": ["unknown"] * 4,
+        "bench-tidied": ["holds", "violated", "unknown"],
+    }
+    put = next(scenario for scenario in scenarios if "part-put" in scenario["name"])
+    assert put["verdict"] == "unknown"
+    assert all(clause["reason"].startswith(LOST) for clause in put["clauses"])
+    assert len({scenario["shared"]["execution"] for scenario in scenarios}) == 1
+    assert len({scenario["seed"] for scenario in scenarios}) == 1
+    cases = {case.get("classname"): case for case in ElementTree.parse(tmp_path / "out.xml").iter("testcase")}
+    error = cases["part-put"].find("error")
+    assert error is not None
+    assert LOST in (error.get("message") or "")
+    # One story by itself runs the tree as far as it needs, and comes to the same.
+    assert run(tmp_path, "--scenario", "part-put") == [put]
+    (taken,) = run(tmp_path, "--scenario", "part-taken")
+    assert verdicts([taken])["part-taken"] == ["holds", "holds", "violated", "unknown"]
+    assert taken["seed"] == put["seed"]
+
+
+def test_plain_behave_gives_the_same_verdicts(tmp_path: Path) -> None:
+    for weight in (None, 10):
+        folder = tmp_path / str(weight)
+        folder.mkdir()
+        model(folder, weight)
+        scenarios = run(folder)
+        assert robbdd(folder, "gherkin", "m.bdd", "-o", "out").returncode == 0
+        told = said_by_behave(folder / "out")
+        expected = {clause["sentence"]: clause["verdict"] for scenario in scenarios for clause in scenario["clauses"]}
+        assert {sentence: verdict for sentence, (verdict, _) in told.items()} == expected
+        if weight is not None:
+            unreached = [reason for _, reason in told.values() if LOST in reason]
+            assert len(unreached) == 4
+
+
+def said_by_behave(out: Path) -> dict[str, tuple[str, str]]:
+    """What plain behave says of each clause: its verdict and the words of a failure."""
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("BEHAVE")}
+    command = [sys.executable, "-m", "behave", "--format", "json", "--outfile", str(out / "report.json")]
+    subprocess.run([*command, str(out / "features")], capture_output=True, env=environment)
+    found: dict[str, tuple[str, str]] = {}
+    for feature in json.loads((out / "report.json").read_text(encoding="utf-8")):
+        for element in feature["elements"]:
+            for step in element["steps"] if element["type"] == "scenario" else ():
+                if '"' in step["name"]:
+                    words = str(step["result"].get("error_message", ""))
+                    failed = "unknown" if "unknown: " in words else "violated"
+                    found[step["name"]] = ("holds" if step["result"]["status"] == "passed" else failed, words)
+    return found
+
+
+def test_replay_and_judge_know_the_shared_execution(tmp_path: Path) -> None:
+    model(tmp_path, weight=10)
+    first = run(tmp_path)
+    again = robbdd(tmp_path, "replay", "latest")
+    assert again.stdout.splitlines()[-1] == "3 of 3 traces are the same", again.stdout + again.stderr
+    robbdd(tmp_path, "judge", "latest", "m.bdd", "--json", "judged.json")
+    document = json.loads((tmp_path / "judged.json").read_text(encoding="utf-8"))
+    assert verdicts(document["scenarios"]) == verdicts(first)
+    put = next(scenario for scenario in document["scenarios"] if "part-put" in scenario["name"])
+    assert all(clause["reason"].startswith(LOST) for clause in put["clauses"])
+    text = (tmp_path / "m.bdd").read_text(encoding="utf-8")
+    (tmp_path / "m.bdd").write_text(text.replace("        node place\n", "        node place\n        node pick2\n"))
+    robbdd(tmp_path, "judge", "latest", "m.bdd", "--json", "judged.json")
+    document = json.loads((tmp_path / "judged.json").read_text(encoding="utf-8"))
+    reasons = {clause["reason"] for scenario in document["scenarios"] for clause in scenario["clauses"]}
+    assert reasons == {"the behaviour tree changed since the run: only a new run can tell"}
+
+
+def test_results_tell_in_the_graph_what_was_judged_from_one_execution(tmp_path: Path) -> None:
+    model(tmp_path, weight=10)
+    run(tmp_path)
+    query = """SELECT (COUNT(DISTINCT ?execution) AS ?executions) (COUNT(DISTINCT ?scenario) AS ?scenarios) WHERE {
+        ?scenario rbw:judged-from ?execution ; prov:wasInformedBy ?execution ; rbw:of-node ?node .
+        ?execution a prov:Activity ; rbw:of-tree ?tree .
+        ?tree bt:root ?root . ?node rbw:node-of ?tree .
+        ?behaviour rbw:coordination-node ?node .
+    }"""
+    done = robbdd(tmp_path, "query", "m.bdd", query, "--results", "out.json")
+    assert done.stdout.split()[-2:] == ["1", "3"], done.stdout + done.stderr

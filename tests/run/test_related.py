@@ -1,0 +1,114 @@
+"""Which scenarios are judged from one execution of a behaviour tree."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from gherkin_kit import model_of
+from kit import EVENTS
+from robbdd_tools.gherkin.files import whole_plan
+from robbdd_tools.run.prepare import lay_out
+from robbdd_tools.run.protocol import ScenarioSpec, read_manifest
+
+TREE = "Behaviour Tree (ns=t) handling { sequence whole { node pick node place } }\n"
+
+
+def template(name: str, action: str, node: str, *variables: str) -> str:
+    declared = "\n    ".join(f"var {variable}" for variable in variables)
+    return f"""Scenario Template (ns=t) {name} {{
+    duration: from <start> until <end>
+    task: <task>
+    {declared}
+    When: Behaviour (ns=t) do-{name} {{
+        duration: from <{name}-start> until <{name}-end>
+        {action}
+        node: <handling.{node}>
+    }}
+    Then: {name}-rests: holds(<part> is held by <robot>, 2 seconds after <{name}-end>)
+}}
+Event (ns=t) {name}-start
+Event (ns=t) {name}-end
+"""
+
+
+def story(name: str, **sets: str) -> str:
+    lines = "\n".join(f"                var <{name}.{variable}>: {{ {values} }}" for variable, values in sets.items())
+    return f"""User Story (ns=t) story-{name} {{
+    As A "o" I Want "p" So That "w"
+    Scenarios:
+        Scenario {name}s {{
+            template: <{name}>
+            scene: <bench_scene>
+            variation:
+{lines}
+        }}
+}}
+"""
+
+
+TAKE = template("take", "<robot> picks <part>", "pick", "robot", "part")
+PUT = template("put", "<robot> places <part> at <goal>", "place", "robot", "part", "goal")
+BOTH = template("both", "<robot> picks <part> and places at <goal>", "whole", "robot", "part", "goal")
+PANDA, PARTS, GOALS = "<arms.panda>", "<parts.bolt>, <parts.nut>", "<places.tray_ws>, <places.bench_ws>"
+# Events are declared in front of what else there is.
+TEMPLATES = "".join(
+    sorted((TAKE + PUT + BOTH).splitlines(keepends=True), key=lambda line: not line.startswith("Event"))
+)
+
+
+def specs(folder: Path, *stories: str, templates: str = TEMPLATES) -> list[ScenarioSpec]:
+    found = list(lay_out(whole_plan(model_of(EVENTS + TREE + templates + "".join(stories))), "main.bdd", 1, folder))
+    assert list(read_manifest(folder).scenarios) == found
+    return found
+
+
+def groups(found: list[ScenarioSpec]) -> dict[str, list[str]]:
+    together: dict[str, list[str]] = {}
+    for spec in found:
+        assert spec.tree is not None
+        together.setdefault(spec.tree.name, []).append(spec.name.removeprefix("t:"))
+    return together
+
+
+def test_scenarios_with_the_same_values_share_an_execution(tmp_path: Path) -> None:
+    put = story("put", robot=PANDA, part=PARTS, goal=GOALS)
+    found = specs(
+        tmp_path, story("take", robot=PANDA, part=PARTS), put, story("both", robot=PANDA, part=PARTS, goal=GOALS)
+    )
+    # To take a thing, no matter where to, goes with the first that fits.
+    assert groups(found) == {
+        "t:handling 1": ["takes -- 1", "puts -- 1", "boths -- 1"],
+        "t:handling 3": ["takes -- 2", "puts -- 3", "boths -- 3"],
+        "t:handling 2": ["puts -- 2", "boths -- 2"],
+        "t:handling 4": ["puts -- 4", "boths -- 4"],
+    }
+    assert len({(spec.seed, spec.tree.name) for spec in found if spec.tree is not None}) == 4
+    assert all(spec.tree is not None and spec.tree.tail == 2.0 for spec in found)
+
+
+def test_the_leaves_do_what_is_linked_to_them_with_the_values_of_all(tmp_path: Path) -> None:
+    found = specs(tmp_path, story("put", robot=PANDA, part="<parts.nut>", goal="<places.tray_ws>"))
+    (spec,) = found
+    assert spec.tree is not None
+    (leaf,) = [leaf for leaf in spec.tree.leaves() if leaf.name == "place"]
+    assert (leaf.behaviour, leaf.problem) == ("place", "")
+    assert dict(leaf.arguments) == {"agent": "env:panda", "object": "env:nut", "workspace": "env:tray_ws"}
+    (other,) = [leaf for leaf in spec.tree.leaves() if leaf.name == "pick"]
+    assert other.problem == "no scenario is linked to pick, so nothing says what it does"
+
+
+def test_repeated_rows_are_executions_of_their_own(tmp_path: Path) -> None:
+    take = story("take", robot=PANDA, part="<parts.nut>, <parts.nut>")
+    assert len(groups(specs(tmp_path, take))) == 2
+
+
+def test_events_are_those_of_the_nodes(tmp_path: Path) -> None:
+    one = {"robot": PANDA, "part": "<parts.nut>"}
+    found = specs(tmp_path, story("take", **one), story("both", **one, goal="<places.tray_ws>"))
+    take, both = (dict(spec.events) for spec in found)
+    start, end = "https://example.org/t/node-handling.pick start", "https://example.org/t/node-handling.pick end"
+    assert (take["t:start"], take["t:take-start"], take["t:take-end"]) == (start, start, end)
+    # The whole tree lasts as long as its execution; what its parts emit is known to all.
+    assert (both["t:start"], both["t:end"]) == ("scenario-start", "scenario-end")
+    assert both["t:take-end"] == end
+    assert both["t:both-end"] == "https://example.org/t/node-handling.whole end"
