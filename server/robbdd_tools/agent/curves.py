@@ -37,7 +37,7 @@ def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False
             return
 
 
-def behaviour_curves(doing: Doing, trace: Trace, emitters: Mapping[str, str], node: str) -> tuple[Curve, ...]:
+def behaviour_curves(doing: Doing, trace: Trace, emitters: Mapping[str, str], node: str = "") -> tuple[Curve, ...]:
     """Return the duration of a behaviour, without a margin; ``emitters`` maps events to what emits them.
 
     ``node`` is that of the behaviour tree which executes it, if one does.
