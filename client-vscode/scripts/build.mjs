@@ -69,7 +69,7 @@ const bundles = [
   },
   {
     ...shared,
-    entryPoints: { graph: "webviews/graph/main.ts" },
+    entryPoints: { graph: "webviews/graph/main.ts", replay: "webviews/replay/main.ts" },
     outdir: "out/webviews",
     platform: "browser",
     target: "es2022",

@@ -165,6 +165,24 @@ export class Server implements vscode.Disposable {
     }
   }
 
+  /** Ask the server something that a user waits for: they are told why there is no answer. */
+  async ask(method: string, params: object): Promise<unknown> {
+    if (!(await this.ready())) {
+      return undefined;
+    }
+    try {
+      return await this.client?.sendRequest(method, params);
+    } catch (error) {
+      this.refused(method, error);
+      return undefined;
+    }
+  }
+
+  /** Wait until a start or stop under way has ended. */
+  settled(): Promise<void> {
+    return this.pending;
+  }
+
   dispose(): void {
     this.files.dispose();
     void this.stop();

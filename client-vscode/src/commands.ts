@@ -2,6 +2,8 @@
 import * as vscode from "vscode";
 import type { Server } from "./client";
 import type { GraphView } from "./panels/graph/view";
+import { recordingOf } from "./panels/replay/request";
+import type { ReplayView } from "./panels/replay/view";
 import type { PreviewView } from "./preview/view";
 import { modelFor, openModel } from "./models";
 import { newProject } from "./projects";
@@ -14,12 +16,13 @@ export interface Views {
   readonly previews: PreviewView;
   readonly graphs: GraphView;
   readonly tests: TestingView;
+  readonly replays: ReplayView;
 }
 
 export function registerCommands(
   server: Server,
   runs: RunMonitor,
-  { previews, graphs, tests }: Views,
+  { previews, graphs, replays, tests }: Views,
   log: vscode.LogOutputChannel,
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
@@ -32,6 +35,8 @@ export function registerCommands(
         graphs.open(vscode.Uri.parse(uri));
       }),
     "robbdd.importResults": (target) => tests.importResults(target instanceof vscode.Uri ? target : undefined),
+    "robbdd.showReplay": (target) =>
+      recordingOf(target) === undefined ? withModel(target, (uri) => replays.choose(uri)) : replays.open(target),
     "robbdd.newProject": () => newProject(server),
     "robbdd.openModel": () => openModel(),
     "robbdd.installServer": () => server.install(),

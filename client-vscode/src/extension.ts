@@ -4,6 +4,7 @@ import { Server } from "./client";
 import { registerCommands } from "./commands";
 import { noticeModels } from "./milestones";
 import { GraphView } from "./panels/graph/view";
+import { ReplayView } from "./panels/replay/view";
 import { PreviewView } from "./preview/view";
 import { onInterpreterChange } from "./python";
 import { RunMonitor } from "./runs/monitor";
@@ -32,6 +33,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   const previews = new PreviewView(started);
   const graphs = new GraphView(started, context.extensionUri);
   const tests = new TestingView(started, runs);
+  const replays = new ReplayView(started, context.extensionUri);
   server = started;
   context.subscriptions.push(
     log,
@@ -39,9 +41,10 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     runs,
     previews,
     graphs,
+    replays,
     tests,
     noticeModels(),
-    ...registerCommands(started, runs, { previews, graphs, tests }, log),
+    ...registerCommands(started, runs, { previews, graphs, replays, tests }, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
         void started.restart();

@@ -1,4 +1,5 @@
 // One run as text: messages in, lines for the output channel and a summary out.
+import { signed } from "../quantity";
 import type { ClauseJudged, RunMessage } from "./messages";
 
 export const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
@@ -129,12 +130,7 @@ function margin(clause: ClauseJudged): string {
 
 /** The margin in a unit that reads well; without a unit it is but another word for the verdict: nothing. */
 export function marginOf({ robustness, unit }: Pick<ClauseJudged, "robustness" | "unit">): string {
-  if (robustness === null || unit === "") {
-    return "";
-  }
-  const short = unit === "m" && Math.abs(robustness) < 1;
-  const [value, shown] = short ? [robustness * 1000, "mm"] : [robustness, unit];
-  return `${value < 0 ? "−" : "+"}${Math.abs(value).toPrecision(3)} ${shown}`;
+  return robustness === null || unit === "" ? "" : signed(robustness, unit);
 }
 
 export function seconds(value: number): string {

@@ -10,7 +10,6 @@ const LOOPBACK = new Set(["127.0.0.1", "localhost", "[::1]"]);
 
 const CHROMIUM_FLAGS = [
   "--no-sandbox", // tests run as root in containers
-  "--disable-gpu",
   "--disable-quic",
   "--no-first-run",
   "--disable-background-networking",
@@ -19,6 +18,10 @@ const CHROMIUM_FLAGS = [
   // Below the reach of page routes too (service workers, web views): no name but loopback resolves.
   "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost",
 ];
+
+/** Three dimensions without a graphics card, or none at all. */
+const WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const NO_WEBGL = ["--disable-gpu", "--disable-3d-apis"];
 
 export class Session {
   #folder;
@@ -33,12 +36,13 @@ export class Session {
    * @param {Record<string, unknown>} [options.settings] editor settings
    * @param {string} [options.searchPath] PATH of the extension host
    * @param {boolean} [options.trust] false leaves the workspace untrusted
+   * @param {boolean} [options.webgl] whether pages can draw in three dimensions
    * @param {(workspace: string) => Promise<void>} [options.prepare] changes the copy before it is opened
    */
-  static async open({ workspace, prepare = async () => {}, ...options }) {
+  static async open({ workspace, prepare = async () => {}, webgl = false, ...options }) {
     const session = new Session();
     try {
-      await session.#open(workspace, prepare, options);
+      await session.#open(workspace, prepare, webgl ? WEBGL : NO_WEBGL, options);
       return session;
     } catch (error) {
       await session.close("could-not-open");
@@ -46,7 +50,7 @@ export class Session {
     }
   }
 
-  async #open(workspace, prepare, options) {
+  async #open(workspace, prepare, graphics, options) {
     this.#folder = await mkdtemp(join(tmpdir(), "robbdd-workbench-"));
     this.workspace = join(this.#folder, "workspace");
     await cp(workspace, this.workspace, { recursive: true });
@@ -55,7 +59,7 @@ export class Session {
     await mkdir(state);
     this.server = new CodeServer({ state, ...options });
     await this.server.start(required(VSIX, "run npm run package in client-vscode"));
-    this.#browser = await playwright().chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_FLAGS });
+    this.#browser = await playwright().chromium.launch({ executablePath: CHROMIUM, args: [...CHROMIUM_FLAGS, ...graphics] });
     const context = await this.#browser.newContext({ viewport: { width: 1360, height: 1040 } });
     await context.route(
       (url) => !LOOPBACK.has(url.hostname) && url.protocol.startsWith("http"),

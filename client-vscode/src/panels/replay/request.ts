@@ -1,0 +1,25 @@
+// What links, lenses and the page's own memory say about the recording that they mean; nothing of it is trusted.
+import { isRecord } from "../../values";
+import type { Recording } from "./messages";
+
+const NUMBERS = ["index", "variation", "repetition"] as const;
+
+/** The recording that a value names; undefined when it names none. */
+export function recordingOf(value: unknown): Recording | undefined {
+  if (!isRecord(value) || typeof value["uri"] !== "string") {
+    return undefined;
+  }
+  const { uri, run, variant } = value;
+  const numbers = NUMBERS.filter((name) => typeof value[name] === "number").map((name) => [name, value[name]]);
+  return {
+    uri,
+    ...(typeof run === "number" || typeof run === "string" ? { run } : {}),
+    ...(typeof variant === "string" ? { variant } : {}),
+    ...(Object.fromEntries(numbers) as Partial<Record<(typeof NUMBERS)[number], number>>),
+  };
+}
+
+/** The clause that a value asks to be shown, by its IRI or its name. */
+export function clauseOf(value: unknown): string | undefined {
+  return isRecord(value) && typeof value["clause"] === "string" ? value["clause"] : undefined;
+}

@@ -1,0 +1,131 @@
+// Recorded executions in panels: what was recorded is asked of the server, and played in the page.
+import * as vscode from "vscode";
+import type { Server } from "../../client";
+import { isRecord } from "../../values";
+import { Panel, beside } from "../panel";
+import { reveal } from "../reveal";
+import { type Trace, isTrace, local } from "./answer";
+import { chooseRecording } from "./choice";
+import type { Recording, ToReplay } from "./messages";
+import { clauseOf, recordingOf } from "./request";
+
+const TYPE = "robbdd.replay";
+
+export class ReplayView implements vscode.Disposable {
+  /** By the execution that they show. */
+  private readonly replays = new Map<string, Replay>();
+  private readonly serializer: vscode.Disposable;
+
+  constructor(
+    private readonly server: Server,
+    private readonly extension: vscode.Uri,
+  ) {
+    this.serializer = vscode.window.registerWebviewPanelSerializer(TYPE, {
+      deserializeWebviewPanel: (view, state: unknown) => this.restore(view, state),
+    });
+  }
+
+  /** Show an execution of a model's project that the user chooses. */
+  async choose(model: string): Promise<void> {
+    const recording = await chooseRecording(this.server, model);
+    if (recording !== undefined) {
+      await this.open(recording);
+    }
+  }
+
+  /** Show the execution that `target` describes: a `Recording`, perhaps with a clause to look at. */
+  async open(target: unknown): Promise<void> {
+    const recording = recordingOf(target);
+    if (recording === undefined) {
+      return;
+    }
+    const trace = await this.server.ask("robbdd/trace", recording);
+    if (!isTrace(trace)) {
+      return;
+    }
+    const clause = clauseOf(target);
+    const open = this.replays.get(keyOf(trace));
+    if (open === undefined) {
+      this.adopt(beside(TYPE, titleOf(trace)), exactly(recording, trace), trace, clause);
+    } else {
+      open.panel.view.reveal(undefined, true);
+      if (clause !== undefined) {
+        open.panel.post({ type: "clause", clause });
+      }
+    }
+  }
+
+  dispose(): void {
+    for (const part of [this.serializer, ...[...this.replays.values()].map(({ panel }) => panel)]) {
+      part.dispose();
+    }
+  }
+
+  private async restore(view: vscode.WebviewPanel, state: unknown): Promise<void> {
+    const recording = recordingOf(isRecord(state) ? state["recording"] : undefined);
+    await this.server.settled();
+    const trace = recording === undefined ? undefined : await this.server.request("robbdd/trace", recording);
+    if (recording === undefined || !isTrace(trace)) {
+      // The run is no longer kept, or the project is another one.
+      view.dispose();
+      return;
+    }
+    this.adopt(view, recording, trace, undefined);
+  }
+
+  private adopt(view: vscode.WebviewPanel, recording: Recording, trace: Trace, clause: string | undefined): void {
+    const key = keyOf(trace);
+    this.replays.set(key, new Replay(view, this.extension, recording, trace, clause));
+    view.onDidDispose(() => {
+      this.replays.delete(key);
+    });
+  }
+}
+
+/** One panel with one execution. */
+class Replay {
+  readonly panel: Panel<ToReplay>;
+
+  constructor(
+    view: vscode.WebviewPanel,
+    extension: vscode.Uri,
+    recording: Recording,
+    private readonly trace: Trace,
+    clause: string | undefined,
+  ) {
+    let wanted = clause;
+    this.panel = new Panel<ToReplay>(
+      view,
+      extension,
+      "replay",
+      () => {
+        this.panel.post({ type: "trace", recording, trace, ...(wanted === undefined ? {} : { clause: wanted }) });
+        // A page that comes back shows what it showed last.
+        wanted = undefined;
+      },
+      ({ clause: number }) => {
+        this.show(number);
+      },
+    );
+  }
+
+  private show(clause: unknown): void {
+    const source = typeof clause === "number" ? this.trace.clauses[clause]?.source : undefined;
+    if (source !== null && source !== undefined) {
+      void reveal(source.uri, source.range, this.panel.view.viewColumn);
+    }
+  }
+}
+
+function keyOf({ folder, scenario }: Trace): string {
+  return `${folder} ${scenario.index}`;
+}
+
+function titleOf({ run, scenario }: Trace): string {
+  return `Replay ${local(scenario.name)}${run > 0 ? ` (run ${run})` : ""}`;
+}
+
+/** What the server has chosen, so that the same is shown when the panel comes back. */
+function exactly({ uri }: Recording, { run, folder, scenario }: Trace): Recording {
+  return { uri, run: run > 0 ? run : vscode.Uri.parse(folder).fsPath, index: scenario.index };
+}

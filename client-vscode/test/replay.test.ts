@@ -1,0 +1,129 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { type Clause, type PackedArray, type Part, firstClause, isTrace } from "../src/panels/replay/answer";
+import { clauseOf, recordingOf } from "../src/panels/replay/request";
+import { isRuns, outcome } from "../src/panels/runs";
+import { signed } from "../src/quantity";
+import { Clock } from "../webviews/replay/clock";
+import { extent, points } from "../webviews/replay/margins";
+import { Motion } from "../webviews/replay/motion";
+import { lanes, scale, ticks } from "../webviews/replay/scale";
+
+const packed = (values: number[], ...shape: number[]): PackedArray => ({
+  type: "float32",
+  shape,
+  data: Buffer.from(new Float32Array(values).buffer).toString("base64"),
+});
+const PART: Part = { start: 1, end: 2, reason: "", unit: "m", negated: false, times: [0, 1], margins: [0.5, -0.25] };
+const clause = (name: string, verdict: Clause["verdict"], at: number | null): Clause => ({
+  iri: `https://example.org/${name}`,
+  name,
+  role: "then",
+  sentence: name,
+  verdict,
+  robustness: null,
+  unit: "",
+  at,
+  reason: "",
+  vacuous: "",
+  source: null,
+  parts: [],
+});
+
+test("a body between two frames is between its two places, and turns the shorter way", () => {
+  const quarter = Math.SQRT1_2;
+  const poses = [0, 0, 0, 1, 0, 0, 0, 2, 4, 6, -quarter, 0, 0, -quarter];
+  const motion = new Motion({ frames: { times: packed([0, 2], 2), bodies: [7], poses: packed(poses, 2, 1, 7) } });
+  const at = (time: number) => {
+    const told: [number, readonly number[]][] = [];
+    motion.at(time, (body, pose) => told.push([body, pose]));
+    const [[body, pose] = [0, []]] = told;
+    assert.equal(body, 7);
+    return pose.map((value) => Math.round(value * 1e4) / 1e4);
+  };
+  const half = [Math.cos(Math.PI / 8), Math.sin(Math.PI / 8)].map((value) => Math.round(value * 1e4) / 1e4);
+  assert.deepEqual(at(1), [1, 2, 3, half[0], 0, 0, half[1]]);
+  assert.deepEqual(at(-1), [0, 0, 0, 1, 0, 0, 0]);
+  assert.deepEqual(at(9).slice(0, 3), [2, 4, 6]);
+});
+
+test("the clock stops at the end and begins anew from there", () => {
+  let changes = 0;
+  const clock = new Clock(2, () => (changes += 1));
+  clock.advance(1);
+  assert.equal(clock.time, 0, "it does not run by itself");
+  clock.toggle();
+  clock.speed = 0.5;
+  clock.advance(1);
+  assert.equal(clock.time, 0.5);
+  clock.advance(10);
+  assert.deepEqual([clock.time, clock.playing], [2, false]);
+  clock.toggle();
+  assert.deepEqual([clock.time, clock.playing], [0, true]);
+  clock.seek(-3);
+  assert.equal(clock.time, 0);
+  assert.ok(changes >= 4);
+});
+
+test("a scale leads there and back", () => {
+  const along = scale(0, 8, 10, 90);
+  assert.equal(along(2), 30);
+  assert.equal(along.back(30), 2);
+});
+
+test("ticks are round numbers within their range", () => {
+  assert.deepEqual(ticks(0, 6.27, 6), [0, 2, 4, 6]);
+  assert.deepEqual(ticks(0, 1, 10), [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1]);
+  assert.deepEqual(ticks(-0.11, 0.04, 3), [-0.1, -0.05, 0]);
+  assert.deepEqual(ticks(3, 3, 5), [3]);
+});
+
+test("labels that would cover one another get lanes of their own", () => {
+  const widths = [0, 10, 25, 70].map((start) => ({ start, width: 30 }));
+  assert.deepEqual(lanes(widths), [0, 1, 2, 0]);
+});
+
+test("a margin is drawn in the sense of its clause", () => {
+  assert.deepEqual(points(PART), [[0, 0.5], [1, -0.25]]);
+  assert.deepEqual(points({ ...PART, negated: true }), [[0, -0.5], [1, 0.25]]);
+  const [low, high] = extent([0.5, 1]);
+  assert.ok(low < 0 && high > 1, "zero and all values have room");
+  assert.deepEqual([signed(-0.0362, "m"), signed(1.5, "m"), signed(0.25, "rad")], ["−36.2 mm", "+1.50 m", "+0.250 rad"]);
+});
+
+test("the clause to look at first is the one asked for, the first that is violated, or the last", () => {
+  const clauses = [clause("a", "holds", 1), clause("b", "violated", null), clause("c", "violated", 2), clause("d", "unknown", null)];
+  assert.equal(firstClause(clauses, "d"), 3);
+  assert.equal(firstClause(clauses, "https://example.org/a"), 0);
+  assert.equal(firstClause(clauses, "gone"), 2);
+  assert.equal(firstClause(clauses.slice(0, 1)), 0);
+  assert.equal(firstClause([]), -1);
+});
+
+test("a recording is read from what a link says, and from nothing else", () => {
+  const uri = "file:///m.bdd";
+  assert.deepEqual(recordingOf({ uri, variant: "v", variation: 3, clause: "c", other: 1 }), { uri, variant: "v", variation: 3 });
+  assert.deepEqual(recordingOf({ uri, run: 2, index: "0" }), { uri, run: 2 });
+  assert.equal(recordingOf({ run: 2 }), undefined);
+  assert.equal(recordingOf(uri), undefined);
+  assert.equal(clauseOf({ uri, clause: "c" }), "c");
+  assert.equal(clauseOf({ uri, clause: 1 }), undefined);
+});
+
+test("stored runs are told with how they came out", () => {
+  const run = { run: 3, folder: "", path: "m.bdd", seed: 1, complete: true, holds: 4, violated: 1, unknown: 0, problem: null };
+  assert.ok(isRuns({ runs: [run] }));
+  assert.ok(!isRuns({ runs: [{ ...run, holds: "4" }] }));
+  assert.equal(outcome(run), "4 hold, 1 violated");
+  assert.equal(outcome({ ...run, holds: 0, violated: 0, complete: false }), "nothing judged, not complete");
+});
+
+test("an answer of another version is no trace", () => {
+  const array = packed([], 0);
+  const trace = { run: 1, duration: 0, scenario: {}, frames: { times: array, poses: array, bodies: [] } };
+  const lists = { shapes: [], meshes: [], bodies: [], workspaces: [], events: [], clauses: [{ parts: [] }] };
+  assert.ok(isTrace({ ...trace, ...lists }));
+  for (const name of Object.keys(lists)) {
+    assert.ok(!isTrace({ ...trace, ...lists, [name]: undefined }), name);
+  }
+});
