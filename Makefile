@@ -26,10 +26,12 @@ test-python: $(READY)
 test-client: $(CLIENT_READY)
 	cd $(CLIENT) && npm run --silent build && npm run --silent lint && npm test --silent
 
-# Drives Neovim, then the extension in a real VS Code workbench; installs the editors and Chromium where they are missing.
+# Drives Neovim and Emacs, then the extension in a real VS Code workbench; installs the editors and Chromium where they are missing.
 test-editors: $(READY) $(CLIENT_READY)
 	tests/editors/neovim/setup.sh
 	tests/editors/neovim/run.sh
+	tests/editors/emacs/setup.sh
+	tests/editors/emacs/run.sh
 	tests/editors/workbench/setup.sh
 	cd $(CLIENT) && npm run --silent package
 	tests/editors/workbench/run.sh

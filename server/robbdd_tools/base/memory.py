@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from functools import wraps
 from typing import TypeVar
 from weakref import WeakKeyDictionary
@@ -18,6 +19,15 @@ YOUNG, OLDER, OLD = 100_000, 50, 100
 def collect_rarely() -> None:
     """Search for cycles less often: trees have none, and a search of a large project takes longer than a keystroke."""
     gc.set_threshold(YOUNG, OLDER, OLD)
+
+
+@contextmanager
+def nothing_to_collect() -> Generator[None]:
+    """Search for no cycles while modules are loaded, nor ever in what was made meanwhile: it stays to the end."""
+    gc.disable()
+    yield
+    gc.freeze()
+    gc.enable()
 
 
 def kept_with_key(function: Callable[[Key], Value]) -> Callable[[Key], Value]:

@@ -30,11 +30,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     _log_to(options.log_file)
 
-    from robbdd_tools.base.memory import collect_rarely
-    from robbdd_tools.lsp.handlers import create_server
+    from robbdd_tools.base.memory import collect_rarely, nothing_to_collect
 
+    with nothing_to_collect():
+        from robbdd_tools.lsp.handlers import create_server
+
+        server = create_server()
     collect_rarely()
-    server = create_server()
     if options.tcp is None:
         server.start_io()
     else:
