@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.checkpoint import checkpoint
+from robbdd_tools.checks.behaviour_tree import behaviour_tree
 from robbdd_tools.checks.catalog_entry import catalog_entry
 from robbdd_tools.checks.catalog_models import catalog_models
 from robbdd_tools.checks.contradictory_order import contradictory_order
@@ -59,6 +60,7 @@ DECLARATION_RULES = (
     type_conflict,
 )
 FILE_RULES = (
+    behaviour_tree,
     catalog_entry,
     cyclic_import,
     catalog_models,
