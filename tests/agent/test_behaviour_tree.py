@@ -106,6 +106,23 @@ def create(leaf):
     assert run.broken == ""
 
 
+def test_what_is_tried_again_may_succeed(tmp_path: Path) -> None:
+    code = """import py_trees
+
+class Once(py_trees.behaviour.Behaviour):
+    count = 0
+    def update(self):
+        self.count += 1
+        return py_trees.common.Status.FAILURE if self.count == 1 else py_trees.common.Status.SUCCESS
+
+def create(leaf):
+    both = py_trees.composites.Sequence("whole", False, [Once("look"), leaf("first")])
+    return py_trees.decorators.Retry("twice", both, 2)
+"""
+    run = executed(made(tmp_path, code, pick("first"), NodeSpec("t:whole", "whole", "leaf", problem="it is made")))
+    assert run.run_behaviour(0), run.failure
+
+
 @pytest.mark.parametrize(
     ("code", "words"),
     [

@@ -38,7 +38,8 @@ class TreeRun:
         self._nodes = {node.iri: _find(self._root, node.name, spec) for node in _every(spec.nodes)}
         self._iris = {behaviour.id: iri for iri, behaviour in self._nodes.items()}
         self._begun: set[object] = set()
-        self._over: dict[object, Status] = {}
+        self._succeeded: set[object] = set()
+        self._is_over = False
         self._failures: list[tuple[Behaviour, str]] = []
         self.active: tuple[str, ...] = ()
 
@@ -48,6 +49,7 @@ class TreeRun:
             self._tick()
             self._take_note()
             if self._root.status is not Status.RUNNING:
+                self._is_over = True
                 return
             yield
 
@@ -56,12 +58,12 @@ class TreeRun:
         return self._nodes[node].id in self._begun
 
     def is_over(self, node: str) -> bool:
-        """Tell whether a node has succeeded or failed."""
-        return self._nodes[node].id in self._over
+        """Tell whether a node has succeeded, or will not any more: one that has failed may be tried again."""
+        return self._is_over or self.has_succeeded(node)
 
     def has_succeeded(self, node: str) -> bool:
         """Tell whether a node has succeeded."""
-        return self._over.get(self._nodes[node].id) is Status.SUCCESS
+        return self._nodes[node].id in self._succeeded
 
     def failure(self, node: str) -> str:
         """Return why a node failed: the reason of its last part that did; nothing where none has."""
@@ -74,7 +76,7 @@ class TreeRun:
             found = found.parent
         siblings = [] if found.parent is None else found.parent.children
         before = [one for one in siblings[: siblings.index(found)] if one.id in self._begun] if siblings else []
-        if before and self._over.get(before[-1].id) is Status.SUCCESS:
+        if before and before[-1].id in self._succeeded:
             return f"not reached: {before[-1].name} succeeded before, so nothing else was tried"
         name, reason = self._failure(before[-1]) if before else ("", "")
         if name:
@@ -139,9 +141,9 @@ class TreeRun:
                 self._begun.add(behaviour.id)
                 if iri is not None:
                     self._stamp(emitter(iri, START))
-            if behaviour.status is not Status.RUNNING and behaviour.id not in self._over:
-                self._over[behaviour.id] = behaviour.status
-                if iri is not None and behaviour.status is Status.SUCCESS:
+            if behaviour.status is Status.SUCCESS and behaviour.id not in self._succeeded:
+                self._succeeded.add(behaviour.id)
+                if iri is not None:
                     self._stamp(emitter(iri, END))
 
 
