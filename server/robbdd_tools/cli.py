@@ -86,6 +86,7 @@ def _parser() -> argparse.ArgumentParser:
     replay = commands.add_parser("replay", help="simulate a stored run again and prove that its traces are the same")
     replay.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
     replay.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
+    replay.add_argument("--force", action="store_true", help="go on where files were changed since the run")
     allow_policy(replay)
     allow_store(replay)
     replay.set_defaults(command=_replay)
@@ -201,7 +202,7 @@ def _new(options: argparse.Namespace) -> int:
 def _replay(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.replay import ReplayOptions, replay
 
-    return replay(ReplayOptions(options.run, policy(options), options.scenario or (), options.store))
+    return replay(ReplayOptions(options.run, policy(options), options.scenario or (), options.store, options.force))
 
 
 def _judge(options: argparse.Namespace) -> int:

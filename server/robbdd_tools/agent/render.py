@@ -33,9 +33,9 @@ USAGE = (
     "usage: python -m robbdd_tools.agent.render RUN_FOLDER "
     "(INDEX FILE.png | moments FOLDER | videos FOLDER | thumbnails FOLDER INDEX:LINE …)"
 )
-SMALL = (440, 275)
+SMALL = (300, 188)
 """Width and height of a small picture, pixels."""
-COARSE = np.uint8(0xF0)
+COARSE = np.uint8(0xFC)
 """Bits of a small picture's colours that are kept: it is to be sent within a text of some ten thousand letters."""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from robbdd_tools.commands.runs import store_at
 from robbdd_tools.run.prepare import FEATURES
 from robbdd_tools.run.protocol import MANIFEST, trace_file
 from robbdd_tools.run.store import NoSuchRun
+from robbdd_tools.run.used_files import changed
 
 if TYPE_CHECKING:
     from robbdd_tools.run.protocol import Manifest
@@ -28,12 +30,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ReplayOptions:
-    """The run (a number, ``latest`` or a folder), the scenarios by name, where runs are kept, how to simulate."""
+    """The run (a number, ``latest`` or a folder), the scenarios by name, where runs are kept, how to simulate.
+
+    ``force`` simulates with files as they are now, changed or not.
+    """
 
     run: str
     policy: Policy
     names: Sequence[str] = ()
     store: Path | None = None
+    force: bool = False
 
 
 def replay(options: ReplayOptions) -> int:
@@ -43,7 +49,7 @@ def replay(options: ReplayOptions) -> int:
         record, manifest = stored.record(), stored.manifest()
     except NoSuchRun as error:
         return _failed(str(error))
-    refusal = _refusal(stored, record)
+    refusal = "" if options.force else _refusal(stored, record)
     if refusal:
         return _failed(refusal)
     indices = [
@@ -68,6 +74,10 @@ def replay(options: ReplayOptions) -> int:
 
 def _refusal(stored: StoredRun, record: RunRecord) -> str:
     """Say why a run cannot be replayed; nothing when it can."""
+    others = [os.path.relpath(path) for path in changed(record.files, stored.folder)]
+    if others:
+        verb = "was" if len(others) == 1 else "were"
+        return f"{', '.join(others)} {verb} changed since the run: run it again, or go on with --force"
     path = stored.model()
     if not path.exists():
         return f"the model of the run, {record.path}, is gone"
@@ -77,7 +87,8 @@ def _refusal(stored: StoredRun, record: RunRecord) -> str:
     if digest(models) != record.digest:
         return (
             f"{record.path} was changed since the run (its graph's digest is {digest(models)[:12]}, "
-            f"the run's {record.digest[:12]}): run it again, or judge the stored traces with 'robbdd judge'"
+            f"the run's {record.digest[:12]}): run it again, judge the stored traces with 'robbdd judge', "
+            "or replay the run's own scenarios with --force"
         )
     return ""
 

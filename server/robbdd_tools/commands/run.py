@@ -21,6 +21,7 @@ from robbdd_tools.run.pictures import NoPictures, no_display, render_moments, re
 from robbdd_tools.run.prepare import prepare_all
 from robbdd_tools.run.protocol import VIEWER
 from robbdd_tools.run.store import NoSuchRun, RunRecord, RunStore, StoredRun, origin, shown_path, store_beside
+from robbdd_tools.run.used_files import digests
 
 if TYPE_CHECKING:
     from robbdd_tools.run.prepare import RunRequest
@@ -103,6 +104,7 @@ def _run(options: RunOptions, found: list[RunRequest], record: RunRecord, place:
     manifest = prepare_all(found, str(options.path), record.seed, place.folder, place.kept)
     if not manifest.scenarios:
         return _failed("no scenario fits the selection")
+    record = replace(record, files=digests(manifest, place.folder))
     place.write_record(record)
     results, simulator, interrupted = execute(place.folder, manifest, options.policy)
     place.write_record(replace(record, simulator=simulator))

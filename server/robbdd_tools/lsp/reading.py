@@ -76,7 +76,9 @@ def _register_hover(server: RobbddServer) -> None:
         markdown = found.markdown
         if ls.shows_pictures and found.judged is not None:
             pictures = await asyncio.to_thread(pictures_of, ls.stores, found.judged)
-            markdown = "\n\n".join(filter(None, (markdown, pictures)))
+            # Hovers are low: what is to be seen stands right below the title.
+            title, _, rest = markdown.partition("\n\n")
+            markdown = "\n\n".join(filter(None, (title, pictures, rest)))
         client = ls.client_capabilities.text_document
         formats = client.hover.content_format if client is not None and client.hover is not None else None
         return types.Hover(contents=markup(markdown, formats), range=place)

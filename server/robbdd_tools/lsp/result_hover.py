@@ -30,7 +30,7 @@ _LOG = logging.getLogger(__name__)
 
 
 def pictures_of(stores: Stores, judged: Judged) -> str:
-    """Return a result's pictures as Markdown, nothing where the stored run is gone."""
+    """Return a result's pictures side by side as Markdown, nothing where the stored run is gone."""
     scenario, judgement = judged
     try:
         run = _run_of(stores.of(scenario.model), scenario)
@@ -39,7 +39,7 @@ def pictures_of(stores: Stores, judged: Judged) -> str:
         return ""
     if kept.get("scenario") != [scenario.variant, scenario.variation]:
         return ""
-    return "\n\n".join(_shown(run, scenario.index, judgement.line, plot(kept, judgement.line)))
+    return " ".join(_shown(run, scenario.index, judgement.line, plot(kept, judgement.line)))
 
 
 def _run_of(store: RunStore, scenario: JudgedScenario) -> StoredRun:

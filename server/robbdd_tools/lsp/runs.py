@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
@@ -33,6 +33,7 @@ from robbdd_tools.run.report import margin, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import CANCELLED, Scheduler
 from robbdd_tools.run.store import RunRecord, origin, shown_path
+from robbdd_tools.run.used_files import digests
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -145,7 +146,9 @@ class _Follower:
 
     def _keep(self, results: list[JudgedScenario]) -> None:
         """Keep the run, and what is known of all scenarios now."""
-        self._place.write_record(_record_of(self._plan, self._place.folder, self._simulator))
+        files = digests(self._results.manifest, self._place.folder)
+        record = _record_of(self._plan, self._place.folder, self._simulator)
+        self._place.write_record(replace(record, files=files))
         self._place.write_results(self._results.as_json())
         save_results(self._ls.folders(), results)
 

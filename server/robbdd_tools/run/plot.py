@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 from xml.sax.saxutils import escape
 
-from robbdd_tools.run.report import margin
+from robbdd_tools.run.report import MINUS, margin
 
-WIDTH, HEIGHT = 460, 170
+WIDTH, HEIGHT = 380, 188
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 34, 20
 """Room around the plot for numbers and for the names of events, pixels."""
 INK, LINE, GOOD, BAD = "#8a8f98", "#3f8fd6", "#2ea043", "#e5534b"
@@ -74,7 +74,7 @@ def _axes(frame: _Frame, part: Mapping[str, Any], bounds: tuple[float, float]) -
     for value in bounds:
         # A number that would cover that of the zero line is left out.
         if abs(frame.y(value) - zero) > 11:
-            words = margin(value, part["unit"]) or f"{value:+.0f}"
+            words = margin(value, part["unit"]) or f"{value:+.0f}".replace("-", MINUS)
             yield f'<text x="{LEFT - 6}" y="{frame.y(value) + 3}" text-anchor="end">{escape(words)}</text>'
     yield f'<text x="{LEFT}" y="{bottom + 13}">0 s</text>'
     yield f'<text x="{WIDTH - RIGHT}" y="{bottom + 13}" text-anchor="end">{frame.duration:.2f} s</text>'

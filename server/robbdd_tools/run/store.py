@@ -10,7 +10,7 @@ import json
 import os
 import shutil
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
@@ -35,7 +35,8 @@ class RunRecord:
     """What was run: the model, and a digest of its graph.
 
     ``path`` is the model's relative to the project's root, ``origin`` relative to the run's folder; ``version`` is that
-    of this package, ``simulator`` that of the engine.
+    of this package, ``simulator`` that of the engine. ``files`` are digests of the other files that were used, by
+    their paths relative to the run's folder.
     """
 
     path: str
@@ -44,6 +45,7 @@ class RunRecord:
     seed: int
     version: str
     simulator: str = ""
+    files: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,135 @@
+"""The files beside the graph that a run used: models of scenes and arms with what they include, users' Python code.
+
+They are found by reading, never by importing: what is chosen while it runs is not among them.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+from robbdd_tools.base.files import uri_to_path
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import ModelSource, Origin
+    from robbdd_tools.run.protocol import ExecutionSpec, Manifest
+
+FOLDERS = ("meshdir", "texturedir", "assetdir")
+"""Attributes of MJCF and URDF that name where files are looked for."""
+
+
+def digests(manifest: Manifest, folder: Path) -> dict[str, str]:
+    """Return the SHA-256 of each file that a run uses, by its path relative to the run's folder."""
+    found = dict.fromkeys(path.resolve() for path in _used(manifest))
+    return {Path(os.path.relpath(path, folder.resolve())).as_posix(): _digest(path) for path in sorted(found)}
+
+
+def changed(known: Mapping[str, str], folder: Path) -> list[Path]:
+    """Return the files of ``digests`` that are not any more what they were."""
+    paths = ((folder / name).resolve() for name in known)
+    return [path for path, digest in zip(paths, known.values(), strict=True) if _digest(path) != digest]
+
+
+def _digest(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return ""
+
+
+def _used(manifest: Manifest) -> Iterator[Path]:
+    executions = {spec.execution.iri: (spec.execution, spec.model) for spec in manifest.scenarios if spec.execution}
+    for execution, model in executions.values():
+        for source in _sources(execution):
+            if source.kind == "python":
+                yield from _modules(source.name, _folder(source.origin, model))
+            elif source.kind in ("file", "ros"):
+                yield from _with_includes(_path(source), {})
+        for name, origin in _code(execution):
+            yield from _modules(name, _folder(origin, model))
+
+
+def _sources(execution: ExecutionSpec) -> Iterator[ModelSource]:
+    if execution.scene is not None:
+        yield from execution.scene.models
+        for element in execution.scene.elements:
+            yield from element.models
+
+
+def _code(execution: ExecutionSpec) -> Iterator[tuple[str, Origin | None]]:
+    """Yield the names of users' code, ``module:attribute``, with where each is written, if that matters."""
+    if execution.implementation.kind == "python":
+        yield execution.implementation.name, execution.implementation.origin
+    for policy in execution.policies:
+        if policy.rule.kind == "python":
+            yield policy.rule.name, None
+        for observation in policy.observations:
+            yield from ((name, None) for name in (observation.entity_mapper, observation.time_extractor) if name)
+
+
+def _folder(origin: Origin | None, model: str) -> Path:
+    if origin is not None:
+        return Path(origin.file).parent
+    path = uri_to_path(model) if model.startswith("file:") else Path(model)
+    return Path() if path is None else path.parent
+
+
+def _path(source: ModelSource) -> Path:
+    path = Path(source.name).expanduser()
+    if source.kind == "ros":
+        prefixes = filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep))
+        shares = (Path(prefix) / "share" / source.package for prefix in prefixes)
+        return next((share / path for share in shares if share.is_dir()), path)
+    return path if source.origin is None else Path(source.origin.file).parent / path
+
+
+def _with_includes(path: Path, seen: dict[Path, None]) -> Iterator[Path]:
+    """Yield a model file and the files that it names: included models, meshes, pictures."""
+    if path in seen or not path.is_file():
+        return
+    seen[path] = None
+    yield path
+    try:
+        root = ElementTree.parse(path).getroot()
+    except (ElementTree.ParseError, UnicodeDecodeError, OSError):
+        return
+    places = [path.parent, *(path.parent / element.get(name, "") for element in root.iter() for name in FOLDERS)]
+    for name in (element.get("file") or element.get("filename") for element in root.iter()):
+        found = (place / name.removeprefix("file://") for place in places) if name else ()
+        yield from _with_includes(next((one for one in found if one.is_file()), path), seen)
+
+
+def _modules(name: str, folder: Path) -> Iterator[Path]:
+    """Yield the file of ``module:attribute`` in a folder, and those that it imports from there."""
+    seen: dict[Path, None] = {}
+    waiting = [name.partition(":")[0]]
+    while waiting:
+        path = _module(waiting.pop(), folder)
+        if path is None or path in seen:
+            continue
+        seen[path] = None
+        yield path
+        waiting += _imports(path)
+
+
+def _module(name: str, folder: Path) -> Path | None:
+    base = folder.joinpath(*name.split("."))
+    return next((one for one in (base.with_suffix(".py"), base / "__init__.py") if one.is_file()), None)
+
+
+def _imports(path: Path) -> Iterable[str]:
+    try:
+        module = ast.parse(path.read_bytes())
+    except (SyntaxError, ValueError, OSError):
+        return
+    for node in ast.walk(module):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)

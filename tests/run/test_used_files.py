@@ -1,0 +1,53 @@
+"""Files beside the graph that a run used."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from kit import EXAMPLES
+from robbdd_tools.cli import main
+from robbdd_tools.run.store import store_beside
+from robbdd_tools.run.used_files import changed
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The example with an arm and a behaviour of its own, in which these use further files."""
+    folder = shutil.copytree(EXAMPLES / "ownrobot", tmp_path / "cell")
+    monkeypatch.chdir(folder)
+    (folder / "helper.py").write_text("SPEED = 1.0\n", encoding="utf-8")
+    code = folder / "carrying.py"
+    future = "from __future__ import annotations\n"
+    code.write_text(code.read_text(encoding="utf-8").replace(future, f"{future}\nimport helper\n", 1), encoding="utf-8")
+    (folder / "parts").mkdir()
+    (folder / "parts" / "extra.xml").write_text(
+        '<mujoco><visual><map znear="0.01"/></visual></mujoco>\n', encoding="utf-8"
+    )
+    arm = folder / "five.xml"
+    text = arm.read_text(encoding="utf-8")
+    arm.write_text(text.replace("</mujoco>", '<include file="parts/extra.xml"/></mujoco>'), encoding="utf-8")
+    return folder
+
+
+@pytest.mark.physics
+def test_a_replay_names_the_files_that_were_changed(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "tidy.bddx", "--scenario", "by-our-code", "--first", "1"]) == 0
+    (run,) = store_beside(project / "tidy.bddx").runs()
+    known = run.record().files
+    names = {Path(name).name for name in known}
+    assert names == {"five.xml", "extra.xml", "carrying.py", "helper.py"}
+    assert changed(known, run.folder) == []
+    for name in ("helper.py", "parts/extra.xml"):
+        with (project / name).open("a", encoding="utf-8") as file:
+            file.write("\n")
+    assert main(["replay", "1"]) == 2
+    said = capsys.readouterr().err
+    assert "helper.py, parts/extra.xml were changed since the run" in said
+    assert "carrying.py" not in said
+    assert main(["replay", "1", "--force"]) == 0
+    assert "1 of 1 traces are the same" in capsys.readouterr().out
+    (project / "five.xml").unlink()
+    assert [path.name for path in changed(known, run.folder)] == ["five.xml", "helper.py", "extra.xml"]
