@@ -219,7 +219,8 @@ export class Server implements vscode.Disposable {
         documentSelector: LANGUAGES.map((language) => ({ scheme: "file", language })),
         outputChannel: this.log,
         synchronize: { fileEvents: this.files },
-        initializationOptions: { pictures: true },
+        initializationOptions: { pictures: true, replay: true },
+        markdown: { isTrusted: { enabledCommands: ["robbdd.showReplay"] } },
         initializationFailedHandler: () => false,
         errorHandler: {
           // A broken pipe is followed by the close of the connection, which is where the decision is made.

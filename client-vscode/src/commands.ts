@@ -9,6 +9,7 @@ import { modelFor, openModel } from "./models";
 import { newProject } from "./projects";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
+import { isRecord } from "./values";
 import type { TestingView } from "./testing/view";
 
 /** What shows something of a model beside its text. */
@@ -34,6 +35,7 @@ export function registerCommands(
       withModel(target, (uri) => {
         graphs.open(vscode.Uri.parse(uri));
       }),
+    "robbdd.replayTest": (target) => replayTest(replays, tests, target),
     "robbdd.importResults": (target) => tests.importResults(target instanceof vscode.Uri ? target : undefined),
     "robbdd.showReplay": (target) =>
       recordingOf(target) === undefined ? withModel(target, (uri) => replays.choose(uri)) : replays.open(target),
@@ -57,6 +59,17 @@ async function withModel(target: unknown, task: (uri: string) => unknown): Promi
   if (uri !== undefined) {
     await task(uri.toString());
   }
+}
+
+/** Replay what a menu of the Testing view names: a test, or a message with the test that it is about. */
+async function replayTest(replays: ReplayView, tests: TestingView, target: unknown): Promise<void> {
+  const test = isRecord(target) && "test" in target ? target["test"] : target;
+  const recording = tests.recording(test as vscode.TestItem);
+  if (recording === undefined) {
+    void vscode.window.showInformationMessage("A story is not executed by itself: replay one of its scenarios.");
+    return;
+  }
+  await replays.open(recording);
 }
 
 async function chooseAction(): Promise<void> {

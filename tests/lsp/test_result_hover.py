@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import sys
@@ -9,6 +10,7 @@ from base64 import b64decode
 from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any, cast
+from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import pytest
@@ -17,7 +19,7 @@ from lsprotocol import types
 from pytest_lsp import client_capabilities, make_test_lsp_client
 
 from kit import EXAMPLES
-from lsp_kit import Editor
+from lsp_kit import Editor, plain
 from robbdd_tools.base.files import path_to_uri
 
 PICTURE = re.compile(r"!\[([^]]*)\]\(data:([^;]*);base64,([^)]*)\)")
@@ -37,7 +39,7 @@ async def pictured(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncItera
         types.InitializeParams(
             capabilities=client_capabilities("visual-studio-code"),
             workspace_folders=[types.WorkspaceFolder(uri=path_to_uri(tmp_path), name="test")],
-            initialization_options={"pictures": cast(bool, getattr(request, "param", True))},
+            initialization_options=dict.fromkeys(("pictures", "replay"), cast(bool, getattr(request, "param", True))),
         )
     )
     editor = Editor(client, tmp_path)
@@ -74,11 +76,26 @@ async def test_a_violated_clause_shows_its_moment_and_its_margin_over_time(pictu
 
 
 @pytest.mark.physics
+async def test_a_result_leads_to_its_replay(pictured: Editor) -> None:
+    (link,) = re.findall(r"\[Replay\]\(command:robbdd\.showReplay\?([^)]*)\)", await hover(pictured, "at-goal: holds"))
+    (target,) = json.loads(unquote(link))
+    assert target.pop("clause").endswith("/at-goal")
+    assert target == {"uri": pictured.uri, "run": 1, "index": 0}
+    document = types.TextDocumentIdentifier(uri=pictured.uri)
+    lenses = await pictured.client.text_document_code_lens_async(types.CodeLensParams(text_document=document))
+    commands = {lens.command.title: lens.command for lens in lenses or () if lens.command is not None}
+    (target,) = plain(commands["Replay"].arguments)
+    assert target["uri"] == pictured.uri
+    assert target["variant"].endswith("/part-to-bin")
+
+
+@pytest.mark.physics
 @pytest.mark.parametrize("pictured", [False], indirect=True)
 async def test_a_client_without_pictures_gets_words(pictured: Editor) -> None:
     shown = await hover(pictured, "at-goal: holds")
     assert "✗ −" in shown
     assert "![" not in shown
+    assert "command:" not in shown
 
 
 @pytest.mark.physics

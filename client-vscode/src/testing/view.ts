@@ -1,6 +1,7 @@
 // The Testing view: the tree of tests, its profiles, and the runs of the server, whoever began them.
 import * as vscode from "vscode";
 import type { Server } from "../client";
+import type { Recording } from "../panels/replay/messages";
 import type { RunMessage, RunNotification } from "../runs/messages";
 import type { RunMonitor } from "../runs/monitor";
 import { RunFollower, type Sink } from "./follower";
@@ -80,6 +81,21 @@ export class TestingView implements vscode.Disposable {
       await this.restore();
     }
     await this.showVisible();
+  }
+
+  /** What is recorded of a test, for a replay: of a scenario, of the one around a clause, or of a variant's. */
+  recording(item: vscode.TestItem): (Recording & { readonly clause?: string }) | undefined {
+    const facts = this.tree.about(item);
+    if (facts?.variant === undefined) {
+      return undefined;
+    }
+    const { uri, variant, number, clause } = facts;
+    return {
+      uri,
+      variant,
+      ...(number === undefined ? {} : { variation: number }),
+      ...(clause === undefined ? {} : { clause }),
+    };
   }
 
   /** Show the results that a file holds, which `robbdd run` wrote here or in CI. */

@@ -24,7 +24,7 @@ const play = button("▶", "Play or pause (Space)", () => {
 });
 const violation = button("To the violation", "Go to the violation of the chosen clause, else of the first (V)", toViolation);
 const home = button("⌂", "Look at the whole scene (H)", () => stage?.look());
-const names = button("Names", "Show or hide the names in the scene (N)", toggleNames);
+const names = button("Aa", "Show or hide the names in the scene (N)", toggleNames);
 const slider = element("input", { type: "range", min: 0, step: 0.01, "aria-label": "Time", class: "slider" });
 const speed = element("select", { title: "Speed", "aria-label": "Speed" });
 

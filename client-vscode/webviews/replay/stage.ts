@@ -125,7 +125,8 @@ export class Stage {
       const edges = new EdgesGeometry(new BoxGeometry(...doubled(half)));
       const box = new LineSegments(edges, new LineBasicMaterial({ color: WORKSPACE, transparent: true, opacity: 0.8 }));
       carrier.add(placed(box, center));
-      this.label(local(name), carrier, [center[0], center[1], center[2] + half[2]], "workspace");
+      // At a corner: in the middle lies what is in it.
+      this.label(local(name), carrier, [center[0] - half[0], center[1] - half[1], center[2] + half[2]], "workspace");
     }
   }
 

@@ -17,6 +17,7 @@ from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.gherkin.files import write_features
 from robbdd_tools.gherkin.skeleton import add_steps, free_patterns, steps_file
 from robbdd_tools.lsp.convert import document_of
+from robbdd_tools.lsp.result_hover import REPLAY
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan
 from robbdd_tools.lsp.runs import cancel_run, start_run
 from robbdd_tools.lsp.server import RobbddServer
@@ -116,6 +117,9 @@ def _lenses(ls: RobbddServer, snapshot: Snapshot, variant: PlacedVariant) -> Ite
     if rate is not None and rate.passed < rate.run:
         yield _command(f"Rerun {rate.run - rate.passed} failed", RERUN, variant)
     yield _command("Record", RECORD, variant)
+    if ls.shows_replays and rate is not None:
+        target = {"uri": variant.definition.uri, "variant": variant.iri}
+        yield types.Command(title="Replay", command=REPLAY, arguments=[target])
     yield _command("Generate Gherkin", GHERKIN, variant)
     number = number_of_scenarios(variant)
     # A lens without a command is but a text.

@@ -52,7 +52,9 @@ def _register_documents(server: RobbddServer) -> None:
     @server.feature(types.INITIALIZE)
     def initialize(ls: RobbddServer, params: types.InitializeParams) -> None:
         wanted = params.initialization_options
-        ls.shows_pictures = isinstance(wanted, dict) and cast("dict[str, object]", wanted).get("pictures") is True
+        able = cast("dict[str, object]", wanted) if isinstance(wanted, dict) else {}
+        ls.shows_pictures = able.get("pictures") is True
+        ls.shows_replays = able.get("replay") is True
 
     @server.feature(types.INITIALIZED)
     async def initialized(ls: RobbddServer, _: types.InitializedParams) -> None:

@@ -14,7 +14,7 @@ from robbdd_tools.features.hover import Hover, hover
 from robbdd_tools.features.scenario_hints import scenario_hints
 from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.lsp.convert import document_of, markup
-from robbdd_tools.lsp.result_hover import pictures_of
+from robbdd_tools.lsp.result_hover import pictures_of, replay_link
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
 
@@ -74,11 +74,12 @@ def _register_hover(server: RobbddServer) -> None:
             return None
         found, place = answer
         markdown = found.markdown
-        if ls.shows_pictures and found.judged is not None:
-            pictures = await asyncio.to_thread(pictures_of, ls.stores, found.judged)
+        if found.judged is not None:
+            link = replay_link(found.judged) if ls.shows_replays else ""
+            pictures = await asyncio.to_thread(pictures_of, ls.stores, found.judged) if ls.shows_pictures else ""
             # Hovers are low: what is to be seen stands right below the title.
             title, _, rest = markdown.partition("\n\n")
-            markdown = "\n\n".join(filter(None, (title, pictures, rest)))
+            markdown = "\n\n".join(filter(None, (title, link, pictures, rest)))
         client = ls.client_capabilities.text_document
         formats = client.hover.content_format if client is not None and client.hover is not None else None
         return types.Hover(contents=markup(markdown, formats), range=place)

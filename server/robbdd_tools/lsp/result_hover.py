@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import logging
 from base64 import b64encode
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
+from urllib.parse import quote
 
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.run.pictures import NoPictures, render_thumbnails
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.stores import Stores
     from robbdd_tools.run.store import RunStore, StoredRun
 
+REPLAY = "robbdd.showReplay"
+"""A command of clients that say that they have it."""
 THUMBNAILS = "thumbnails"
 LARGEST = 60_000
 """Bytes of a picture within a text, of which clients read a hundred thousand letters."""
@@ -40,6 +44,16 @@ def pictures_of(stores: Stores, judged: Judged) -> str:
     if kept.get("scenario") != [scenario.variant, scenario.variation]:
         return ""
     return " ".join(_shown(run, scenario.index, judgement.line, plot(kept, judgement.line)))
+
+
+def replay_link(judged: Judged) -> str:
+    """Return a link, in Markdown, that replays a result's execution; nothing where no stored run is known."""
+    scenario, judgement = judged
+    if not scenario.run:
+        return ""
+    clause = next((iri for iri, found in scenario.clauses.items() if found is judgement), None)
+    target = {"uri": scenario.model, "run": scenario.run, "index": scenario.index, "clause": clause}
+    return f"[Replay](command:{REPLAY}?{quote(json.dumps([target]))})"
 
 
 def _run_of(store: RunStore, scenario: JudgedScenario) -> StoredRun:

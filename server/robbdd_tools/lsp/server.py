@@ -63,6 +63,8 @@ class RobbddServer(LanguageServer):
         self.stores = Stores()
         self.shows_pictures = False
         """Whether the client shows pictures in Markdown."""
+        self.shows_replays = False
+        """Whether the client has the command ``robbdd.showReplay``, in links of Markdown too."""
         self._shapes: dict[str, tuple[Diagnostic, ...]] = {}
         self._shaped_texts: dict[str, dict[str, str]] = {}
         self._requested_texts: dict[str, dict[str, str]] = {}

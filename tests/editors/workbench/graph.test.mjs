@@ -119,6 +119,7 @@ step("it can be read in a dark and in a light theme", async () => {
 step("a page that was hidden shows what it showed before", async () => {
   await page.getByRole("button", { name: "Larger" }).click();
   const before = await place();
+  await workbench.page.locator(".tab", { hasText: "Graph heights.bdd" }).click();
   await workbench.openFile("tworobots/cell.scene");
   await workbench.page.locator("iframe.webview.ready").waitFor({ state: "hidden" });
   await workbench.command("View: Close Editor");
