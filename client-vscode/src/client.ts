@@ -236,6 +236,8 @@ export class Server implements vscode.Disposable {
           },
         },
         middleware: {
+          provideCompletionItem: async (document, position, context, token, next) =>
+            withoutSnippets(await next(document, position, context, token)),
           executeCommand: (name, [argument]: unknown[]) => this.execute(name, argument),
         },
         // Python's logging writes everything to stderr; that alone does not make a line an error.
@@ -338,4 +340,18 @@ function forwardLines(input: Readable, channel: vscode.LogOutputChannel): void {
   createInterface({ input }).on("line", (line) => {
     channel.info(line);
   });
+}
+
+/** Leaves out the server's snippets: the extension has the same ones, and offers them while there is no server, too. */
+function withoutSnippets<Found extends vscode.CompletionItem[] | vscode.CompletionList>(
+  found: Found | null | undefined,
+): Found | vscode.CompletionItem[] | null | undefined {
+  const isKept = ({ kind }: vscode.CompletionItem) => kind !== vscode.CompletionItemKind.Snippet;
+  if (Array.isArray(found)) {
+    return found.filter(isKept);
+  }
+  if (found) {
+    found.items = found.items.filter(isKept);
+  }
+  return found;
 }

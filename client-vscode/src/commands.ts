@@ -28,6 +28,8 @@ export function registerCommands(
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
     "robbdd.runFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri })),
+    "robbdd.rerunFailedOfFile": (target) => withModel(target, (uri) => server.execute("robbdd.rerunFailed", { uri })),
+    "robbdd.recordFile": (target) => withModel(target, (uri) => server.execute("robbdd.record", { uri })),
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
     "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
     "robbdd.previewGherkin": (target) => withModel(target, (uri) => previews.open(vscode.Uri.parse(uri))),

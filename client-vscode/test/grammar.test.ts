@@ -1,5 +1,5 @@
 import assert from "node:assert/strict";
-import { readFileSync, readdirSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { createRequire } from "node:module";
 import { basename, extname, join } from "node:path";
 import { test } from "node:test";
@@ -267,8 +267,12 @@ for (const folder of [join(process.cwd(), "test", "samples"), join(process.cwd()
 
 for (const [kind, scope] of Object.entries(SCOPES)) {
   test(`every word of the snippets for .${kind} has a colour`, async () => {
-    const text = readFileSync(join(process.cwd(), "snippets", `${kind}.json`), "utf8");
-    const snippets = Object.values(JSON.parse(text) as Record<string, { body: string | string[] }>);
+    const snippets = ["snippets", "snippets/declarations"]
+      .map((folder) => join(process.cwd(), folder, `${kind}.json`))
+      .filter((file) => existsSync(file))
+      .flatMap((file) =>
+        Object.values(JSON.parse(readFileSync(file, "utf8")) as Record<string, { body: string | string[] }>),
+      );
     assert.ok(snippets.length > 0);
     for (const { body } of snippets) {
       assert.deepEqual(await plainWords(scope, expand([body].flat().join("\n"))), []);

@@ -1,10 +1,12 @@
 """Completion offers what the grammar accepts at the cursor, by kind and scope of names."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from kit import MODEL, SCENE, fixture
+from kit import MODEL, ROOT, SCENE, fixture
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import Completion, complete
@@ -150,6 +152,15 @@ def test_every_declaration_has_a_snippet_that_parses(language: str) -> None:
     for snippet in declaration_snippets(language):
         assert parse_declaration(language, snippet.plain).faults == ()
         assert lay_out(snippet.plain) == snippet.plain + "\n"
+
+
+def test_the_extensions_snippets_of_declarations_are_the_servers(tmp_path: Path) -> None:
+    script = ROOT / "client-vscode" / "scripts" / "snippets.py"
+    subprocess.run([sys.executable, str(script), str(tmp_path)], check=True)
+    written = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
+    folder = ROOT / "client-vscode" / "snippets" / "declarations"
+    shipped = {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
+    assert shipped == written, f"the grammar has changed: run {script.relative_to(ROOT)}"
 
 
 def test_a_name_of_a_file_that_is_not_imported_brings_its_import() -> None:

@@ -13,7 +13,7 @@ from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
 from kit import schema_errors
 from lsp_kit import CLIENTS, PATIENCE, Editor, plain
-from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.cli import main
 
 LAMP = "            and\n            'the lamp is green' after <evt-end>\n        )"
@@ -173,6 +173,20 @@ async def test_a_failed_scenario_is_run_again_alone_and_others_keep_their_result
     assert f"{answer['holds']}/2 passed" in [command.title for command in await lenses(editor)]
     repeated = await execute(editor, "rerunFailed")
     assert repeated.get("total", 0) == failed
+
+
+@pytest.mark.physics
+async def test_the_lens_record_runs_a_scenario_and_pictures_what_it_violates(editor: Editor, tmp_path: Path) -> None:
+    editor.open(short(editor).replace("after <evt-pick-end>", "after <evt-place-end>", 1))
+    await editor.diagnostics("unused-event")
+    command = next(command for command in await lenses(editor) if command.title == "Record")
+    params = types.ExecuteCommandParams(command=command.command, arguments=command.arguments)
+    answer: Any = await editor.client.workspace_execute_command_async(params)
+    assert (answer["total"], answer["violated"]) == (1, 1)
+    pictures = [path for uri in answer["pictures"] if (path := uri_to_path(uri)) is not None]
+    assert pictures
+    assert all(path.is_relative_to(tmp_path) for path in pictures)
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in pictures)
 
 
 @pytest.mark.physics
