@@ -56,6 +56,15 @@ def model(folder: Path, weight: float | None = None) -> Path:
     return path
 
 
+def test_the_summary_counts_an_execution_once(tmp_path: Path) -> None:
+    model(tmp_path)
+    last = robbdd(tmp_path, "run", "m.bdd").stdout.splitlines()[-1]
+    assert last.startswith("3 scenarios: 3 hold, 0 violated, 0 unknown")
+    assert "judged from 1 execution" in last
+    simulated = float(last.partition("; ")[2].partition(" s simulated")[0])
+    assert simulated < 15
+
+
 def run(folder: Path, *arguments: str) -> list[dict[str, Any]]:
     robbdd(folder, "run", "m.bdd", "--json", "out.json", *arguments)
     document = json.loads((folder / "out.json").read_text(encoding="utf-8"))

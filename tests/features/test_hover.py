@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kit import MODEL, SCENE, fixture
+from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE, fixture
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.describe import describe_path, describe_words
 from robbdd_tools.features.hover import hover
@@ -117,3 +117,14 @@ def test_completions_are_explained_by_path_and_by_words() -> None:
     assert describe_path(case.snapshot, case.uri, "gone") is None
     assert load_catalog().predicates["located-at"].doc in (describe_words("is located at") or "")
     assert describe_words("Scenario") is None
+
+
+def test_a_node_of_a_behaviour_tree_tells_what_it_does_and_what_is_linked_to_it() -> None:
+    tree = "Behaviour Tree (ns=t) handling { sequence who$0le { node pick node place } }\n"
+    link = "places at <goal>\n            node: <handling.whole>\n        }"
+    text = EVENTS + tree + TEMPLATE.replace("places at <goal>\n        }", link) + STORY
+    assert shown(text).splitlines()[2:5] == [
+        "Executes `pick`, `place`, one after the other, until one fails.",
+        "",
+        "`carry`: <robot> picks <part> and places it at <goal>",
+    ]

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from gherkin_kit import model_of
 from kit import EVENTS
+from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.gherkin.files import whole_plan
-from robbdd_tools.run.prepare import lay_out
+from robbdd_tools.graph.model import Execution, Iri
+from robbdd_tools.run.prepare import RunRequest, lay_out, prepare
 from robbdd_tools.run.protocol import ScenarioSpec, read_manifest
 
 TREE = "Behaviour Tree (ns=t) handling { sequence whole { node pick node place } }\n"
@@ -112,3 +115,29 @@ def test_events_are_those_of_the_nodes(tmp_path: Path) -> None:
     assert (both["t:start"], both["t:end"]) == ("scenario-start", "scenario-end")
     assert both["t:take-end"] == end
     assert both["t:both-end"] == "https://example.org/t/node-handling.whole end"
+
+
+def test_executions_of_one_setting_go_together(tmp_path: Path) -> None:
+    one = {"robot": PANDA, "part": "<parts.nut>"}
+    model = model_of(EVENTS + TREE + TEMPLATES + story("take", **one) + story("put", **one, goal="<places.tray_ws>"))
+    take, put = (story.variants[0].iri for story in model.stories)
+    builtin = Implementation("t:builtin", "catalog", "pick-place")
+    executions = tuple(
+        Execution(Iri(f"https://example.org/t/{name}"), variant, builtin, seed=seed, repeat=2)
+        for name, variant, seed in (("a", take, None), ("b", put, None), ("c", put, 7))
+    )
+    model = replace(model, executions=executions)
+    found = list(prepare(RunRequest(model, "main.bdd"), tmp_path).scenarios)
+    assert list(read_manifest(tmp_path).scenarios) == found
+    together: dict[str, list[str]] = {}
+    for spec in found:
+        assert spec.tree is not None
+        assert spec.execution is not None
+        together.setdefault(spec.tree.name, []).append(f"{spec.execution.name} {spec.repetition}")
+    # The first one is that of the scenarios as they are, without a ``.bddx``.
+    assert together == {
+        "t:handling 2": ["t:a 1", "t:b 1"],
+        "t:handling 2.2": ["t:a 2", "t:b 2"],
+        "t:handling 3": ["t:c 1"],
+        "t:handling 3.2": ["t:c 2"],
+    }

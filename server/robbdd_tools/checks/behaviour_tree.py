@@ -21,7 +21,7 @@ CODE = "behaviour-tree"
 
 
 @dataclass(frozen=True, slots=True)
-class _Link:
+class Link:
     """A behaviour that is linked to a node, told by its document and path, and the reference's place."""
 
     node: tuple[str, str]
@@ -33,8 +33,7 @@ class _Link:
 
 def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Look at the trees of a file, with what its importers link to them, and at the links of the file."""
-    own = list(_links(file))
-    for link in own:
+    for link in links_in(file):
         if link.is_repeated:
             message = (
                 "one node cannot execute a behaviour that is repeated for all elements of a set: "
@@ -48,15 +47,14 @@ def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
     ]
     if not trees:
         return
-    others = (snapshot.file(uri) for uri in snapshot.importers(file.document.uri))
-    links = [*own, *(link for other in others if other is not None for link in _links(other))]
+    links = list(links_to(snapshot, file))
     for declared, offset in trees:
         yield from _leaves(file.document.uri, declared, offset, links)
 
 
-def _leaves(uri: str, declared: tree.BehaviourTree, offset: int, links: list[_Link]) -> Iterator[Diagnostic]:
+def _leaves(uri: str, declared: tree.BehaviourTree, offset: int, links: list[Link]) -> Iterator[Diagnostic]:
     name = declared.name.text
-    linked: dict[str, list[_Link]] = {}
+    linked: dict[str, list[Link]] = {}
     for link in links:
         if link.node[0] == uri and link.node[1].startswith(f"{name}."):
             linked.setdefault(link.node[1], []).append(link)
@@ -79,14 +77,21 @@ def _leaves(uri: str, declared: tree.BehaviourTree, offset: int, links: list[_Li
             yield Diagnostic(uri, span, Severity.ERROR, CODE, message, related)
 
 
-def _links(file: FileAnalysis) -> Iterator[_Link]:
+def links_to(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Link]:
+    """Yield the links to nodes of a file's trees, and others, from the file itself and those that import it."""
+    for uri in (file.document.uri, *snapshot.importers(file.document.uri)):
+        other = snapshot.file(uri)
+        yield from () if other is None else links_in(other)
+
+
+def links_in(file: FileAnalysis) -> Iterator[Link]:
     """Yield the links of a file to nodes, in the order of the text."""
     for placed in file.declarations:
         for use, node, is_repeated in _linked_uses(placed.declaration):
             target = placed.targets.get(node)
             if target is not None:
                 span = node.span.shifted(placed.offset)
-                yield _Link((target.uri, target.symbol.path), use, file.document.uri, span, is_repeated)
+                yield Link((target.uri, target.symbol.path), use, file.document.uri, span, is_repeated)
 
 
 @kept_with_key

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -91,13 +91,15 @@ class Display:
         shown = self._results.scenarios if self._total == len(self._results.scenarios) else finished
         outcomes = [scenario.verdict for scenario in shown]
         counts = [f"{outcomes.count(outcome)} {_word(outcome)}" for outcome in Outcome]
-        simulated = sum(scenario.finished.simulated for scenario in finished if scenario.finished)
+        executions = _executions(finished)
+        shared = "" if len(executions) == len(finished) else f"; judged from {_counted(len(executions), 'execution')}"
+        simulated = sum(scenario.finished.simulated for scenario in executions if scenario.finished)
         wall = sum(scenario.finished.wall for scenario in finished if scenario.finished)
-        resampled = sum(scenario.finished.resampled for scenario in finished if scenario.finished)
+        resampled = sum(scenario.finished.resampled for scenario in executions if scenario.finished)
         again = f"; {_counted(resampled, 'initial place')} drawn again" if resampled else ""
         self._console.print(
             f"{_counted(self._total, 'scenario')}: {', '.join(counts)}"
-            f"  (seed {self._results.manifest.seed}; {simulated:.1f} s simulated in {wall:.1f} s{again})"
+            f"  (seed {self._results.manifest.seed}; {simulated:.1f} s simulated in {wall:.1f} s{shared}{again})"
         )
 
     def _counts(self) -> str:
@@ -123,6 +125,17 @@ class Display:
         width = max((len(sentence) for _, sentence in rows), default=0)
         for judged, sentence in rows:
             self._console.print(_clause_line(judged, sentence, width))
+
+
+def _executions(finished: Iterable[ScenarioResult]) -> list[ScenarioResult]:
+    """Leave one of the scenarios that share an execution: that which went furthest in it."""
+    furthest: dict[int | str, ScenarioResult] = {}
+    for number, scenario in enumerate(finished):
+        key = number if scenario.spec.tree is None else scenario.spec.tree.name
+        known = furthest.setdefault(key, scenario)
+        if known.finished and scenario.finished and scenario.finished.simulated > known.finished.simulated:
+            furthest[key] = scenario
+    return list(furthest.values())
 
 
 def _clause_line(judged: ClauseJudged, sentence: str, width: int) -> Text:

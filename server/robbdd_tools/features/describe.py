@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.features.clause_results import clause_hints, pass_rate
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.variants import PlacedVariant
 
+_ENDS = {"sequence": "fails", "selector": "succeeds"}
+"""Kind of a behaviour tree's composite → what its parts must do for it to be over."""
 MOST_LISTED = 8
 """Members or results that are listed one by one."""
 
@@ -104,6 +107,8 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
             for scenario in scenarios(site):
                 if site.span(scenario.variant.name) == definition.span:
                     yield _count(scenario)
+        case SymbolKind.TREE_NODE:
+            yield from _tree_node(site, definition)
         case SymbolKind.TEMPLATE:
             for scenario in variants_of(site.snapshot, definition):
                 yield f"`{scenario.variant.name.text}`: {_count(scenario)}"
@@ -131,6 +136,17 @@ def _clause(site: Site, definition: Definition) -> Iterator[str]:
             if isinstance(node, tree.Fluent):
                 yield time_meaning(node.time)
             return
+
+
+def _tree_node(site: Site, definition: Definition) -> Iterator[str]:
+    """Yield what a node of a behaviour tree does, and the behaviours that are linked to it."""
+    for node in walk(site.tree) if site.tree is not None else ():
+        if isinstance(node, tree.TreeComposite) and site.span(node.name) == definition.span:
+            parts = ", ".join(f"`{part.name.text}`" for part in node.nodes)
+            yield f"Executes {parts}, one after the other, until one {_ENDS[node.kind]}."
+    for link in links_to(site.snapshot, site.file):
+        if link.node == (definition.uri, definition.symbol.path):
+            yield f"`{link.behaviour.name.text}`: {clause_sentence(link.behaviour)}"
 
 
 def _count(scenario: Scenario) -> str:
