@@ -38,6 +38,7 @@ export class Server implements vscode.Disposable {
   private client: LanguageClient | undefined;
   private lookup: Lookup | undefined;
   private state: ServerState = { kind: "stopped" };
+  private begun = false;
   /** Starts and stops one after the other, however fast they are asked for. */
   private pending: Promise<void> = Promise.resolve();
   private readonly files = vscode.workspace.createFileSystemWatcher(FILES);
@@ -49,8 +50,14 @@ export class Server implements vscode.Disposable {
     private readonly onState: (state: ServerState) => void,
   ) {}
 
+  /** Look for the server and start it, unless that was done before: nothing runs until something needs it. */
+  begin(): Promise<void> {
+    return this.begun ? this.pending : this.restart();
+  }
+
   /** Stop the server if there is one, look for it again and start it. */
   restart(): Promise<void> {
+    this.begun = true;
     return this.enqueue(async () => {
       await this.shutDown();
       const lookup = await this.find();
@@ -66,6 +73,9 @@ export class Server implements vscode.Disposable {
 
   /** Restart only if the search would end elsewhere than the last time. */
   async restartIfMoved(): Promise<void> {
+    if (!this.begun) {
+      return;
+    }
     const lookup = await this.find();
     if (JSON.stringify(lookup) !== JSON.stringify(this.lookup)) {
       await this.restart();
@@ -99,7 +109,7 @@ export class Server implements vscode.Disposable {
 
   /** Whether a server runs once what is under way has ended; if none does, the user is asked what to do. */
   async ready(): Promise<boolean> {
-    await this.pending;
+    await this.begin();
     if (this.state.kind === "missing") {
       const modal = { modal: true, detail: "It takes a minute or two and needs the network." };
       const message = "This needs the RobBDD language server, which is not installed.";

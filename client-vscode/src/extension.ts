@@ -1,6 +1,6 @@
 // Entry point: creates the parts and connects them.
 import * as vscode from "vscode";
-import { Server } from "./client";
+import { LANGUAGES, Server } from "./client";
 import { registerCommands } from "./commands";
 import { noticeModels } from "./milestones";
 import { GraphView } from "./panels/graph/view";
@@ -47,7 +47,12 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     ...registerCommands(started, runs, { previews, graphs, replays, tests }, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
-        void started.restart();
+        void started.restartIfMoved();
+      }
+    }),
+    vscode.workspace.onDidOpenTextDocument((document) => {
+      if (LANGUAGES.includes(document.languageId)) {
+        void started.begin();
       }
     }),
     vscode.workspace.onDidGrantWorkspaceTrust(() => {
@@ -57,7 +62,10 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
       void started.restartIfMoved();
     }),
   );
-  await started.restart();
+  // A folder with models is no reason to work: one that is shown is, and the Testing view when it is opened.
+  if (vscode.workspace.textDocuments.some(({ languageId }) => LANGUAGES.includes(languageId))) {
+    await started.begin();
+  }
   const interpreter = await onInterpreterChange(() => void started.restartIfMoved(), log);
   if (interpreter !== undefined) {
     context.subscriptions.push(interpreter);

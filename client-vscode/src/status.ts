@@ -11,12 +11,13 @@ export class StatusItem implements vscode.Disposable {
   constructor() {
     this.item.name = "RobBDD";
     this.render();
-    this.item.show();
   }
 
+  /** From the server's first state on there is something to show. */
   showServer(state: ServerState): void {
     this.server = state;
     this.render();
+    this.item.show();
   }
 
   showRuns(runs: readonly RunProgress[], summary: string): void {

@@ -209,7 +209,7 @@ export class TestTree<I extends Item<I>> {
     }
     this.facts.set(item, facts);
     item.label = labelOf(listed);
-    item.description = described(this.notes.get(item) ?? "", listed.detail);
+    item.description = described(this.notes.get(item) ?? "", facts.detail);
     item.sortText = sortOf(listed, position);
     item.canResolveChildren = listed.kind === "variant";
     this.factory.setPlace(item, facts.place ?? (listed.kind === "scenario" ? (owner?.variation ?? null) : null));
@@ -246,7 +246,7 @@ function factsOf(uri: string, owner: Facts | undefined, listed: ListedTest): Fac
   const common = { kind: listed.kind, uri, place: listed.place, detail: listed.detail };
   switch (listed.kind) {
     case "story":
-      return common;
+      return { ...common, detail: described(decodeURIComponent(uri.split("/").at(-1) ?? ""), listed.detail) };
     case "variant": {
       const count = listed.count ?? undefined;
       const small = count !== undefined && count <= EAGER;

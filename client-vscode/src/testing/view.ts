@@ -160,6 +160,7 @@ export class TestingView implements vscode.Disposable {
 
   private async resolve(item: vscode.TestItem | undefined): Promise<void> {
     if (item === undefined) {
+      await this.server.begin();
       this.watch();
     }
     await this.tree.expand(item);

@@ -1,15 +1,19 @@
 // The Testing view: its tree, runs begun in it and elsewhere, a failing clause, running again, cancelling, runs on save.
 import assert from "node:assert/strict";
-import { readFile, writeFile } from "node:fs/promises";
-import { join } from "node:path";
+import { execFile } from "node:child_process";
+import { readFile, rename, rm, writeFile } from "node:fs/promises";
+import { dirname, join } from "node:path";
 import { after, before, test } from "node:test";
+import { promisify } from "node:util";
 import { EXAMPLES, LANGUAGE_SERVER, required } from "./harness/checkout.mjs";
 import { Session } from "./harness/session.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "pickplace.bdd";
-/** A clause of it says that the part is where it was: that does not hold once it is in the bin. */
+/** A clause of it says that the part is in the bin before it was picked. */
 const FAILING_FILE = "failing.bdd";
+const RESULTS = "ci-results.xml";
+const BROKEN_RESULTS = "ci-broken.json";
 const RUN_LIMIT = 3 * 60_000;
 /** What a user may wait for a cancelled run, ms: half a second, and what this driver takes to look. */
 const CANCEL_LIMIT = 1500;
@@ -41,6 +45,10 @@ before(async () => {
     prepare: async (workspace) => {
       const text = await readFile(join(workspace, FILE), "utf8");
       await writeFile(join(workspace, FAILING_FILE), failing(text));
+      // What a CI job would have left: the failing model's results. It ends with 1, as they do not hold.
+      const arguments_ = ["run", FAILING_FILE, "--no-store", "--junit", RESULTS];
+      const run = promisify(execFile)(join(dirname(server), "robbdd"), arguments_, { cwd: workspace });
+      await assert.rejects(run, { code: 1 });
     },
   });
   workbench = session.workbench;
@@ -55,9 +63,9 @@ function row(text) {
   return workbench.page.locator(".test-explorer-tree .monaco-list-row", { hasText: text });
 }
 
-/** The rows that show a state: `passed`, `failed`, `error`, `queued` or `run`. */
+/** The rows that show a state: `passed`, `failed`, `error`, `queued`, or `run` while it is being executed. */
 function rowsThat(state, text = /./) {
-  const icon = workbench.page.locator(`.codicon-testing-${state}-icon`);
+  const icon = workbench.page.locator(state === "run" ? ".computed-state.codicon-loading" : `.codicon-testing-${state}-icon`);
   return row(text).filter({ has: icon });
 }
 
@@ -76,15 +84,28 @@ async function runRow(text) {
   await row(text).first().locator(".codicon-testing-run-icon").first().click();
 }
 
-step("the view lists the stories of all files, opened or not", async () => {
-  await workbench.openFile(FILE);
-  await workbench.codeLens("Run").first().waitFor();
-  await workbench.page.locator('.activitybar .action-label[aria-label^="Testing"]').click();
+step("the view lists the stories of all files before any is opened", async () => {
+  await showView();
   await row("tidy-bench").first().waitFor();
   await row("no-bench").first().waitFor();
 });
 
+step("a file that is written, renamed or deleted changes the tree", async () => {
+  const text = (await session.text(FILE)).replace("tidy-bench", "new-bench").replaceAll("criteria/", "created/");
+  const [path, moved] = ["new.bdd", "moved.bdd"].map((name) => join(session.workspace, name));
+  await writeFile(path, text);
+  await row("new-bench").waitFor();
+  await rename(path, moved);
+  await writeFile(moved, text.replace("new-bench", "moved-bench"));
+  await row("moved-bench").waitFor();
+  await row("new-bench").waitFor({ state: "detached" });
+  await rm(moved);
+  await row("moved-bench").waitFor({ state: "detached" });
+});
+
 step("a story expands to variants, scenarios and clauses", async () => {
+  await workbench.openFile(FILE);
+  await workbench.codeLens("Run").first().waitFor();
   await expand("tidy-bench");
   await expand("part-to-bin");
   await expand("thing = cube0, goal = left_ws");
@@ -107,11 +128,115 @@ step("running a variant turns its clauses, with their margins", async () => {
   await workbench.screenshot("testing-passed");
 });
 
+step("a run begun from the code lens shows in the view too", async () => {
+  // The panel with the output of the run before covers the line of the lens.
+  await workbench.closePanel();
+  const { line } = await placeOf(FILE, "Scenario part-to-bin");
+  await workbench.goTo(line, 1);
+  await workbench.codeLens("Run").first().click();
+  await rowsThat("run", "part-to-bin").waitFor({ timeout: RUN_LIMIT });
+  await rowsThat("passed", "part-to-bin").waitFor({ timeout: RUN_LIMIT });
+});
+
+step("a failing clause shows its margin and instant where it stands, and what was expected", async () => {
+  await workbench.openFile(FAILING_FILE);
+  await expand("no-bench");
+  await expand("part-stays");
+  await runRow("part-stays");
+  await rowsThat("failed", "part-stays").waitFor({ timeout: RUN_LIMIT });
+  await expand("goal = left_ws");
+  await rowsThat("failed", /Then at-goal.*−\d.*mm.*at \d+\.\d+ s/).waitFor();
+  await rowsThat("passed", "Then in-hand").first().waitFor();
+  const { line } = await placeOf(FAILING_FILE, "at-goal");
+  await workbench.goTo(line, 1);
+  const message = workbench.page.locator(".test-message-inline-content", { hasText: /violated by −\d/ });
+  await message.first().waitFor();
+  for (const scheme of Object.keys(SCHEMES)) {
+    await workbench.changeScheme(scheme);
+    await workbench.screenshot(`testing-failed-${scheme}`);
+  }
+  await message.first().click();
+  await workbench.page.locator(".test-output-peek, .peekview-widget").first().waitFor();
+  await workbench.screenshot("testing-peek");
+  await workbench.page.keyboard.press("Escape");
+});
+
+step("only what failed is run again", async () => {
+  await workbench.command("Test: Rerun Failed Tests");
+  await rowsThat("run", "part-stays").waitFor({ timeout: RUN_LIMIT });
+  await rowsThat("failed", "part-stays").waitFor({ timeout: RUN_LIMIT });
+  assert.equal(await rowsThat("run", "tidy-bench").count(), 0);
+  await workbench.screenshot("testing-rerun");
+});
+
+step("a run that is cancelled ends at once", async () => {
+  await runRow("tidy-bench");
+  await rowsThat("run", "tidy-bench").waitFor();
+  await workbench.command("Test: Cancel Test Run");
+  const begun = Date.now();
+  await rowsThat("run").first().waitFor({ state: "detached" });
+  assert.ok(Date.now() - begun < CANCEL_LIMIT, `${Date.now() - begun} ms`);
+});
+
+step("a continuous run follows each save", async () => {
+  await row("part-stays").first().hover();
+  await row("part-stays").first().locator('[aria-label^="Turn on Continuous Run"]').click();
+  const { line, column } = await placeOf(FAILING_FILE, "before <evt-pick-start>)", "at-goal");
+  await workbench.focusEditor();
+  await workbench.goTo(line, column);
+  for (let letter = 0; letter < "before <evt-pick-start>".length; letter += 1) {
+    await workbench.page.keyboard.press("Delete");
+  }
+  await workbench.type("after <evt-place-end>");
+  await workbench.page.keyboard.press("Control+S");
+  await rowsThat("passed", "part-stays").waitFor({ timeout: RUN_LIMIT });
+  await rowsThat("passed", "Then at-goal").first().waitFor();
+  await workbench.screenshot("testing-continuous");
+});
+
+step("results of CI are imported, and a broken file says where", async () => {
+  await importFile(RESULTS);
+  await workbench.notification(`2 results of ${RESULTS} are shown`);
+  await rowsThat("failed", "part-stays").waitFor();
+  await workbench.screenshot("testing-imported");
+  await writeFile(join(session.workspace, BROKEN_RESULTS), '{\n  "scenarios": [,]\n}');
+  await importFile(BROKEN_RESULTS);
+  await workbench.notification(`${BROKEN_RESULTS}, line 2, column 17`);
+});
+
+step("after a restart the results of the session before are there", async () => {
+  await workbench.page.reload();
+  await showView();
+  await rowsThat("passed", "tidy-bench").or(rowsThat("failed", "no-bench")).first().waitFor();
+  await rowsThat("passed", "no-bench").waitFor();
+  await workbench.screenshot("testing-restored");
+});
+
+async function showView() {
+  await workbench.page.locator('.activitybar .action-label[aria-label^="Testing"]').click();
+}
+
+/** Choose a file of the workspace in the dialog of the import. */
+async function importFile(name) {
+  await workbench.command("RobBDD: Import Results");
+  const input = workbench.page.locator(".quick-input-widget .quick-input-filter input");
+  await input.fill(join(session.workspace, name));
+  await workbench.page.keyboard.press("Enter");
+}
+
+/** Line and column, from 1, of a text in a file on disk, in a line that has other words too. */
+async function placeOf(file, text, beside = "") {
+  const lines = (await session.text(file)).split("\n");
+  const line = lines.findIndex((entry) => entry.includes(text) && entry.includes(beside));
+  assert.ok(line >= 0);
+  return { line: line + 1, column: lines[line].indexOf(text) + 1 };
+}
+
 function failing(text) {
   return text
     .replace("https://example.org/robbdd/criteria/", "https://example.org/robbdd/failing/")
     .replace("tidy-bench", "no-bench")
     .replace("part-to-bin", "part-stays")
-    .replace("at-goal: holds(<thing> is located at <goal>", "at-goal: holds(<thing> is located at <source>")
+    .replace("at <goal>, after <evt-place-end>", "at <goal>, before <evt-pick-start>")
     .replace("{ <cubes.cube0>, <balls.ball0> }", "{ <cubes.cube0> }");
 }

@@ -23,7 +23,10 @@ export class GraphView implements vscode.Disposable {
   ) {
     this.subscriptions = [
       vscode.window.registerWebviewPanelSerializer(TYPE, {
-        deserializeWebviewPanel: (view, state: unknown) => this.restore(view, state),
+        deserializeWebviewPanel: async (view, state: unknown) => {
+          await server.begin();
+          await this.restore(view, state);
+        },
       }),
       vscode.workspace.onDidChangeTextDocument(({ document }) => {
         if (LANGUAGES.includes(document.languageId)) {
