@@ -52,10 +52,10 @@ test("a run reads from its start to its summary", () => {
   assert.deepEqual(lines, [
     "▶ cell/fetch.bdd: 2 scenarios, mujoco 4.0.0",
     "  Scenario 1 of 2: t:fetch -- 1  part = cube",
-    "    ✔ cube is located at bin: holds by +31 mm at 4.50 s",
+    "    ✔ cube is located at bin: holds by +31.2 mm at 4.50 s",
     "    passed after 9.00 s simulated, 0.51 s on the clock",
     "  Scenario 2 of 2: t:fetch -- 1  part = cube",
-    "    ✗ cube is located at bin: violated by −4.0 mm at 3.20 s: the bin was pushed",
+    "    ✗ cube is located at bin: violated by −4.00 mm at 3.20 s: the bin was pushed",
     "    failed after 9.00 s simulated, 0.51 s on the clock",
     "■ cell/fetch.bdd: 1 of 2 scenarios passed, 1 failed.",
     "",
@@ -77,7 +77,7 @@ test("a margin is given in a unit that reads well, and only where it has one", (
   const line = (robustness: number, unit: string) =>
     report(started(0), judged(0, "holds", { robustness, unit }), finished(0)).lines[1];
   assert.equal(line(0.9994, "m"), "    ✔ cube is located at bin: holds by +999 mm");
-  assert.equal(line(1.5, "m"), "    ✔ cube is located at bin: holds by +1500 mm");
+  assert.equal(line(1.5, "m"), "    ✔ cube is located at bin: holds by +1.50 m");
   assert.equal(line(-0.25, "m/s"), "    ✔ cube is located at bin: holds by −0.250 m/s");
   assert.equal(line(1, ""), "    ✔ cube is located at bin: holds");
 });

@@ -128,7 +128,7 @@ function margin(clause: ClauseJudged): string {
   return shown === "" ? "" : ` by ${shown}`;
 }
 
-/** The margin as the server writes it; without a unit it is but another word for the verdict: nothing. */
+/** The margin in a unit that reads well; without a unit it is but another word for the verdict: nothing. */
 export function marginOf({ robustness, unit }: Pick<ClauseJudged, "robustness" | "unit">): string {
   return robustness === null || unit === "" ? "" : signed(robustness, unit);
 }
