@@ -4,7 +4,6 @@ import { marginOf, seconds } from "../runs/report";
 /** A verdict, from a run's message or from a stored result. */
 export interface Judged {
   readonly verdict: "holds" | "violated" | "unknown";
-  readonly sentence: string;
   readonly robustness: number | null;
   readonly unit: string;
   readonly at: number | null;
@@ -44,16 +43,13 @@ export function outcomeOf(judged: Judged, values: string): Outcome {
     case "violated": {
       const instant = judged.at === null ? "" : ` at ${seconds(judged.at)}`;
       const words = `violated${margin === "" ? "" : ` by ${margin}`}${instant}`;
+      // Short, so that the editor shows both whole in one line beside the clause.
       const expected = margin === "" ? "holds" : "margin ≥ 0";
-      const actual = margin === "" ? `violated${instant}` : `margin ${margin}${instant}`;
+      const actual = margin === "" ? `violated${instant}` : `${margin}${instant}`;
       return {
         state: "failed",
         note: joined(margin, instant.trim()),
-        failure: {
-          text: `${words}${because}${where}`,
-          expected: `${judged.sentence}\n${expected}`,
-          actual: `${judged.sentence}\n${actual}${judged.reason === "" ? "" : `\n${judged.reason}`}`,
-        },
+        failure: { text: `${words}${because}${where}`, expected, actual },
       };
     }
     case "unknown":
