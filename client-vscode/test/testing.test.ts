@@ -269,11 +269,11 @@ const verdict = { robustness: -0.012, unit: "m", at: 3.2, reason: "the bin was p
 test("a violated clause fails with margin, instant and the scenario's values", () => {
   assert.deepEqual(outcomeOf({ ...verdict, verdict: "violated" }, "part = cube1"), {
     state: "failed",
-    note: "−12 mm · at 3.20 s",
+    note: "−12.0 mm · at 3.20 s",
     failure: {
-      text: "violated by −12 mm at 3.20 s: the bin was pushed [part = cube1]",
+      text: "violated by −12.0 mm at 3.20 s: the bin was pushed [part = cube1]",
       expected: "margin ≥ 0",
-      actual: "−12 mm at 3.20 s",
+      actual: "−12.0 mm at 3.20 s",
     },
   });
 });
@@ -289,7 +289,7 @@ test("an unknown clause has an error with its reason, not a failure", () => {
 
 test("a clause that could not have been violated says so though it holds", () => {
   const holds = { ...verdict, verdict: "holds", robustness: 0.031, reason: "", vacuous: "nothing ever moved" } as const;
-  assert.deepEqual(outcomeOf(holds, ""), { state: "passed", note: "+31 mm · vacuous: nothing ever moved" });
+  assert.deepEqual(outcomeOf(holds, ""), { state: "passed", note: "+31.0 mm · vacuous: nothing ever moved" });
 });
 
 const words = (name: string, position: number) => ({
@@ -338,14 +338,14 @@ test("a run turns clauses of files that nobody has opened, and ends", async () =
     "started part = cube2 / Then held",
     "passed part = cube2 / Then held 10",
     "started part = cube2 / Then placed",
-    "failed part = cube2 / Then placed violated by −20 mm at 1.00 s [part = cube2] @3",
+    "failed part = cube2 / Then placed violated by −20.0 mm at 1.00 s [part = cube2] @3",
     "end",
   ]);
   // Listing the scenarios afterwards keeps what the run found.
   const item = world.item("tidy", "fetch", "part = cube2", "Then placed");
   await world.tree.expand(world.item("tidy", "fetch"));
   assert.equal(world.item("tidy", "fetch", "part = cube2", "Then placed"), item);
-  assert.equal(item.description, "−20 mm · at 1.00 s · cube is placed");
+  assert.equal(item.description, "−20.0 mm · at 1.00 s · cube is placed");
 });
 
 const found = { uri: FILE, variant: "t:fetch", variation: 2, values: "part = cube2", seconds: null, stale: false };

@@ -149,8 +149,8 @@ step("a failing clause shows its margin and instant where it stands, and what wa
   await rowsThat("passed", "Then in-hand").first().waitFor();
   const { line } = await placeOf(FAILING_FILE, "at-goal");
   await workbench.goTo(line, 1);
-  const told = /−\d+\smm\sat\s\d+\.\d+\ss\s!=\smargin\s≥\s0/;
-  const message = workbench.page.locator(".test-message-inline-content", { hasText: told });
+  const told = /−\d+.*mm\sat\s\d+\.\d+\ss\s!=\smargin\s≥\s0/;
+  const message = workbench.page.locator(".test-error-content-widget", { hasText: told });
   await message.first().waitFor();
   for (const scheme of Object.keys(SCHEMES)) {
     await workbench.changeScheme(scheme);

@@ -21,7 +21,10 @@ export class ReplayView implements vscode.Disposable {
     private readonly extension: vscode.Uri,
   ) {
     this.serializer = vscode.window.registerWebviewPanelSerializer(TYPE, {
-      deserializeWebviewPanel: (view, state: unknown) => this.restore(view, state),
+      deserializeWebviewPanel: async (view, state: unknown) => {
+        await server.begin();
+        await this.restore(view, state);
+      },
     });
   }
 
