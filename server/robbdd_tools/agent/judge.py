@@ -14,7 +14,8 @@ from typing import Any
 
 from robbdd_tools.agent.channel import Lines
 from robbdd_tools.agent.clauses import decide, events_of, ranges
-from robbdd_tools.agent.sentences import fluents_of, read_clause, read_event
+from robbdd_tools.agent.policies import with_policies
+from robbdd_tools.agent.sentences import Clause, fluents_of, read_clause, read_event
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
@@ -114,7 +115,7 @@ def _behaviours(spec: ScenarioSpec) -> list[str]:
 
 
 def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored: ScenarioSpec) -> Verdict:
-    read, trace = read_clause(clause.sentence), evidence.trace
+    read, trace = _read(clause, spec), evidence.trace
     for fluent in fluents_of(read):
         for event in events_of(fluent.time):
             if event in spec.events and spec.events[event] != stored.events.get(event):
@@ -123,6 +124,10 @@ def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored:
             if event in spec.events and not trace.finished and trace.event_time(event) is None:
                 return unknown(f"the stored trace ends at {trace.end:.2f} s, before event {event}")
     return decide(read, trace, evidence.regions, spec.events.keys())
+
+
+def _read(clause: ClauseSpec, spec: ScenarioSpec) -> Clause:
+    return with_policies(read_clause(clause.sentence), clause.parts or (clause.iri,), spec)
 
 
 def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
