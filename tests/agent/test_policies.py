@@ -19,10 +19,11 @@ from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
 from robbdd_tools.monitor.time import After, During
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict
-from robbdd_tools.run.protocol import ExecutionSpec, ScenarioSpec
+from robbdd_tools.run.protocol import ClauseSpec, ExecutionSpec, ScenarioSpec
 
 CLAUSE = "https://x/at-goal"
 SENTENCE = f'"{CUBE}" is located at "{BIN_WS}" from "t:a" until "t:b"'
+STATED = ClauseSpec(7, CLAUSE, "at-goal", "then", SENTENCE)
 TRUTH = Provider("x:truth", "ground-truth", 100.0)
 NEAR = Rule("distance", form="less-than", bounds=(0.5,))
 
@@ -48,7 +49,7 @@ def moving(distances: list[float]) -> Trace:
 
 
 def judged(spec: ScenarioSpec, trace: Trace, sentence: str = SENTENCE) -> Verdict:
-    clause = with_policies(read_clause(sentence), (CLAUSE,), spec)
+    clause = with_policies(read_clause(sentence), STATED, spec)
     return decide(clause, trace, {}, {"t:a", "t:b"})
 
 
@@ -74,13 +75,13 @@ def test_every_form_of_a_distance_has_its_margin(form: str, bounds: tuple[float,
 def test_a_policy_replaces_the_evaluator_of_its_clause_and_of_no_other() -> None:
     spec = spec_of()
     assert judged(spec, moving([0.2])).outcome is Outcome.HOLDS
-    other = with_policies(read_clause(SENTENCE), ("https://x/other",), spec)
+    other = with_policies(read_clause(SENTENCE), replace(STATED, iri="https://x/other"), spec)
     assert decide(other, moving([0.2]), {}, {"t:a", "t:b"}).outcome is Outcome.UNKNOWN
 
 
 def test_a_part_of_a_group_has_its_policy() -> None:
     group = read_clause(f"( {SENTENCE} or not ( {SENTENCE} ) )")
-    found = with_policies(group, ("https://x/other", CLAUSE), spec_of())
+    found = with_policies(group, replace(STATED, parts=("https://x/other", CLAUSE)), spec_of())
     assert isinstance(found, Junction)
     assert [fluent.predicate.name for fluent in fluents_of(found)] == ["located-at", "x:policy"]
 
@@ -92,10 +93,10 @@ def test_free_text_is_judged_by_a_policy() -> None:
 
 
 def test_the_horizon_of_a_policy_takes_the_place_of_that_of_the_clause() -> None:
-    clause = with_policies(read_clause('the cube is near after event "t:a"'), (CLAUSE,), spec_of(horizon=2.0))
+    clause = with_policies(read_clause('the cube is near after event "t:a"'), STATED, spec_of(horizon=2.0))
     assert isinstance(clause, Fluent)
     assert clause.time == After("t:a", 2.0)
-    interval = with_policies(read_clause(SENTENCE), (CLAUSE,), spec_of(horizon=2.0))
+    interval = with_policies(read_clause(SENTENCE), STATED, spec_of(horizon=2.0))
     assert isinstance(interval, Fluent)
     assert interval.time == During("t:a", "t:b")
 
@@ -221,7 +222,7 @@ def carried() -> Execution:
 @pytest.mark.parametrize(("bound", "outcome"), [(0.15, Outcome.HOLDS), (0.001, Outcome.VIOLATED)])
 def test_in_physics_a_distance_to_the_goal_is_observed(carried: Execution, bound: float, outcome: Outcome) -> None:
     spec = spec_of(Rule("distance", form="less-than", bounds=(bound,)), targets=("t:var-thing", BIN_WS))
-    clause = with_policies(read_clause('it is near after event "t:place-end"'), (CLAUSE,), spec)
+    clause = with_policies(read_clause('it is near after event "t:place-end"'), STATED, spec)
     assert decide(clause, carried.trace, carried.regions, {"t:place-end"}).outcome is outcome
 
 
@@ -232,9 +233,22 @@ def test_in_physics_latency_and_noise_are_seen(carried: Execution) -> None:
     within = Rule("distance", form="less-than", bounds=(2.0,))
     margins: list[float] = []
     for provider in (TRUTH, replace(TRUTH, noise=0.02), replace(TRUTH, latency=0.2)):
-        clause = with_policies(read_clause(window), (CLAUSE,), spec_of(within, provider, tool))
+        clause = with_policies(read_clause(window), STATED, spec_of(within, provider, tool))
         found = decide(clause, carried.trace, carried.regions, {"t:pick-start", "t:place-end"})
         assert found.robustness is not None
         margins.append(found.robustness)
     assert np.ptp(margins[:2]) > 1e-4
     assert len(set(margins)) == 3
+
+
+def test_users_code_gets_what_fills_the_slots_and_quantified_variables_of_its_clause(tmp_path: Path) -> None:
+    (tmp_path / "own_arguments.py").write_text(
+        "import numpy as np\n\n\ndef judge(evidence, arguments):\n"
+        "    assert arguments == {'thing': 'env:bin', 'part': 'env:cube1', 'others': ['a', 'b']}, arguments\n"
+        "    return 0.3 - evidence.position(arguments['part'])[:, 0]\n"
+    )
+    arguments = {"thing": "env:bin", "part": CUBE, "others": ["a", "b"]}
+    spec = spec_of(Rule("python", "own_arguments:judge"), targets=("t:part",), model=str(tmp_path / "m.bddx"))
+    clause = with_policies(read_clause(SENTENCE), replace(STATED, arguments=(arguments,)), spec)
+    found = decide(clause, moving([0.2, 0.4]), {}, {"t:a", "t:b"})
+    assert (found.outcome, found.robustness, found.reason) == (Outcome.VIOLATED, pytest.approx(-0.1), "")

@@ -7,8 +7,11 @@ from pathlib import Path
 
 from gherkin_kit import edited, model_of
 from kit import EVENTS
+from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.gherkin.files import whole_plan
 from robbdd_tools.gherkin.render import sheet
+from robbdd_tools.graph.model import Execution, Iri
+from robbdd_tools.monitor.policy import Policy, Rule
 from robbdd_tools.run.prepare import lay_out
 from robbdd_tools.run.protocol import ScenarioSpec, read_manifest
 
@@ -72,3 +75,21 @@ def test_only_steps_that_were_written_are_to_be_judged(tmp_path: Path) -> None:
     text = QUANTIFIED.replace("<x> is located at <places.bench_ws>", "<x> is held by <arm>")
     (only,) = specs(tmp_path / "out", text, str(own))
     assert [(clause.line, clause.sentence) for clause in only.clauses] == [(2, '"env:panda" picks "env:bolt"')]
+
+
+def test_users_code_is_told_the_arguments_of_its_clause_and_no_other(tmp_path: Path) -> None:
+    placed = "holds(<x> is located at <places.bench_ws>,"
+    model = model_of(edited(placed, "holds(pred('{x} is {how}', x=<x>, how=<arm>),", QUANTIFIED))
+    (variant,) = model.stories[0].variants
+    policies = (Policy("x:p", "https://example.org/t/there", Rule("python", "m:f")),)
+    execution = Execution(Iri("x:e"), variant.iri, Implementation("x:i", "catalog", "pick"), policies=policies)
+    plan = replace(whole_plan(model), sheet=sheet("default"))
+    (only,) = list(lay_out(plan, "main.bdd", 1, tmp_path, (execution,)))
+    shared = {"arm": "env:panda", "parts": ["env:bolt", "env:nut"], "how": "env:panda"}
+    assert sorted(((one.role, one.arguments) for one in only.clauses), key=str) == [
+        ("given", ({**shared, "x": "env:bolt"},)),
+        ("given", ({**shared, "x": "env:nut"},)),
+        ("when", ()),
+        ("when", ()),
+    ]
+    assert read_manifest(tmp_path).scenarios == (only,)

@@ -127,7 +127,7 @@ def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored:
 
 
 def _read(clause: ClauseSpec, spec: ScenarioSpec) -> Clause:
-    return with_policies(read_clause(clause.sentence), clause.parts or (clause.iri,), spec)
+    return with_policies(read_clause(clause.sentence), clause, spec)
 
 
 def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,30 +14,36 @@ from robbdd_tools.agent.streams import Stream, Unobserved
 from robbdd_tools.agent.user_code import UserCodeError, called, load_attribute
 from robbdd_tools.catalog.api import Predicate
 from robbdd_tools.monitor.time import After, Before, TimeConstraint
+from robbdd_tools.run.protocol import plain_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray
     from robbdd_tools.monitor.policy import Policy, Rule
-    from robbdd_tools.run.protocol import ScenarioSpec
+    from robbdd_tools.run.protocol import ClauseSpec, ScenarioSpec
+
+NOTHING: Mapping[str, Any] = {}
 
 
-def with_policies(clause: Clause, parts: Sequence[str], spec: ScenarioSpec) -> Clause:
+def with_policies(clause: Clause, stated: ClauseSpec | None, spec: ScenarioSpec) -> Clause:
     """Return a clause whose fluents are judged by the policies of the scenario's execution, where it has any.
 
-    ``parts`` are the IRIs of the clause's fluents and texts, in order.
+    ``stated`` tells which fluents these are, in order.
     """
     policies = {} if spec.execution is None else {policy.clause: policy for policy in spec.execution.policies}
-    if not policies.keys() & set(parts):
+    parts = () if stated is None else stated.parts or (stated.iri,)
+    if stated is None or not policies.keys() & set(parts):
         return clause
-    return _attached(clause, iter(parts), policies, spec)
+    stated_parts = zip_longest(parts, stated.arguments, fillvalue=NOTHING)
+    return _attached(clause, stated_parts, policies, spec)
 
 
-def _attached(clause: Clause, parts: Iterator[str], policies: Mapping[str, Policy], spec: ScenarioSpec) -> Clause:
+def _attached(clause: Clause, parts: Iterator[Any], policies: Mapping[str, Policy], spec: ScenarioSpec) -> Clause:
     if isinstance(clause, Junction):
         return replace(clause, operands=tuple(_attached(one, parts, policies, spec) for one in clause.operands))
-    policy = policies.get(next(parts, ""))
+    part, arguments = next(parts, ("", NOTHING))
+    policy = policies.get(part)
     if policy is None:
         return clause
     if isinstance(clause, Unmatched):
@@ -46,7 +53,7 @@ def _attached(clause: Clause, parts: Iterator[str], policies: Mapping[str, Polic
         time = timed[1]
     else:
         time = clause.time
-    return Fluent(_predicate(policy, spec), {}, _with_horizon(time, policy.horizon))
+    return Fluent(_predicate(policy, spec, arguments), {}, _with_horizon(time, policy.horizon))
 
 
 def _with_horizon(time: TimeConstraint, horizon: float | None) -> TimeConstraint:
@@ -55,18 +62,22 @@ def _with_horizon(time: TimeConstraint, horizon: float | None) -> TimeConstraint
     return replace(time, horizon=horizon)
 
 
-def _predicate(policy: Policy, spec: ScenarioSpec) -> Predicate:
-    judge = Judge(policy, spec)
+def _predicate(policy: Policy, spec: ScenarioSpec, arguments: Mapping[str, Any]) -> Predicate:
+    judge = Judge(policy, spec, arguments)
     unit = "m" if policy.rule.kind == "distance" else ""
     return Predicate(policy.iri, "", "", (), "", unit, "", judge.margins)
 
 
 @dataclass(frozen=True, slots=True)
 class Judge:
-    """Judges the windows of one clause of one scenario by a policy."""
+    """Judges the windows of one clause of one scenario by a policy.
+
+    ``own`` is what the clause's slots and quantified variables stand for.
+    """
 
     policy: Policy
     spec: ScenarioSpec
+    own: Mapping[str, Any]
 
     def margins(self, evidence: Evidence, _arguments: Arguments) -> FloatArray:
         """Return the margin at each sample of a window, shape (n,).
@@ -87,14 +98,14 @@ class Judge:
         found: list[Stream] = []
         for observation in self.policy.observations:
             for target in observation.targets:
-                value: object = self.spec.values.get(target, target)
+                value: object = self.spec.values.get(target, self.own.get(plain_name(target), target))
                 if not isinstance(value, str):
                     raise Unobserved(f"what is observed must be one element, but {target} is {value}")
                 found.append(Stream(observation, value, evidence, self.spec.seed))
         return found
 
     def _by_code(self, name: str, evidence: Observed) -> FloatArray:
-        arguments = {variable.rpartition(":")[2].removeprefix("var-"): v for variable, v in self.spec.values.items()}
+        arguments = {**{plain_name(variable): value for variable, value in self.spec.values.items()}, **self.own}
         evaluate = load_attribute(name, self.spec.model)
         return _as_margins(name, called(name, lambda: evaluate(evidence, arguments)), len(evidence.times))
 

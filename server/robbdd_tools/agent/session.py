@@ -67,9 +67,9 @@ class ScenarioRun:
         self._moments = moments
         self._open = {clause.line: clause.sentence for clause in spec.clauses}
         self._doings = {line: doing for line, role, text in texts if role == "when" and (doing := read_doing(text))}
-        parts = {clause.line: clause.parts or (clause.iri,) for clause in spec.clauses}
+        known = {clause.line: clause for clause in spec.clauses}
         self._clauses = {
-            line: with_policies(read_clause(text), parts.get(line, ()), spec)
+            line: with_policies(read_clause(text), known.get(line), spec)
             for line, role, text in texts
             if role != "when"
         }

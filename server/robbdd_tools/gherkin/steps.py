@@ -34,6 +34,7 @@ class Step:
     """One step: keyword, text, and the clause that it states. ``role`` is ``given``, ``when`` or ``then``.
 
     ``parts`` are the fluents and texts of a group, in the order of the text; nothing for a clause that stands alone.
+    ``source`` is what it was written from.
     """
 
     keyword: str
@@ -41,6 +42,7 @@ class Step:
     clause: Iri
     role: str
     parts: tuple[Iri, ...] = ()
+    source: Bound | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +60,8 @@ class Placeholder:
 
 
 Filler = Cell | AnyOf | Placeholder
+Bound = tuple[Clause, Mapping[Iri, Filler]]
+"""A clause with what its variables stand for."""
 
 
 class UnknownElements(Exception):
@@ -91,11 +95,12 @@ class StepWriter:
                 case Junction(operator="and"):
                     yield from self.steps(clause.operands, values)
                 case BehaviourClause() | EventClause():
-                    yield Step("When", self.sentence(clause, values), clause.iri, "when")
+                    yield Step("When", self.sentence(clause, values), clause.iri, "when", (), (clause, values))
                 case _:
                     alone = isinstance(clause, Fluent | TextFluent | TextClause)
-                    parts = () if alone else tuple(self._parts(clause, values))
-                    yield Step(clause.role.capitalize(), self.sentence(clause, values), clause.iri, clause.role, parts)
+                    parts = () if alone else tuple(part.iri for part, _ in self.parts(clause, values))
+                    sentence, bound = self.sentence(clause, values), (clause, values)
+                    yield Step(clause.role.capitalize(), sentence, clause.iri, clause.role, parts, bound)
 
     def sentence(self, clause: Clause, values: Mapping[Iri, Filler], *, within: bool = False) -> str:
         """Return the sentence of one clause with its values; ``within`` tells that it is a part of a group."""
@@ -128,7 +133,7 @@ class StepWriter:
                     "and", [self._all_of(clause.clauses, inner) for inner in self._each(clause, values)]
                 )
 
-    def _parts(self, clause: Clause, values: Mapping[Iri, Filler]) -> Iterator[Iri]:
+    def parts(self, clause: Clause, values: Mapping[Iri, Filler]) -> Iterator[Bound]:
         """Yield the fluents and texts of a clause as often as its sentence states them."""
         match clause:
             case Junction():
@@ -138,10 +143,10 @@ class StepWriter:
             case Exists() | ForAll():
                 inner = [(part, each) for each in self._each(clause, values) for part in clause.clauses]
             case _:
-                yield clause.iri
+                yield clause, values
                 return
         for part, bound in inner:
-            yield from self._parts(part, bound)
+            yield from self.parts(part, bound)
 
     def time(self, constraint: TimeConstraint) -> str:
         """Return the words of a time constraint."""

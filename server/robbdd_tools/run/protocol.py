@@ -74,7 +74,8 @@ class ExecutionSpec:
 class ClauseSpec:
     """One clause of one scenario: the feature line of its step, the IRI it judges, its place in the scenario.
 
-    ``parts`` are the IRIs of the fluents of a group, in the order of the sentence.
+    ``parts`` are the IRIs of the fluents of a group, in the order of the sentence. ``arguments`` are, for a clause that
+    users' code judges, what fills the slots and quantified variables of each of these fluents, by name.
     """
 
     line: int
@@ -83,6 +84,7 @@ class ClauseSpec:
     role: str
     sentence: str
     parts: tuple[str, ...] = ()
+    arguments: tuple[Mapping[str, Any], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,6 +281,11 @@ def scenario_seed(seed: int, variant: str, number: int, repetition: int = 1) -> 
     """
     words = f"{seed} {variant} {number}" + (f" {repetition}" if repetition > 1 else "")
     return int.from_bytes(hashlib.sha256(words.encode()).digest()[:4], "big")
+
+
+def plain_name(curie: str) -> str:
+    """Return what users' code calls a variable: the end of its CURIE, without ``var-``."""
+    return curie.replace("/", ":").rpartition(":")[2].removeprefix("var-")
 
 
 def scenario_key(spec: ScenarioSpec) -> str:

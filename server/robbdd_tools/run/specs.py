@@ -9,6 +9,7 @@ from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.feature import ScenarioText
+from robbdd_tools.gherkin.steps import AnyOf, Bound, Filler, Placeholder, Step, StepWriter
 from robbdd_tools.gherkin.tables import elements_of
 from robbdd_tools.graph.model import (
     AcceptanceModel,
@@ -25,7 +26,15 @@ from robbdd_tools.graph.model import (
     Variant,
 )
 from robbdd_tools.monitor.policy import Observation, Policy
-from robbdd_tools.run.protocol import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec, scenario_seed
+from robbdd_tools.run.protocol import (
+    ClauseSpec,
+    ConfigSpec,
+    ExecutionSpec,
+    ScenarioSpec,
+    SceneSpec,
+    plain_name,
+    scenario_seed,
+)
 from robbdd_tools.run.related import Linked, Relations
 from robbdd_tools.run.tree_specs import TreeSpecWriter
 
@@ -70,6 +79,9 @@ class SpecWriter:
             lambda variant, values: self._scene(self._known(variant), variant.scene, values),
             lambda variant: self._known(variant).events,
         )
+        policies = () if execution is None else execution.policies
+        self._by_code = {policy.clause for policy in policies if policy.rule.kind == "python"}
+        self._steps = StepWriter(model, load_catalog())
         self.execution = None if execution is None else self._execution(execution)
 
     def _execution(self, execution: Execution) -> ExecutionSpec:
@@ -120,7 +132,7 @@ class SpecWriter:
             scene=self._scene(shared, variant.scene, scenario.values),
             events=shared.events,
             clauses=tuple(
-                ClauseSpec(line, step.clause, curie(step.clause).rsplit(":", 1)[-1], step.role, step.text, step.parts)
+                self._clause(line, step)
                 for line, step in zip(scenario.lines, scenario.steps, strict=True)
                 # A template may leave a step out; there is nothing to judge then.
                 if line
@@ -134,6 +146,26 @@ class SpecWriter:
         if shared is None:
             shared = self._variants[variant.iri] = self._shared(variant)
         return shared
+
+    def _clause(self, line: int, step: Step) -> ClauseSpec:
+        name = self._curie(step.clause).rsplit(":", 1)[-1]
+        found = ClauseSpec(line, step.clause, name, step.role, step.text, step.parts)
+        if step.source is None or not self._by_code & {step.clause, *step.parts}:
+            return found
+        return replace(found, arguments=tuple(map(self._arguments, self._steps.parts(*step.source))))
+
+    def _arguments(self, bound: Bound) -> dict[str, object]:
+        """Return by name what the variables of a clause stand for, and what fills its slots."""
+        clause, values = bound
+        slots: Mapping[str, Iri | str] = getattr(clause, "arguments", {})
+        filled = {name: values.get(term, term) if isinstance(term, Iri) else term for name, term in slots.items()}
+        named = {plain_name(self._curie(variable)): value for variable, value in values.items()}
+        return {name: self._filler(value) for name, value in {**named, **filled}.items()}
+
+    def _filler(self, value: Filler) -> object:
+        if isinstance(value, AnyOf):
+            return list(value.elements)
+        return value.name if isinstance(value, Placeholder) else self._plain(value)
 
     def _curie(self, iri: str) -> str:
         found = self._curies.get(iri)
