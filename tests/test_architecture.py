@@ -38,6 +38,7 @@ HOMES = {
     "behave": {"agent"},
     "mujoco": {"agent"},
     "mcap": {"agent"},
+    "py_trees": {"agent"},
     "pygls": {"lsp"},
     "lsprotocol": {"lsp"},
     "rich": {"commands"},

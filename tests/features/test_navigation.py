@@ -75,6 +75,15 @@ def test_a_set_is_renamed_inside_qualified_names() -> None:
     assert lab == SCENE.replace("places", "spots")
 
 
+def test_a_node_of_a_behaviour_tree_is_renamed_with_its_links() -> None:
+    tree = "Behaviour Tree (ns=t) handling { sequence whole { selector grasp { node pi$0ck } } }\n"
+    link = "places at <goal>\n            node: <handling.pick>\n        }"
+    case = fixture(MODEL.replace("places at <goal>\n        }", link) + tree)
+    text = case.project.texts()[case.uri][1]
+    edits = sorted(rename(case.snapshot, case.uri, case.cursor, "take"), key=lambda edit: edit.span)
+    assert [text[edit.span.start - 5 : edit.span.end] for edit in edits] == ["ling.pick", "node pick"]
+
+
 def test_a_template_and_its_variable_are_renamed_apart() -> None:
     main, _ = renamed("Template (ns=t) fetch", "Template (ns=t) fe$0tch", "carry-off")
     assert main == MODEL.replace(") fetch {", ") carry-off {").replace("<fetch", "<carry-off")
