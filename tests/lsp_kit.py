@@ -27,9 +27,10 @@ ASKED = (
 """Requests of the server whose answer is empty."""
 
 
-async def begin_session(client: LanguageClient, folder: Path, capabilities: types.ClientCapabilities) -> list[str]:
-    """Open a folder with a copy of the example; returns the list of what the server asks of the client, as it grows."""
-    asked: list[str] = []
+async def begin_session(
+    client: LanguageClient, folder: Path, capabilities: types.ClientCapabilities, asked: list[str]
+) -> types.InitializeResult:
+    """Open a folder with a copy of the example; ``asked`` gets the methods that the server asks of the client."""
 
     def listen(method: str) -> None:
         def hear(*_: object) -> None:
@@ -42,8 +43,7 @@ async def begin_session(client: LanguageClient, folder: Path, capabilities: type
         listen(method)
     shutil.copytree(EXAMPLES / "pickplace", folder / "pickplace")
     folders = [types.WorkspaceFolder(uri=path_to_uri(folder), name="test")]
-    await client.initialize_session(types.InitializeParams(capabilities=capabilities, workspace_folders=folders))
-    return asked
+    return await client.initialize_session(types.InitializeParams(capabilities=capabilities, workspace_folders=folders))
 
 
 def plain(value: Any) -> Any:

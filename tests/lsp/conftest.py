@@ -20,18 +20,30 @@ def run_messages() -> list[Any]:
     return []
 
 
+@pytest.fixture
+def asked() -> list[str]:
+    """The methods that the server has asked of the client."""
+    return []
+
+
 # pytest-lsp leaves the types of its decorator open.
 @pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
     config=ClientServerConfig(server_command=[sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio"]),
 )
 async def client(
-    request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path, run_messages: list[Any]
+    asked: list[str],
+    request: pytest.FixtureRequest,
+    lsp_client: LanguageClient,
+    tmp_path: Path,
+    run_messages: list[Any],
 ) -> AsyncIterator[None]:
     def keep(notification: Any) -> None:
         run_messages.append(notification)
 
     lsp_client.feature("robbdd/runMessage")(keep)
-    await begin_session(lsp_client, tmp_path, client_capabilities(getattr(request, "param", "visual-studio-code")))
+    await begin_session(
+        lsp_client, tmp_path, client_capabilities(getattr(request, "param", "visual-studio-code")), asked
+    )
     yield
     await lsp_client.shutdown_session()
 

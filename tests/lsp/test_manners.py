@@ -26,12 +26,14 @@ TOKENS = types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL
 @pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
     config=ClientServerConfig(server_command=[sys.executable, str(PLANTED)]),
 )
-async def client(request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path) -> AsyncIterator[None]:
+async def client(
+    request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path, asked: list[str]
+) -> AsyncIterator[None]:
     capabilities = client_capabilities(getattr(request, "param", "visual-studio-code"))
     general = capabilities.general or types.GeneralClientCapabilities()
     general.stale_request_support = types.StaleRequestSupportOptions(cancel=True, retry_on_content_modified=[TOKENS])
     capabilities.general = general
-    await begin_session(lsp_client, tmp_path, capabilities)
+    await begin_session(lsp_client, tmp_path, capabilities, asked)
     yield
     await lsp_client.shutdown_session()
 

@@ -11,11 +11,12 @@ from lsprotocol import types
 from robbdd_tools.base.diagnostic import Diagnostic, Edit
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.features.completion import Completion
-from robbdd_tools.names.index import FileIndex
 from robbdd_tools.names.project import Snapshot
 from robbdd_tools.syntax.declaration import SymbolKind
 
 SOURCE = "robbdd"
+Texts = Snapshot | Mapping[str, Document]
+"""Where documents are taken from."""
 _KINDS = types.CompletionItemKind
 _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     "keyword": _KINDS.Keyword,
@@ -80,11 +81,11 @@ class Converter:
         """Return the span of a client range."""
         return Span(self.offset(document, range.start), self.offset(document, range.end))
 
-    def location(self, snapshot: Snapshot, uri: str, span: Span) -> types.Location:
+    def location(self, snapshot: Texts, uri: str, span: Span) -> types.Location:
         """Return a place in any file of a snapshot."""
         return types.Location(uri=uri, range=self.range(document_of(snapshot, uri), span))
 
-    def diagnostic(self, snapshot: Snapshot, diagnostic: Diagnostic) -> types.Diagnostic:
+    def diagnostic(self, snapshot: Texts, diagnostic: Diagnostic) -> types.Diagnostic:
         """Return a diagnostic for the client."""
         document = document_of(snapshot, diagnostic.uri)
         related = [
@@ -153,10 +154,9 @@ class Converter:
         return len(text.encode("utf-16-le", "surrogatepass")) // 2
 
 
-def document_of(snapshot: Snapshot, uri: str) -> Document:
+def document_of(texts: Texts, uri: str) -> Document:
     """Return the document of a file; an empty one for a file without text, so that places in it are its start."""
-    source = snapshot.sources.get(uri)
-    return source.document if isinstance(source, FileIndex) else Document(uri, 0, "")
+    return texts.document(uri) if isinstance(texts, Snapshot) else texts.get(uri, Document(uri, 0, ""))
 
 
 def _tags(code: str) -> list[types.DiagnosticTag] | None:

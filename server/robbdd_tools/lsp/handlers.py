@@ -16,6 +16,7 @@ from robbdd_tools.lsp.graph_picture import register_graph
 from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.projects import register_projects
+from robbdd_tools.lsp.pull import can_pull, register_pull
 from robbdd_tools.lsp.reading import register_reading
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.settings import follow_settings, register_settings
@@ -55,6 +56,9 @@ def _register_documents(server: RobbddServer) -> None:
         able = cast("dict[str, object]", wanted) if isinstance(wanted, dict) else {}
         ls.shows_pictures = able.get("pictures") is True
         ls.shows_replays = able.get("replay") is True
+        # What is registered by now is what the client will be told of.
+        if can_pull(params.capabilities):
+            register_pull(ls)
 
     @server.feature(types.INITIALIZED)
     async def initialized(ls: RobbddServer, _: types.InitializedParams) -> None:
@@ -63,6 +67,7 @@ def _register_documents(server: RobbddServer) -> None:
         stale = general.stale_request_support if general is not None else None
         ls.requests.repeated = frozenset(stale.retry_on_content_modified if stale is not None else ())
         ls.spawn(follow_settings(ls))
+        ls.survey.look()
         await ls.load_results()
 
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)

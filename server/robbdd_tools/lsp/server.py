@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Sequence
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -24,11 +24,14 @@ from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.kept_results import load_results
 from robbdd_tools.lsp.protocol import Protocol
+from robbdd_tools.lsp.refresh import COLOURS, DIAGNOSTICS, GATHERING, HINTS, LENSES, SETTLING, Refreshes
 from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
 from robbdd_tools.lsp.settings import Settings
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.stores import Stores
+from robbdd_tools.lsp.survey import Survey
 from robbdd_tools.lsp.worker import Answer, Request
+from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 
 if TYPE_CHECKING:
@@ -36,8 +39,6 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 _LOG = logging.getLogger(__name__)
-GATHERING = 0.03
-"""Seconds that results wait for others that come right behind them."""
 
 
 class RobbddServer(LanguageServer):
@@ -76,6 +77,10 @@ class RobbddServer(LanguageServer):
         self._opened: dict[str, None] = {}
         self.when_closed: list[Callable[[str], None]] = []
         """Called with the URI of each document that the client closes."""
+        self.pulls = False
+        """Whether the client asks for diagnostics; else they are published, never both."""
+        self.refreshes = Refreshes(self)
+        self.survey = Survey(self)
         self._tasks: set[asyncio.Task[None]] = set()
         self._publishing: dict[str, asyncio.Task[None]] = {}
         self._changed: dict[str, None] = {}
@@ -116,6 +121,7 @@ class RobbddServer(LanguageServer):
         self.requests.text_changed(uri)
         await self._in_thread(lambda: self.project.open(uri, version, text))
         await self.publish(uri)
+        self.survey.look([uri])
 
     async def text_closed(self, uri: str) -> None:
         """Go back to the file on disk and take its diagnostics from the editor."""
@@ -127,8 +133,10 @@ class RobbddServer(LanguageServer):
         for forget in self.when_closed:
             forget(uri)
         await self._in_thread(lambda: self.project.close(uri))
-        self._send(uri, None, [])
+        if not self.pulls:
+            self.send(uri, None, [])
         await self.publish(uri)
+        self.survey.closed(uri)
 
     async def files_changed(self, uris: Sequence[str]) -> None:
         """Read files again that changed on disk, and publish what that means for the open ones."""
@@ -138,10 +146,12 @@ class RobbddServer(LanguageServer):
                 self.project.refresh(uri)
 
         await self._in_thread(forget)
-        await self.settings_changed()
+        self.refreshes.want(COLOURS, HINTS, LENSES)
+        await self.settings_changed(uris if all(language_of(uri) for uri in uris) else None)
 
-    async def settings_changed(self) -> None:
-        """Publish all open documents again, as what is asked of them may have changed."""
+    async def settings_changed(self, files: Sequence[str] | None = None) -> None:
+        """Look at all documents again, as what is asked of them may have changed, or only ``files`` have."""
+        self.survey.look(files)
         for uri in list(self._opened):
             await self.publish(uri)
 
@@ -152,18 +162,31 @@ class RobbddServer(LanguageServer):
             importers = snapshot.importers(changed)
             return [uri for uri in self._opened if uri == changed or uri in importers]
 
-        for uri in await self.analyse(affected):
+        uris = await self.analyse(affected)
+        if any(uri != changed for uri in uris):
+            self.refreshes.want(DIAGNOSTICS, COLOURS, HINTS, LENSES, after=SETTLING)
+        for uri in uris:
             # What is being found in an older text is of no use any more.
             if (older := self._publishing.get(uri)) is not None:
                 older.cancel()
             self._publishing[uri] = self.spawn(self._publish_and_order(uri))
 
     async def _publish_and_order(self, uri: str) -> None:
-        await self._publish_one(uri)
+        if not self.pulls:
+            await self._publish_one(uri)
         request, self._requested_texts[uri] = await self.analyse(
             lambda snapshot: self._order(snapshot, uri), urgent=False
         )
         self.validator.request(request)
+
+    def is_open(self, uri: str) -> bool:
+        """Tell whether the client holds the text of a file."""
+        return uri in self._opened
+
+    async def survey_request(self, uri: str) -> Request:
+        """Return the request to look at a file that is not open."""
+        texts = await self.analyse(lambda _: self.project.texts(), urgent=False)
+        return Request(next(self._orders), uri, texts, self.settings.shapes(uri), surveyed=True)
 
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
         """Return the request to validate a file, with the texts that its answer will be about."""
@@ -189,16 +212,17 @@ class RobbddServer(LanguageServer):
         """Show now what is waiting to be shown."""
         changed, self._changed = self._changed, {}
         self.findings = self.results.findings()
-        for uri in changed:
+        self.refreshes.want(HINTS, LENSES)
+        await self._show_diagnostics(changed)
+
+    async def _show_diagnostics(self, uris: Iterable[str]) -> None:
+        """Bring the diagnostics of some files before the user again."""
+        if self.pulls:
+            self.refreshes.want(DIAGNOSTICS)
+            return
+        for uri in uris:
             if uri in self._opened:
                 await self._publish_one(uri)
-        capabilities = self.client_capabilities.workspace
-        hints = capabilities.inlay_hint if capabilities else None
-        lenses = capabilities.code_lens if capabilities else None
-        if hints is not None and hints.refresh_support:
-            self.workspace_inlay_hint_refresh(None)
-        if lenses is not None and lenses.refresh_support:
-            self.workspace_code_lens_refresh(None)
 
     def folders(self, uri: str | None = None) -> list[Path]:
         """Return the workspace folders, with ``uri`` those that hold a file, the innermost first."""
@@ -217,19 +241,25 @@ class RobbddServer(LanguageServer):
         if self.run is not None:
             self.run.cancel()
         self.validator.stop()
+        self.survey.stop()
         self._background.stop()
         self.stores.close()
         self._analysis.stop()
 
     async def _publish_one(self, uri: str) -> None:
+        version, diagnostics = await self.diagnostics(uri)
+        self.send(uri, version, diagnostics)
+
+    async def diagnostics(self, uri: str) -> tuple[int, list[types.Diagnostic]]:
+        """Return all that is known of a file now, with the version of the text that it is about."""
+
         def find(snapshot: Snapshot) -> tuple[int, list[types.Diagnostic]]:
             found = [*fast_diagnostics(snapshot, uri), *self._valid_shapes(snapshot, uri)]
             found += clause_diagnostics(snapshot, uri, self.findings)
             document = document_of(snapshot, uri)
             return document.version, [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
 
-        version, diagnostics = await self.analyse(find, urgent=False)
-        self._send(uri, version, diagnostics)
+        return await self.analyse(find, urgent=False)
 
     def _valid_shapes(self, snapshot: Snapshot, uri: str) -> list[Diagnostic]:
         """Return the shapes' findings in a file, from every open file's validation, while its text is the same."""
@@ -242,14 +272,13 @@ class RobbddServer(LanguageServer):
 
     def _shapes_found(self, answer: Answer) -> None:
         """Take an answer of the validation process, which is the newest for its file."""
+        if answer.error:
+            return
+        before = self._shapes.get(answer.uri)
         self._shapes[answer.uri] = answer.diagnostics
         self._shaped_texts[answer.uri] = self._requested_texts[answer.uri]
-
-        async def show() -> None:
-            for uri in list(self._opened):
-                await self._publish_one(uri)
-
-        self.spawn(show())
+        if before or answer.diagnostics:
+            self.spawn(self._show_diagnostics(list(self._opened)))
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         """Start work that nobody waits for; it is kept from being collected until it ends."""
@@ -259,7 +288,8 @@ class RobbddServer(LanguageServer):
         task.add_done_callback(lambda done: log_background_error(done, f"the background work {done.get_name()}"))
         return task
 
-    def _send(self, uri: str, version: int | None, diagnostics: list[types.Diagnostic]) -> None:
+    def send(self, uri: str, version: int | None, diagnostics: list[types.Diagnostic]) -> None:
+        """Publish the diagnostics of a file."""
         self.text_document_publish_diagnostics(
             types.PublishDiagnosticsParams(uri=uri, version=version, diagnostics=diagnostics)
         )

@@ -19,19 +19,21 @@ PAUSE = 0.02
 MOST_DEATHS = 2
 """Deaths of the process, with no answer in between, after which what it was asked is given up."""
 # Not "-m": the messages' classes must have the same module name in both processes.
-_WORKER = "from robbdd_tools.lsp.worker import main; main()"
+_WORKER = "from robbdd_tools.lsp.worker import main; main"
 _LOG = logging.getLogger(__name__)
 
 
 class ShapeValidator:
     """Validates files in a worker process, the newest request of each file only.
 
-    ``deliver`` gets each answer whose request is still the newest of its file. A newer request is sent at once, so
+    ``deliver`` gets each answer whose request is still the newest of its file, also one that tells of an error. With
+    ``in_passing`` the process leaves the processor to all others. A newer request is sent at once, so
     that the process leaves the older one. The process is started with the first request; when it dies, it is started
     again with what it has not answered.
     """
 
-    def __init__(self, deliver: Callable[[Answer], None]) -> None:
+    def __init__(self, deliver: Callable[[Answer], None], in_passing: bool = False) -> None:
+        self._code = f"{_WORKER}(in_passing={in_passing})"
         self._deliver = deliver
         self._unsent: dict[str, Request | Forget] = {}
         self._open: dict[str, Request] = {}
@@ -86,7 +88,7 @@ class ShapeValidator:
                 await process.stdin.drain()
 
     async def _start(self) -> Process:
-        self._process = await asyncio.create_subprocess_exec(sys.executable, "-c", _WORKER, stdin=PIPE, stdout=PIPE)
+        self._process = await asyncio.create_subprocess_exec(sys.executable, "-c", self._code, stdin=PIPE, stdout=PIPE)
         self._spawn(self._receive(self._process))
         return self._process
 
@@ -108,8 +110,7 @@ class ShapeValidator:
         del self._open[answer.uri]
         if answer.error:
             _LOG.error("validation of %s failed: %s", answer.uri, answer.error)
-        else:
-            self._deliver(answer)
+        self._deliver(answer)
 
     def _died(self) -> None:
         self._process = None
@@ -120,8 +121,11 @@ class ShapeValidator:
                 self._send(request)
         elif self._open:
             _LOG.error("the validation process ended again; it is started with the next change")
+            given_up = list(self._open.values())
             self._open.clear()
             self._deaths = 0
+            for request in given_up:
+                self._deliver(Answer(request.revision, request.uri, (), "the validation process ended"))
 
     def _spawn(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         task = asyncio.get_running_loop().create_task(work)

@@ -7,6 +7,7 @@ only the newest gets an answer.
 
 from __future__ import annotations
 
+import os
 import pickle
 import struct
 import sys
@@ -15,22 +16,30 @@ from dataclasses import dataclass, field
 from typing import BinaryIO
 
 from robbdd_tools.base.diagnostic import Diagnostic
-from robbdd_tools.features.diagnostics import shape_diagnostics
+from robbdd_tools.base.document import Document
+from robbdd_tools.base.files import read_text, uri_to_path
+from robbdd_tools.features.diagnostics import fast_diagnostics, shape_diagnostics
 from robbdd_tools.graph.incremental import Superseded, Validation
 from robbdd_tools.graph.user_shapes import EditorShapes
-from robbdd_tools.names.project import Project
+from robbdd_tools.names.project import Project, Snapshot
 
+IN_PASSING = 10
+"""Niceness: high enough to give way to the editor and the other processes, low enough to get on."""
 LENGTH = struct.Struct(">I")
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """Validate ``uri``; ``texts`` holds the version and text of every open file, ``shapes`` what the editor adds."""
+    """Validate ``uri``; ``texts`` holds the version and text of every open file, ``shapes`` what the editor adds.
+
+    A file that is not open is ``surveyed``: all findings are wanted, with the texts that they stand in.
+    """
 
     revision: int
     uri: str
     texts: dict[str, tuple[int, str]]
     shapes: EditorShapes
+    surveyed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +51,17 @@ class Forget:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The findings about a file and its imports, or what went wrong inside."""
+    """The findings about a file and its imports, or what went wrong inside.
+
+    Of a surveyed file also the files that were looked at or missed, and the ``documents`` that the findings name.
+    """
 
     revision: int
     uri: str
     diagnostics: tuple[Diagnostic, ...]
     error: str = ""
+    reached: frozenset[str] = frozenset()
+    documents: dict[str, Document] = field(default_factory=dict[str, Document])
 
 
 def frame(message: Request | Forget | Answer) -> bytes:
@@ -104,6 +118,8 @@ class Worker:
     def answer(self, request: Request) -> Answer | None:
         """Return the findings about a file; ``None`` when a newer request for it has come meanwhile."""
         self.project.replace(request.texts)
+        if request.surveyed:
+            return self._survey(request)
         validation = self.validations.setdefault(request.uri, Validation())
 
         def is_superseded() -> bool:
@@ -119,9 +135,33 @@ class Worker:
             return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}")
         return Answer(request.revision, request.uri, tuple(found))
 
+    def _survey(self, request: Request) -> Answer:
+        """Return everything about a file that is not open."""
+        self.project.load(request.uri)
+        snapshot = self.project.snapshot()
+        try:
+            found = fast_diagnostics(snapshot, request.uri)
+            found += shape_diagnostics(snapshot, request.uri, request.shapes)
+        except Exception as error:  # As above.
+            return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}")
+        scope = snapshot.scope(request.uri)
+        named = {entry.uri for entry in found} | {place.uri for entry in found for place in entry.related}
+        documents = {uri: _document(snapshot, uri) for uri in named}
+        reached = frozenset((*scope.uris, *scope.unread))
+        return Answer(request.revision, request.uri, tuple(dict.fromkeys(found)), "", reached, documents)
 
-def main() -> None:
-    """Answer requests until the input ends."""
+
+def _document(snapshot: Snapshot, uri: str) -> Document:
+    """Return a file as the snapshot has it; one that is no model, such as a configuration, from disk."""
+    path = None if uri in snapshot.sources else uri_to_path(uri)
+    text = None if path is None else read_text(path)
+    return Document(uri, 0, text) if isinstance(text, str) else snapshot.document(uri)
+
+
+def main(in_passing: bool = False) -> None:
+    """Answer requests until the input ends; ``in_passing`` with what the others leave of the processor."""
+    if in_passing and hasattr(os, "nice"):
+        os.nice(IN_PASSING)
     stdout = sys.stdout.buffer
     # Whatever a library prints must not get between the frames.
     sys.stdout = sys.stderr

@@ -113,6 +113,11 @@ class Snapshot:
             self._analyses[uri] = kept
         return kept.analysis
 
+    def document(self, uri: str) -> Document:
+        """Return the document of a file; an empty one for a file without text, so that places in it are its start."""
+        source = self.sources.get(uri)
+        return source.document if isinstance(source, FileIndex) else Document(uri, 0, "")
+
     def unreadable(self, uri: str) -> Unreadable | None:
         """Return why a file has no text, ``None`` when it has."""
         source = self.sources.get(uri)

@@ -1,0 +1,182 @@
+"""What is found in the model files of the workspace that are not open, looked at beside everything else.
+
+A process of its own, of low priority, looks at one file after another: at all of them when the client has started, and
+later at those that build on what has changed, on disk or in an editor.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from hashlib import blake2b
+from typing import TYPE_CHECKING
+
+from robbdd_tools.features.workspace_files import model_files
+from robbdd_tools.lsp.shapes import ShapeValidator
+
+if TYPE_CHECKING:
+    from lsprotocol import types
+
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.lsp.worker import Answer
+
+PAUSE = 1.0
+"""Seconds after the last change until files are looked at."""
+GATHERING = 0.25
+"""Seconds in which findings are gathered before they are told."""
+AT_ONCE = 2
+"""Files that are asked for ahead, so that the process never waits for us."""
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """Diagnostics of one file; ``id`` is the same for the same diagnostics at the same places."""
+
+    diagnostics: tuple[types.Diagnostic, ...]
+    id: str
+
+    @classmethod
+    def of(cls, diagnostics: Iterable[types.Diagnostic]) -> Findings:
+        """Give diagnostics their name."""
+        found = tuple(diagnostics)
+        told = repr(found).encode("utf-8", "surrogatepass")
+        return cls(found, blake2b(told, digest_size=12).hexdigest())
+
+
+class Survey:
+    """The findings in files that are not open, by file, as far as they have been looked at."""
+
+    def __init__(self, server: RobbddServer) -> None:
+        self._server = server
+        self._validator = ShapeValidator(self._take, in_passing=True)
+        self._changed: set[str] = set()
+        self._everything = False
+        self._waiting: dict[str, None] = {}
+        self._asked: set[str] = set()
+        self._found: dict[str, Mapping[str, Findings]] = {}
+        self._reached: dict[str, frozenset[str]] = {}
+        self._published: dict[str, str] = {}
+        self._timer: asyncio.TimerHandle | None = None
+        self._telling: asyncio.TimerHandle | None = None
+        self._news = asyncio.Event()
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether all files have been looked at in their present state."""
+        return not (self._waiting or self._asked or self._timer or self._telling)
+
+    def look(self, changed: Iterable[str] | None = None) -> None:
+        """Look soon at the files that build on ``changed`` ones, or at all."""
+        self._changed.update(changed or ())
+        self._everything |= changed is None
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = asyncio.get_running_loop().call_later(PAUSE, self._begin)
+
+    def closed(self, uri: str) -> None:
+        """Take over a file whose diagnostics have just been taken from the editor."""
+        self._published.pop(uri, None)
+        self.look([uri])
+
+    def stop(self) -> None:
+        """End the process."""
+        for timer in (self._timer, self._telling):
+            if timer is not None:
+                timer.cancel()
+        self._validator.stop()
+
+    async def wait_for_news(self) -> None:
+        """Wait until more has been found, or all."""
+        await self._news.wait()
+
+    def findings(self) -> dict[str, Findings]:
+        """Return what is known of each file that is not open; what several files tell of one is put together."""
+        parts: dict[str, list[Findings]] = {}
+        for owner in sorted(self._found):
+            if self._server.is_open(owner):
+                continue
+            parts.setdefault(owner, [])
+            for uri, found in self._found[owner].items():
+                if not self._server.is_open(uri):
+                    parts.setdefault(uri, []).append(found)
+        return {uri: _together(told) for uri, told in sorted(parts.items())}
+
+    def _begin(self) -> None:
+        self._timer = None
+        self._server.spawn(self._order())
+
+    async def _order(self) -> None:
+        """Find out which files are to be looked at."""
+        changed, self._changed = self._changed, set()
+        everything, self._everything = self._everything, False
+        roots = list(self._server.workspace.folders)
+        files = await asyncio.to_thread(model_files, roots)
+        for gone in self._found.keys() - set(files):
+            del self._found[gone]
+        for uri in files:
+            outdated = everything or uri not in self._found or not changed.isdisjoint(self._reached.get(uri, ()))
+            if outdated or uri in changed:
+                self._waiting[uri] = None
+        self._ask()
+        self._tell_soon()
+
+    def _ask(self) -> None:
+        while self._waiting and len(self._asked) < AT_ONCE:
+            uri = next(iter(self._waiting))
+            del self._waiting[uri]
+            if not self._server.is_open(uri) and uri not in self._asked:
+                self._asked.add(uri)
+                self._server.spawn(self._ask_for(uri))
+
+    async def _ask_for(self, uri: str) -> None:
+        self._validator.request(await self._server.survey_request(uri))
+
+    def _take(self, answer: Answer) -> None:
+        self._server.spawn(self._keep(answer))
+
+    async def _keep(self, answer: Answer) -> None:
+        if not answer.error:
+            self._reached[answer.uri] = answer.reached
+            self._found[answer.uri] = await asyncio.to_thread(self._converted, answer)
+        self._asked.discard(answer.uri)
+        self._ask()
+        self._tell_soon()
+
+    def _converted(self, answer: Answer) -> dict[str, Findings]:
+        convert, documents = self._server.convert, answer.documents
+        found: dict[str, list[types.Diagnostic]] = {answer.uri: []}
+        for one in answer.diagnostics:
+            found.setdefault(one.uri, []).append(convert.diagnostic(documents, one))
+        return {uri: Findings.of(diagnostics) for uri, diagnostics in found.items()}
+
+    def _tell_soon(self) -> None:
+        if self._telling is None:
+            self._telling = asyncio.get_running_loop().call_later(GATHERING, self._tell)
+
+    def _tell(self) -> None:
+        self._telling = None
+        self._news.set()
+        self._news = asyncio.Event()
+        if not self._server.pulls:
+            self._publish()
+
+    def _publish(self) -> None:
+        findings = self.findings()
+        for uri, found in findings.items():
+            if self._published.get(uri, NOTHING.id) != found.id:
+                self._server.send(uri, None, list(found.diagnostics))
+                self._published[uri] = found.id
+        for uri in self._published.keys() - findings.keys():
+            if self._published.pop(uri) != NOTHING.id and not self._server.is_open(uri):
+                self._server.send(uri, None, [])
+
+
+def _together(parts: list[Findings]) -> Findings:
+    if len(parts) == 1:
+        return parts[0]
+    # The protocol's types cannot be put into a set.
+    return Findings.of({repr(one): one for part in parts for one in part.diagnostics}.values())
+
+
+NOTHING = Findings.of(())
