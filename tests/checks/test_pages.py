@@ -10,6 +10,8 @@ import pytest
 
 import robbdd_tools
 from kit import DOCS
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.lsp.convert import code_page
 
 PACKAGE = Path(robbdd_tools.__file__).parent
 PAGES = DOCS / "diagnostics"
@@ -50,6 +52,13 @@ def test_a_code_has_a_page_that_the_index_names(code: str) -> None:
     for name in FAMILIES.get(code, {code}):
         assert (PAGES / f"{name}.md").read_text(encoding="utf-8").startswith(f"# `{name}`\n")
         assert f"[`{name}`]({name}.md)" in (PAGES / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_a_code_leads_to_its_page(code: str) -> None:
+    for name in FAMILIES.get(code, {code}):
+        of_a_shape = f"{name}-safety" if code in ("shacl-", "shape-") else name
+        assert code_page(of_a_shape) == path_to_uri(PAGES / f"{name}.md")
 
 
 @pytest.mark.parametrize("page", sorted(PAGES.glob("*.md")), ids=lambda page: page.stem)

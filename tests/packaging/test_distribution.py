@@ -48,6 +48,9 @@ def test_an_installed_wheel_finds_its_grammars_metamodels_and_robots(built: Path
     assert b"UserStory" in graph.stdout
     subprocess.run([scripts / "robbdd", "new", tmp_path / "project", "--template", "sorting"], check=True)
     assert (tmp_path / "project" / "sorting.bdd").is_file()
+    page = "from robbdd_tools.lsp.convert import code_page; print(code_page('syntax'))"
+    shown = subprocess.run([python, "-c", page], check=True, capture_output=True, text=True).stdout
+    assert shown.startswith(environment.as_uri())
     robots = "from robbdd_tools.catalog.registry import load_catalog as c; import robbdd_tools.catalog.robots as r\n"
     robots += "from pathlib import Path\nprint([(Path(r.__path__[0]) / m.mjcf).is_file() for m in c().robots.values()])"
     found = subprocess.run([python, "-c", robots], check=True, capture_output=True, text=True).stdout

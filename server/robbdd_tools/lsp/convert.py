@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 from lsprotocol import types
 
+from robbdd_tools.base.data import data_file
 from robbdd_tools.base.diagnostic import Diagnostic, Edit
 from robbdd_tools.base.document import Document, Span
+from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import Completion
 from robbdd_tools.names.project import Snapshot
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -49,9 +52,20 @@ _SYMBOL_KINDS: Mapping[str, types.SymbolKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Converter:
-    """Conversions for one client; ``encoding`` is the one agreed at initialisation."""
+    """Conversions for one client: ``encoding`` is the one agreed at initialisation.
+
+    ``with_pages`` gives each diagnostic a link to the page about its code.
+    """
 
     encoding: types.PositionEncodingKind | str = types.PositionEncodingKind.Utf16
+    with_pages: bool = False
+
+    @classmethod
+    def of(cls, encoding: str | None, client: types.ClientCapabilities) -> Converter:
+        """Return the conversions for a client that can do this."""
+        published = client.text_document.publish_diagnostics if client.text_document is not None else None
+        with_pages = bool(published is not None and published.code_description_support)
+        return cls(encoding or types.PositionEncodingKind.Utf16, with_pages)
 
     def offset(self, document: Document, position: types.Position) -> int:
         """Return the code-point offset of a client position; beyond a line's end is its end."""
@@ -102,7 +116,12 @@ class Converter:
             source=SOURCE,
             related_information=related or None,
             tags=_tags(diagnostic.code),
+            code_description=self._description(diagnostic.code),
         )
+
+    def _description(self, code: str) -> types.CodeDescription | None:
+        page = code_page(code) if self.with_pages else None
+        return None if page is None else types.CodeDescription(href=page)
 
     def completion(
         self, document: Document, completion: Completion, client: types.ClientCompletionItemOptions | None
@@ -163,6 +182,20 @@ def _tags(code: str) -> list[types.DiagnosticTag] | None:
     if code.startswith("unused-"):
         return [types.DiagnosticTag.Unnecessary]
     return [types.DiagnosticTag.Deprecated] if code == "published-form" else None
+
+
+@cache
+def code_page(code: str) -> str | None:
+    """Return the URI of the page about a diagnostic code, or about the family that the code belongs to.
+
+    The pages come with the installation, so that they are of its version and can be read offline.
+    """
+    for name in (code, code.partition("-")[0]):
+        try:
+            return path_to_uri(data_file("docs/diagnostics", f"{name}.md"))
+        except FileNotFoundError:
+            continue
+    return None
 
 
 def symbol_kind(kind: str) -> types.SymbolKind:

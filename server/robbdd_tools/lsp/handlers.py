@@ -24,6 +24,7 @@ from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.test_results import register_test_results
 from robbdd_tools.lsp.tests import register_tests
 from robbdd_tools.lsp.tokens import register_tokens
+from robbdd_tools.lsp.watching import register_watching, watch_files
 from robbdd_tools.lsp.ways import register_ways
 from robbdd_tools.names.project import Snapshot
 
@@ -37,6 +38,7 @@ def create_server() -> RobbddServer:
     _register_actions(server)
     register_commands(server)
     register_settings(server)
+    register_watching(server)
     register_navigation(server)
     register_tokens(server)
     register_ways(server)
@@ -62,10 +64,11 @@ def _register_documents(server: RobbddServer) -> None:
 
     @server.feature(types.INITIALIZED)
     async def initialized(ls: RobbddServer, _: types.InitializedParams) -> None:
-        ls.convert = Converter(ls.workspace.position_encoding or types.PositionEncodingKind.Utf16)
+        ls.convert = Converter.of(ls.workspace.position_encoding, ls.client_capabilities)
         general = ls.client_capabilities.general
         stale = general.stale_request_support if general is not None else None
         ls.requests.repeated = frozenset(stale.retry_on_content_modified if stale is not None else ())
+        ls.spawn(watch_files(ls))
         ls.spawn(follow_settings(ls))
         ls.survey.look()
         await ls.load_results()
@@ -84,10 +87,6 @@ def _register_documents(server: RobbddServer) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     async def did_close(ls: RobbddServer, params: types.DidCloseTextDocumentParams) -> None:
         await ls.text_closed(params.text_document.uri)
-
-    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
-    async def did_change_watched(ls: RobbddServer, params: types.DidChangeWatchedFilesParams) -> None:
-        await ls.files_changed([change.uri for change in params.changes])
 
     @server.feature(types.SHUTDOWN)
     def shutdown(ls: RobbddServer, _: None) -> None:

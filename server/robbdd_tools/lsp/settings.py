@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, cast
 
@@ -22,6 +23,8 @@ class Settings:
 
     def __init__(self) -> None:
         self._shapes: dict[str, tuple[str, ...]] = {}
+        self.sent: object = None
+        """What the client has sent by itself, for all folders."""
 
     @property
     def patterns(self) -> dict[str, tuple[str, ...]]:
@@ -37,6 +40,10 @@ class Settings:
             return "The setting 'robbdd.shapes' is a list of file patterns, such as [\"shapes/*.ttl\"]."
         self._shapes[folder] = texts
         return None
+
+    def forget_others(self, folders: Collection[str]) -> None:
+        """Drop the settings of folders that are no longer part of the workspace."""
+        self._shapes = {folder: patterns for folder, patterns in self._shapes.items() if folder in folders}
 
     def shapes(self, uri: str) -> EditorShapes:
         """Return the shapes that the editor adds for a document; their patterns count from its workspace folder."""
@@ -56,7 +63,8 @@ def register_settings(server: RobbddServer) -> None:
     @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
     async def changed(ls: RobbddServer, params: types.DidChangeConfigurationParams) -> None:
         sent = cast("object", params.settings)
-        await _read(ls, cast("dict[str, object]", sent).get(SECTION) if isinstance(sent, dict) else None)
+        ls.settings.sent = cast("dict[str, object]", sent).get(SECTION) if isinstance(sent, dict) else None
+        await read_settings(ls)
 
 
 async def follow_settings(ls: RobbddServer) -> None:
@@ -71,11 +79,11 @@ async def follow_settings(ls: RobbddServer) -> None:
         # A client that refuses says nothing of changes; its settings are read all the same.
         with suppress(JsonRpcException):
             await ls.client_register_capability_async(types.RegistrationParams(registrations=[entry]))
-    await _read(ls, None)
+    await read_settings(ls)
 
 
-async def _read(ls: RobbddServer, sent: object) -> None:
-    """Ask the client for its settings in each folder; one that cannot be asked has ``sent`` them, or sends them."""
+async def read_settings(ls: RobbddServer) -> None:
+    """Ask the client for its settings in each folder; of one that cannot be asked those count that it sent last."""
     before = ls.settings.patterns
     folders = ["", *ls.workspace.folders]
     workspace = ls.client_capabilities.workspace
@@ -83,7 +91,8 @@ async def _read(ls: RobbddServer, sent: object) -> None:
         items = [types.ConfigurationItem(scope_uri=folder or None, section=SECTION) for folder in folders]
         sections = await ls.workspace_configuration_async(types.ConfigurationParams(items=items))
     else:
-        sections = [sent] * len(folders)
+        sections = [ls.settings.sent] * len(folders)
+    ls.settings.forget_others(folders)
     problems = dict.fromkeys(
         problem
         for folder, section in zip(folders, sections, strict=False)

@@ -1,0 +1,47 @@
+"""What changes outside of the open documents: files on disk, and the folders of the workspace."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+from robbdd_tools.lsp.settings import read_settings
+from robbdd_tools.syntax.parse import LANGUAGES
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.server import RobbddServer
+
+WATCHED = f"**/{{{','.join((*(f'*.{name}' for name in LANGUAGES), '*.ttl', 'robbdd.toml', 'pyproject.toml'))}}}"
+"""Models, and what may hold a project's own rules about them."""
+
+
+def register_watching(server: RobbddServer) -> None:
+    """Add the methods to a server."""
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    async def files(ls: RobbddServer, params: types.DidChangeWatchedFilesParams) -> None:
+        await ls.files_changed([change.uri for change in params.changes])
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
+    async def folders(ls: RobbddServer, _: types.DidChangeWorkspaceFoldersParams) -> None:
+        await read_settings(ls)
+        ls.survey.look()
+        await ls.load_results()
+
+
+async def watch_files(ls: RobbddServer) -> None:
+    """Ask to be told of changed files, where the client can be asked."""
+    workspace = ls.client_capabilities.workspace
+    watched = workspace.did_change_watched_files if workspace is not None else None
+    if watched is None or not watched.dynamic_registration:
+        return
+    options = types.DidChangeWatchedFilesRegistrationOptions(watchers=[types.FileSystemWatcher(glob_pattern=WATCHED)])
+    entry = types.Registration(
+        id="robbdd-files", method=types.WORKSPACE_DID_CHANGE_WATCHED_FILES, register_options=options
+    )
+    # A client that refuses says nothing of changes on disk.
+    with suppress(JsonRpcException):
+        await ls.client_register_capability_async(types.RegistrationParams(registrations=[entry]))
