@@ -8,15 +8,20 @@ from __future__ import annotations
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 from tests.bench.models import long_story, model
 
 from kit import FOLDER, SCENE
+from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.memory import collect_rarely
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.outline import project_names
+from robbdd_tools.features.rename import rename
 from robbdd_tools.names.project import Project
 from robbdd_tools.syntax.parse import forget_declarations, parse_declaration
 from robbdd_tools.syntax.split import split
@@ -24,6 +29,7 @@ from robbdd_tools.syntax.textx import parse_with_textx
 
 KEYSTROKES = 60
 FILES = 200
+PROJECT_FILES = 1000
 
 
 def milliseconds(work: Callable[[], object]) -> float:
@@ -45,6 +51,7 @@ def rows() -> Iterator[tuple[str, str]]:
         text = long_story(lines)
         yield from _one_file(text, f"one story of {lines} lines", typing_a_variation(text))
     yield from _many_files()
+    yield from _project()
 
 
 def _one_file(text: str, name: str, typing: Iterator[str]) -> Iterator[tuple[str, str]]:
@@ -131,6 +138,42 @@ def _many_files() -> Iterator[tuple[str, str]]:
     typed = f"*typing({named.format('model(10_000)')}), *typing_a_variation({named.format('long_story(1000)')})"
     edits = f"(text for n in range(10) for text in ({typed}))"
     yield "memory of the same and a story of 1000 lines after 1200 keystrokes", f"{_memory(edits):.0f} MB"
+
+
+def _project() -> Iterator[tuple[str, str]]:
+    """Measure a folder of many files that share a scene and import one another by tens, none of which is open yet."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "lab.scene").write_text(SCENE, encoding="utf-8")
+        uris = [path_to_uri(folder / f"file{number}.bdd") for number in range(PROJECT_FILES)]
+        for number in range(PROJECT_FILES):
+            following = f'import "file{number + 1}.bdd"\n' if number % 10 < 9 else ""
+            text = following + model(60).replace("goal", f"goal-{number}-")
+            (folder / f"file{number}.bdd").write_text(text, encoding="utf-8")
+        project, what = Project(), f"{PROJECT_FILES} files"
+        opened = milliseconds(lambda: [project.load(uri) for uri in uris])
+        opened += milliseconds(lambda: list(map(project.snapshot().file, uris)))
+        yield f"cold open, project of {what}", f"{opened:.0f} ms"
+        text = (folder / "file0.bdd").read_text(encoding="utf-8")
+        strokes = [
+            milliseconds(lambda edited=edited, number=number: _published(project, uris[0], number + 1, edited))
+            for number, edited in enumerate(typing(text))
+        ]
+        yield f"keystroke to diagnostics, project of {what}", _percentiles(strokes)
+        snapshot, scene = project.snapshot(), path_to_uri(folder / "lab.scene")
+        found = milliseconds(lambda: project_names(snapshot, "goal-777-"))
+        yield f"workspace symbols, project of {what}", f"{found:.0f} ms"
+        place = SCENE.index("tray_ws")
+        renamed = milliseconds(lambda: rename(snapshot, scene, place, "crate_ws"))
+        yield f"rename in all files, project of {what}", f"{renamed:.0f} ms"
+
+
+def _published(project: Project, uri: str, version: int, text: str) -> None:
+    """What a keystroke costs until all fast diagnostics of a file, and which files they concern, are known."""
+    _typed(project, uri, version, text)
+    snapshot = project.snapshot()
+    fast_diagnostics(snapshot, uri)
+    snapshot.importers(uri)
 
 
 def _memory(edits: str) -> float:
