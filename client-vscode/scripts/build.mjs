@@ -69,7 +69,7 @@ const bundles = [
   },
   {
     ...shared,
-    entryPoints: { graph: "webviews/graph/main.ts", replay: "webviews/replay/main.ts" },
+    entryPoints: Object.fromEntries(["graph", "replay", "study"].map((page) => [page, `webviews/${page}/main.ts`])),
     outdir: "out/webviews",
     platform: "browser",
     target: "es2022",

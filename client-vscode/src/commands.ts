@@ -4,6 +4,7 @@ import type { Server } from "./client";
 import type { GraphView } from "./panels/graph/view";
 import { recordingOf } from "./panels/replay/request";
 import type { ReplayView } from "./panels/replay/view";
+import type { StudyView } from "./panels/study/view";
 import type { PreviewView } from "./preview/view";
 import { modelFor, openModel } from "./models";
 import { newProject } from "./projects";
@@ -18,12 +19,13 @@ export interface Views {
   readonly graphs: GraphView;
   readonly tests: TestingView;
   readonly replays: ReplayView;
+  readonly studies: StudyView;
 }
 
 export function registerCommands(
   server: Server,
   runs: RunMonitor,
-  { previews, graphs, replays, tests }: Views,
+  { previews, graphs, replays, studies, tests }: Views,
   log: vscode.LogOutputChannel,
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
@@ -37,6 +39,7 @@ export function registerCommands(
       withModel(target, (uri) => {
         graphs.open(vscode.Uri.parse(uri));
       }),
+    "robbdd.showStudy": (target) => withModel(target, (uri) => studies.choose(uri)),
     "robbdd.replayTest": (target) => replayTest(replays, tests, target),
     "robbdd.importResults": (target) => tests.importResults(target instanceof vscode.Uri ? target : undefined),
     "robbdd.showReplay": (target) =>

@@ -5,6 +5,7 @@ import { registerCommands } from "./commands";
 import { noticeModels } from "./milestones";
 import { GraphView } from "./panels/graph/view";
 import { ReplayView } from "./panels/replay/view";
+import { StudyView } from "./panels/study/view";
 import { PreviewView } from "./preview/view";
 import { onInterpreterChange } from "./python";
 import { RunMonitor } from "./runs/monitor";
@@ -34,6 +35,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   const graphs = new GraphView(started, context.extensionUri);
   const tests = new TestingView(started, runs);
   const replays = new ReplayView(started, context.extensionUri);
+  const studies = new StudyView(started, replays, context.extensionUri);
   server = started;
   context.subscriptions.push(
     log,
@@ -42,9 +44,10 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     previews,
     graphs,
     replays,
+    studies,
     tests,
     noticeModels(),
-    ...registerCommands(started, runs, { previews, graphs, replays, tests }, log),
+    ...registerCommands(started, runs, { previews, graphs, replays, studies, tests }, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
         void started.restartIfMoved();

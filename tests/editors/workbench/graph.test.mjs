@@ -122,7 +122,7 @@ step("a page that was hidden shows what it showed before", async () => {
   await workbench.page.locator(".tab", { hasText: "Graph heights.bdd" }).click();
   await workbench.openFile("tworobots/cell.scene");
   await workbench.page.locator("iframe.webview.ready").waitFor({ state: "hidden" });
-  await workbench.command("View: Close Editor");
+  await workbench.page.locator(".tab", { hasText: "Graph heights.bdd" }).click();
   await current("in-hand").waitFor();
   assert.equal(await place(), before);
 });

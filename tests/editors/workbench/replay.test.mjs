@@ -105,14 +105,6 @@ step("a clause is chosen by its name, and leads to its text", async () => {
   await workbench.page.locator(".statusbar-item", { hasText: new RegExp(`Ln ${line}, Col`) }).waitFor();
 });
 
-step("the code lens of a judged scenario leads to the same panel", async () => {
-  const line = (await session.text(FILE)).split("\n").findIndex((text) => text.includes("Scenario bin-heights")) + 1;
-  await workbench.goTo(line, 1);
-  await workbench.codeLens("Replay").first().click();
-  await page.locator(".caption .sentence", { hasText: "is held by" }).waitFor();
-  assert.equal(await workbench.page.locator('.tab[data-resource-name^="webview-"]').count(), 1);
-});
-
 step("the panel comes back with the window", async () => {
   await workbench.reload();
   page = workbench.webview();

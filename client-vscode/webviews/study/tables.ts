@@ -1,0 +1,138 @@
+// Results counted: by the values of two variables, and by margin.
+import type { JudgedClause, JudgedScenario } from "../../src/panels/study/results";
+
+/** A variable that has more than one value in the results. */
+export interface Dimension {
+  readonly name: string;
+  /** Numbers in their order, words in that of the results. */
+  readonly values: readonly string[];
+}
+
+export interface Cell {
+  readonly passed: number;
+  readonly total: number;
+  /** The smallest margin among them; undefined without any. */
+  readonly worst: number | undefined;
+  readonly unit: string;
+  /** Number of the scenario that one should look at: the one with the worst outcome. */
+  readonly index: number;
+}
+
+export interface Bin {
+  readonly from: number;
+  readonly to: number;
+  readonly count: number;
+  /** Number of the scenario with the smallest margin in it; -1 for none. */
+  readonly index: number;
+}
+
+/** Anything that was judged once: a scenario as a whole or one of its clauses. */
+interface Outcome {
+  readonly index: number;
+  readonly verdict: JudgedScenario["verdict"];
+  readonly robustness: number | null;
+  readonly unit: string;
+}
+
+const RANK = { violated: 0, unknown: 1, holds: 2 } as const;
+
+/** A value as a reader knows it: without the prefixes of names, lists with commas. */
+export function shown(value: unknown): string {
+  if (Array.isArray(value)) {
+    return value.map(shown).join(", ");
+  }
+  return String(value).replace(/^[\w-]+:(?=[^/])/, "");
+}
+
+/** The variables with several values, in the order of the results. */
+export function dimensions(scenarios: readonly JudgedScenario[]): Dimension[] {
+  const found = new Map<string, Set<string>>();
+  for (const { values } of scenarios) {
+    for (const [name, value] of Object.entries(values)) {
+      found.set(name, (found.get(name) ?? new Set()).add(shown(value)));
+    }
+  }
+  return [...found].filter(([, values]) => values.size > 1).map(([name, values]) => ({ name, values: ordered([...values]) }));
+}
+
+/** The clauses of the results, each once, in the order of their scenarios. */
+export function clauses(scenarios: readonly JudgedScenario[]): JudgedClause[] {
+  const found = new Map<string, JudgedClause>();
+  for (const clause of scenarios.flatMap((scenario) => scenario.clauses)) {
+    if (!found.has(clause.iri)) {
+      found.set(clause.iri, clause);
+    }
+  }
+  return [...found.values()];
+}
+
+/**
+ * What came out where two variables have two values (`undefined`: any); of a clause where its IRI is given, else of
+ * whole scenarios. Undefined where nothing was executed.
+ */
+export function cell(
+  scenarios: readonly JudgedScenario[],
+  where: readonly (readonly [name: string, value: string])[],
+  clause: string,
+): Cell | undefined {
+  const outcomes = scenarios.flatMap((scenario, index) =>
+    where.every(([name, value]) => shown(scenario.values[name]) === value) ? outcomesOf(scenario, index, clause) : [],
+  );
+  const [first] = [...outcomes].sort((one, other) => RANK[one.verdict] - RANK[other.verdict] || margin(one) - margin(other));
+  if (first === undefined) {
+    return undefined;
+  }
+  const margins = outcomes.map(margin).filter(Number.isFinite);
+  return {
+    passed: outcomes.filter(({ verdict }) => verdict === "holds").length,
+    total: outcomes.length,
+    worst: clause === "" || margins.length === 0 ? undefined : Math.min(...margins),
+    unit: first.unit,
+    index: first.index,
+  };
+}
+
+/** The margins of a clause in `count` bins of one width, with a bound at zero where they reach both sides of it. */
+export function histogram(scenarios: readonly JudgedScenario[], clause: string, count: number): Bin[] {
+  const outcomes = scenarios.flatMap((scenario, index) => outcomesOf(scenario, index, clause));
+  const judged = outcomes.filter(({ robustness }) => robustness !== null);
+  const margins = judged.map(margin);
+  const [low, high] = [Math.min(0, ...margins), Math.max(0, ...margins)];
+  if (judged.length === 0 || low === high) {
+    return [];
+  }
+  const width = (high - low) / count;
+  const start = -Math.ceil(-low / width - 1e-9) * width;
+  const bins = Array.from({ length: Math.ceil((high - start) / width - 1e-9) }, (_, number) => {
+    const from = start + number * width;
+    return { from, to: from + width, count: 0, index: -1, worst: Infinity };
+  });
+  for (const outcome of judged) {
+    const value = margin(outcome);
+    const bin = bins[Math.min(bins.length - 1, Math.max(0, Math.floor((value - start) / width + 1e-9)))];
+    if (bin !== undefined) {
+      bin.count += 1;
+      if (value < bin.worst) {
+        bin.worst = value;
+        bin.index = outcome.index;
+      }
+    }
+  }
+  return bins.map(({ from, to, count: found, index }) => ({ from, to, count: found, index }));
+}
+
+function outcomesOf(scenario: JudgedScenario, index: number, clause: string): Outcome[] {
+  if (clause === "") {
+    return [{ index, verdict: scenario.verdict, robustness: null, unit: "" }];
+  }
+  return scenario.clauses.filter(({ iri }) => iri === clause).map((found) => ({ ...found, index }));
+}
+
+function margin({ robustness }: Outcome): number {
+  return robustness ?? Infinity;
+}
+
+function ordered(values: readonly string[]): string[] {
+  const numbers = values.every((value) => value !== "" && Number.isFinite(Number(value)));
+  return numbers ? [...values].sort((one, other) => Number(one) - Number(other)) : [...values];
+}
