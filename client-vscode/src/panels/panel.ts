@@ -59,7 +59,9 @@ export class Panel<Outgoing extends object> implements vscode.Disposable {
   }
 }
 
-/** Open a new panel beside the editor, without taking the keyboard from that. */
+/** Open a new panel beside the text, without taking the keyboard from that; one that a panel leads to in its place. */
 export function beside(type: string, title: string): vscode.WebviewPanel {
-  return vscode.window.createWebviewPanel(type, title, { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true });
+  const fromPanel = vscode.window.tabGroups.activeTabGroup.activeTab?.input instanceof vscode.TabInputWebview;
+  const viewColumn = fromPanel ? vscode.ViewColumn.Active : vscode.ViewColumn.Beside;
+  return vscode.window.createWebviewPanel(type, title, { viewColumn, preserveFocus: true });
 }

@@ -142,9 +142,9 @@ class Graph {
     if (asked === this.asked && isGraphPicture(answer)) {
       this.picture = answer;
       this.post();
-      const { activeTextEditor } = vscode.window;
-      if (activeTextEditor !== undefined) {
-        this.highlight(activeTextEditor, !this.restored);
+      const followed = vscode.window.activeTextEditor ?? editor;
+      if (followed !== undefined) {
+        this.highlight(followed, !this.restored);
       }
       this.restored = false;
     }

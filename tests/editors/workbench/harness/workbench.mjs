@@ -154,7 +154,7 @@ export class Workbench {
 
   /** The page of the one panel with a web view that is in front. */
   webview() {
-    return this.page.frameLocator("iframe.webview.ready").frameLocator("#active-frame");
+    return this.page.frameLocator("iframe.webview.ready:visible").frameLocator("#active-frame");
   }
 
   /** Load the window again, as after a crash or an update, and wait until it can be used. */
