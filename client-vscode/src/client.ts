@@ -144,6 +144,12 @@ export class Server implements vscode.Disposable {
       void vscode.window.showWarningMessage("The RobBDD language server is not running.");
       return undefined;
     }
+    if (RUNNING.has(command) && !vscode.workspace.isTrusted) {
+      this.complain("Nothing was run: scenarios run code of this workspace, which you do not trust yet.", {
+        "Manage Workspace Trust": () => void vscode.commands.executeCommand("workbench.trust.manage"),
+      });
+      return undefined;
+    }
     try {
       const params = { command, arguments: [argument] };
       const result: unknown = await client.sendRequest(ExecuteCommandRequest.type, params);
@@ -226,6 +232,7 @@ export class Server implements vscode.Disposable {
       "RobBDD",
       { command, transport: TransportKind.stdio },
       {
+        initializationOptions: { trusted: vscode.workspace.isTrusted },
         documentSelector: LANGUAGES.map((language) => ({ scheme: "file", language })),
         outputChannel: this.log,
         synchronize: { fileEvents: this.files },

@@ -59,7 +59,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
       }
     }),
     vscode.workspace.onDidGrantWorkspaceTrust(() => {
-      void started.restartIfMoved();
+      // The server is told when it starts; and there may be another one now.
+      void started.restart();
     }),
     vscode.workspace.onDidChangeWorkspaceFolders(() => {
       void started.restartIfMoved();

@@ -58,6 +58,7 @@ def _register_documents(server: RobbddServer) -> None:
         able = cast("dict[str, object]", wanted) if isinstance(wanted, dict) else {}
         ls.shows_pictures = able.get("pictures") is True
         ls.shows_replays = able.get("replay") is True
+        ls.trusted = able.get("trusted") is not False
         # What is registered by now is what the client will be told of.
         if can_pull(params.capabilities):
             register_pull(ls)

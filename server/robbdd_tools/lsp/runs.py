@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from robbdd_tools.run.store import StoredRun
 
 PICTURES = "pictures"
+UNTRUSTED = (
+    "nothing was run: scenarios run the workspace's own steps, behaviours and models, and this workspace is not trusted"
+)
 _LOG = logging.getLogger(__name__)
 _BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 
@@ -65,6 +68,9 @@ class ActiveRun:
 
 async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) -> dict[str, Any]:
     """Run scenarios to their end, showing results as they come; returns how it went, ``{}`` when nothing was run."""
+    if not ls.trusted:
+        ls.tell(UNTRUSTED)
+        return {}
     if ls.run is not None:
         ls.tell("a run is going on: cancel it first")
         return {}

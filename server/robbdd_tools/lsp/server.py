@@ -56,6 +56,8 @@ class RobbddServer(LanguageServer):
         self.project = Project()
         self.convert = Converter()
         self.settings = Settings()
+        self.trusted = True
+        """Whether code of the workspace may be run: a client says otherwise with ``trusted`` as it starts us."""
         self.results = Results()
         self.findings = NOTHING
         """What runs have found, as it is shown."""
