@@ -139,6 +139,8 @@ export class Server implements vscode.Disposable {
    * answer. Undefined, after a message, when there is no server or it refuses.
    */
   async execute(command: string, argument: unknown): Promise<unknown> {
+    // A command may be what has activated us: the server is just starting then.
+    await this.begin();
     const client = this.client;
     if (client?.state !== State.Running) {
       void vscode.window.showWarningMessage("The RobBDD language server is not running.");

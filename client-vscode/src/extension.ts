@@ -15,7 +15,7 @@ import { TestingView } from "./testing/view";
 
 let server: Server | undefined;
 
-export async function activate(context: vscode.ExtensionContext): Promise<void> {
+export function activate(context: vscode.ExtensionContext): void {
   const log = vscode.window.createOutputChannel("RobBDD", { log: true });
   const status = new StatusItem();
   const runs = new RunMonitor((progress, summary) => {
@@ -66,14 +66,16 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
       void started.restartIfMoved();
     }),
   );
-  // A folder with models is no reason to work: one that is shown is, and the Testing view when it is opened.
+  // A folder with models is no reason to work: one that is shown is, and the Testing view when it is opened. Nobody waits
+  // for these: what needs the server waits for it by itself.
   if (vscode.workspace.textDocuments.some(({ languageId }) => LANGUAGES.includes(languageId))) {
-    await started.begin();
+    void started.begin();
   }
-  const interpreter = await onInterpreterChange(() => void started.restartIfMoved(), log);
-  if (interpreter !== undefined) {
-    context.subscriptions.push(interpreter);
-  }
+  void onInterpreterChange(() => void started.restartIfMoved(), log).then((listener) => {
+    if (listener !== undefined) {
+      context.subscriptions.push(listener);
+    }
+  });
 }
 
 export function deactivate(): Promise<void> | undefined {
