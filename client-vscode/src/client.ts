@@ -234,11 +234,10 @@ export class Server implements vscode.Disposable {
       "RobBDD",
       { command, transport: TransportKind.stdio },
       {
-        initializationOptions: { trusted: vscode.workspace.isTrusted },
         documentSelector: LANGUAGES.map((language) => ({ scheme: "file", language })),
         outputChannel: this.log,
         synchronize: { fileEvents: this.files },
-        initializationOptions: { pictures: true, replay: true },
+        initializationOptions: { pictures: true, replay: true, trusted: vscode.workspace.isTrusted },
         markdown: { isTrusted: { enabledCommands: ["robbdd.showReplay"] } },
         initializationFailedHandler: () => false,
         errorHandler: {
