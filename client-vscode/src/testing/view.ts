@@ -36,6 +36,8 @@ export class TestingView implements vscode.Disposable {
   private readonly timers = new Map<string, NodeJS.Timeout>();
   private watcher: vscode.FileSystemWatcher | undefined;
   private runs = 0;
+  /** Resolves when the server is done with what was begun here. */
+  private turn: Promise<void> = Promise.resolve();
   private restored: Promise<void> | undefined;
 
   constructor(
@@ -314,17 +316,28 @@ export class TestingView implements vscode.Disposable {
     token: vscode.CancellationToken,
     command: string,
   ): Promise<void> {
+    const cancelled = new Promise<void>((resolve) => {
+      token.onCancellationRequested(() => {
+        setTimeout(resolve, CANCEL_LIMIT);
+      });
+    });
+    const before = this.turn;
+    const { promise: turn, resolve: pass } = whenResolved();
+    this.turn = turn;
+    // The server does one run at a time, and a cancelled one may still be on its way out.
+    await Promise.race([before, cancelled]);
+    if (token.isCancellationRequested) {
+      void before.then(pass);
+      return;
+    }
     this.runs += 1;
     const name = `${OWN}${this.runs}`;
     const follower = new RunFollower(this.tree, sinkOf(run), vscode.workspace.asRelativePath(vscode.Uri.parse(uri)), now);
     this.followers.set(name, follower);
-    const cancelled = new Promise<void>((resolve) => {
-      token.onCancellationRequested(() => {
-        void this.server.execute("robbdd.cancel", {});
-        setTimeout(resolve, CANCEL_LIMIT);
-      });
-    });
+    const cancelling = token.onCancellationRequested(() => void this.server.execute("robbdd.cancel", {}));
     const executed = this.server.execute(command, { uri, only, token: name }).then(async (answer) => {
+      cancelling.dispose();
+      pass();
       await follower.settled();
       for (const picture of picturesOf(answer)) {
         run.appendOutput(`    picture: ${vscode.Uri.parse(picture).fsPath}\r\n`);
@@ -366,6 +379,14 @@ export class TestingView implements vscode.Disposable {
       }
     }
   }
+}
+
+function whenResolved(): { readonly promise: Promise<void>; readonly resolve: () => void } {
+  let resolve = (): void => undefined;
+  const promise = new Promise<void>((done) => {
+    resolve = done;
+  });
+  return { promise, resolve };
 }
 
 function factory(controller: vscode.TestController): Factory<vscode.TestItem> {
