@@ -236,3 +236,10 @@ def test_a_scenario_takes_the_reasons_of_its_own_clauses() -> None:
     scenario.mark_vacuous({IRI: "constant", "other": "constant"})
     assert scenario.clauses == {IRI: replace(HOLDS, vacuous="constant")}
     assert from_json(as_json(scenario)) == scenario
+
+
+def test_results_of_deleted_variants_are_forgotten_in_their_model_alone() -> None:
+    entries = [JudgedScenario(model, variant, 1, "", "", "") for model, variant in (("a", "v"), ("a", "w"), ("b", "x"))]
+    results = Results(entries)
+    results.drop_deleted("a", {"w"})
+    assert [(entry.model, entry.variant) for entry in results] == [("a", "w"), ("b", "x")]

@@ -24,6 +24,8 @@ from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.run.protocol import read_manifest, thumbnail_file
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from robbdd_tools.agent.moments import Moment
     from robbdd_tools.run.protocol import Manifest, ScenarioSpec
 
@@ -125,14 +127,21 @@ def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]], 
     calls = calls_of(spec)
     focus = next((call.arguments["object"] for call in calls if "object" in call.arguments), None)
     simulation = Execution(spec, calls).simulation
-    camera = Camera(simulation, SMALL, plain=True) if small else Camera(simulation)
+    camera = Camera(simulation, (2 * SMALL[0], 2 * SMALL[1]), plain=True) if small else Camera(simulation)
     try:
         for path, moment in wanted:
             pixels = camera.take(simulation.data) if moment is None else camera.take_state(moment.state, focus)
-            write_png(path, pixels & COARSE if small else pixels)
+            write_png(path, _halved(pixels) if small else pixels)
             yield path
     finally:
         camera.close()
+
+
+def _halved(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return a picture of half the size in coarser colours: labels, too, are then half as large."""
+    height, width, _ = pixels.shape
+    means = pixels.reshape(height // 2, 2, width // 2, 2, 3).mean(axis=(1, 3))
+    return means.astype(np.uint8) & COARSE
 
 
 def _main() -> int:

@@ -120,6 +120,12 @@ class Results:
         for key in [key for key in self._scenarios if key[0] == variant and key[1] not in kept]:
             del self._scenarios[key]
 
+    def drop_deleted(self, model: str, variants: Collection[str]) -> None:
+        """Forget what is known of variants that a model does not have any more."""
+        gone = {entry.variant for entry in self if entry.model == model} - set(variants)
+        for key in [key for key in self._scenarios if key[0] in gone]:
+            del self._scenarios[key]
+
     def findings(self) -> Findings:
         """Return what is known now."""
         clauses: dict[str, list[Judged]] = {}

@@ -142,6 +142,9 @@ class _Follower:
         if self._run.options.is_whole and not scheduler.ending:
             for variant, begun in self._begun.items():
                 self._ls.results.drop_others(variant, begun)
+        request = self._plan.request
+        known = {variant.iri for story in request.model.stories for variant in story.variants}
+        self._ls.results.drop_deleted(request.name, known)
         for scenario in self._run.judged.values():
             scenario.mark_vacuous(self._results.vacuous())
         self._take(RunFinished(not scheduler.ending))
