@@ -33,9 +33,9 @@ from robbdd_tools.run.protocol import (
     ScenarioSpec,
     SceneSpec,
     plain_name,
-    scenario_seed,
 )
 from robbdd_tools.run.related import Linked, Relations
+from robbdd_tools.run.seeds import scenario_seed
 from robbdd_tools.run.tree_specs import TreeSpecWriter
 
 Values = Mapping[Iri, Cell]

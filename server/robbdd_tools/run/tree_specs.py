@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
 from robbdd_tools.graph.model import AcceptanceModel, Cell, Clause, Iri, TreeNode, Variant
 from robbdd_tools.monitor.time import After, Before
-from robbdd_tools.run.protocol import ScenarioSpec, SceneSpec, scenario_seed
+from robbdd_tools.run.protocol import ScenarioSpec, SceneSpec
 from robbdd_tools.run.related import Group, Member, Relations, roots_of
+from robbdd_tools.run.seeds import scenario_seed
 
 LEAD = 0.5
 """Seconds recorded before a tree starts, at least."""
