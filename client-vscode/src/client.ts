@@ -21,8 +21,6 @@ import type { Setup } from "./setup/setup";
 import { surroundings } from "./surroundings";
 
 export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
-/** Models, and what may hold a project's own rules about them. */
-const FILES = "**/{*.bdd,*.scene,*.scenex,*.bddx,*.ktree,*.ttl,robbdd.toml,pyproject.toml}";
 /** Commands of the server that run scenarios. */
 const RUNNING = new Set(["robbdd.run", "robbdd.rerunFailed", "robbdd.record"]);
 const STOP_TIMEOUT = 3000;
@@ -41,7 +39,6 @@ export class Server implements vscode.Disposable {
   private begun = false;
   /** Starts and stops one after the other, however fast they are asked for. */
   private pending: Promise<void> = Promise.resolve();
-  private readonly files = vscode.workspace.createFileSystemWatcher(FILES);
 
   constructor(
     private readonly log: vscode.LogOutputChannel,
@@ -202,7 +199,6 @@ export class Server implements vscode.Disposable {
   }
 
   dispose(): void {
-    this.files.dispose();
     void this.stop();
   }
 
@@ -236,7 +232,6 @@ export class Server implements vscode.Disposable {
       {
         documentSelector: LANGUAGES.map((language) => ({ scheme: "file", language })),
         outputChannel: this.log,
-        synchronize: { fileEvents: this.files },
         initializationOptions: { pictures: true, replay: true, trusted: vscode.workspace.isTrusted },
         markdown: { isTrusted: { enabledCommands: ["robbdd.showReplay"] } },
         initializationFailedHandler: () => false,

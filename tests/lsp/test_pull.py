@@ -110,6 +110,8 @@ async def test_files_that_are_not_open_are_told_and_again_when_they_change(pull_
     first = await workspace(client)
     assert codes(first[uri]) == ["unknown-name"]
     assert codes(first[pull_editor.uri]) == []
+    # A remark, that its scene runs on models of the catalog, waits until the file is opened.
+    assert codes(first[path_to_uri(pull_editor.path.parent / "bench.scene")]) == []
     known = {name: report.result_id for name, report in first.items()}
 
     waiting = asyncio.ensure_future(workspace(client, known))

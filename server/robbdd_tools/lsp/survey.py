@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from hashlib import blake2b
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.lsp.shapes import ShapeValidator
 
@@ -146,7 +147,8 @@ class Survey:
     def _converted(self, answer: Answer) -> dict[str, Findings]:
         convert, documents = self._server.convert, answer.documents
         found: dict[str, list[types.Diagnostic]] = {answer.uri: []}
-        for one in answer.diagnostics:
+        # Remarks and hints are for whoever reads the file: elsewhere they would bury what has to be mended.
+        for one in (one for one in answer.diagnostics if one.severity <= Severity.WARNING):
             found.setdefault(one.uri, []).append(convert.diagnostic(documents, one))
         return {uri: Findings.of(diagnostics) for uri, diagnostics in found.items()}
 
