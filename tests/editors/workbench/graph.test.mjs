@@ -130,7 +130,7 @@ step("a page that was hidden shows what it showed before", async () => {
 step("the panel comes back with the window", async () => {
   await workbench.reload();
   page = workbench.webview();
-  await current("in-hand").waitFor();
+  await node("at-goal").waitFor();
 });
 
 function place() {
