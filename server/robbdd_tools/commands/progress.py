@@ -18,16 +18,24 @@ if TYPE_CHECKING:
 
     from robbdd_tools.run.results import RunResults, ScenarioResult
 
+BESIDE = len("  ✔   +1000.0 mm  at 10.00 s")
+"""Columns that a clause's sign, margin and instant take beside its sentence."""
 STYLES = {Outcome.HOLDS: "green", Outcome.VIOLATED: "bold red", Outcome.UNKNOWN: "yellow"}
 
 
 class Display:
-    """Prints a run. The bar is drawn on a terminal only; elsewhere each scenario is a few plain lines."""
+    """Prints a run.
+
+    A terminal that can move its cursor gets a bar and lines that break between words; else there are plain lines that
+    nothing breaks, so that other programs can read them.
+    """
 
     def __init__(self, results: RunResults, total: int | None = None) -> None:
         self._results = results
         self._total = len(results.scenarios) if total is None else total
-        self._console = Console(highlight=False, soft_wrap=True)
+        self._console = Console(highlight=False)
+        self._drawn = self._console.is_terminal and not self._console.is_dumb_terminal
+        self._console.soft_wrap = not self._drawn
         self._progress = Progress(
             TextColumn("{task.description}"),
             BarColumn(),
@@ -37,7 +45,7 @@ class Display:
             TimeRemainingColumn(),
             console=self._console,
             transient=True,
-            disable=not self._console.is_terminal,
+            disable=not self._drawn,
         )
         self._held = self._failed = 0
         self._fails: set[int] = set()
@@ -123,6 +131,8 @@ class Display:
             if (judged := scenario.judged.get(clause.line)) is not None
         ]
         width = max((len(sentence) for _, sentence in rows), default=0)
+        if self._drawn:
+            width = min(width, self._console.width - BESIDE)
         for judged, sentence in rows:
             self._console.print(_clause_line(judged, sentence, width))
 
