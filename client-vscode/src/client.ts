@@ -1,19 +1,9 @@
 // Finds, starts, watches and stops the language server.
-import { createInterface } from "node:readline";
-import type { Readable } from "node:stream";
 import * as vscode from "vscode";
-import {
-  CloseAction,
-  ErrorAction,
-  ExecuteCommandRequest,
-  LanguageClient,
-  State,
-  TransportKind,
-} from "vscode-languageclient/node";
+import type { LanguageClient } from "vscode-languageclient/node";
 import { openFiles } from "./written";
 import { type Lookup, OWN, findServer } from "./lookup";
 import type { ServerState } from "./presentation";
-import { RestartBudget } from "./restarts";
 import { isRunNotification } from "./runs/messages";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
@@ -24,13 +14,6 @@ export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bdd
 /** Commands of the server that run scenarios. */
 const RUNNING = new Set(["robbdd.run", "robbdd.rerunFailed", "robbdd.record"]);
 const STOP_TIMEOUT = 3000;
-
-/** Logs its errors and leaves it to us to speak to the user: two messages for one failure are one too many. */
-class DiscreetClient extends LanguageClient {
-  override error(message: string, data?: unknown): void {
-    super.error(message, data, false);
-  }
-}
 
 export class Server implements vscode.Disposable {
   private client: LanguageClient | undefined;
@@ -124,7 +107,7 @@ export class Server implements vscode.Disposable {
   }
 
   private isRunning(): boolean {
-    return this.client?.state === State.Running;
+    return this.client?.isRunning() === true;
   }
 
   private async find(): Promise<Lookup> {
@@ -139,7 +122,7 @@ export class Server implements vscode.Disposable {
     // A command may be what has activated us: the server is just starting then.
     await this.begin();
     const client = this.client;
-    if (client?.state !== State.Running) {
+    if (client?.isRunning() !== true) {
       void vscode.window.showWarningMessage("The RobBDD language server is not running.");
       return undefined;
     }
@@ -151,7 +134,7 @@ export class Server implements vscode.Disposable {
     }
     try {
       const params = { command, arguments: [argument] };
-      const result: unknown = await client.sendRequest(ExecuteCommandRequest.type, params);
+      const result: unknown = await client.sendRequest("workspace/executeCommand", params);
       if (command === "robbdd.gherkin" || command === "robbdd.steps") {
         await openFiles(result);
       }
@@ -169,7 +152,7 @@ export class Server implements vscode.Disposable {
 
   /** Ask the server something that no user waits for: undefined when there is no server or it has no answer. */
   async request(method: string, params: object): Promise<unknown> {
-    if (this.client?.state !== State.Running) {
+    if (this.client?.isRunning() !== true) {
       return undefined;
     }
     try {
@@ -211,7 +194,7 @@ export class Server implements vscode.Disposable {
 
   private async start(command: string, origin: string): Promise<void> {
     this.log.info(`Starting ${command} (from ${origin})`);
-    const client = this.createClient(command);
+    const client = await this.createClient(command);
     this.client = client;
     try {
       await client.start();
@@ -222,55 +205,29 @@ export class Server implements vscode.Disposable {
     }
   }
 
-  private createClient(command: string): LanguageClient {
-    const budget = new RestartBudget();
-    let answered = false;
-    const client = new DiscreetClient(
-      "robbdd",
-      "RobBDD",
-      { command, transport: TransportKind.stdio },
-      {
-        documentSelector: LANGUAGES.map((language) => ({ scheme: "file", language })),
-        outputChannel: this.log,
-        initializationOptions: { pictures: true, replay: true, trusted: vscode.workspace.isTrusted },
-        markdown: { isTrusted: { enabledCommands: ["robbdd.showReplay"] } },
-        initializationFailedHandler: () => false,
-        errorHandler: {
-          // A broken pipe is followed by the close of the connection, which is where the decision is made.
-          error: () => ({ action: ErrorAction.Continue, handled: true }),
-          closed: () => {
-            this.runs.abandon();
-            // A server that never answered will not do so the next time either.
-            const again = answered && budget.crashed(Date.now());
-            if (!again) {
-              this.fail(client, `The RobBDD language server (${command}) ended unexpectedly. See the log.`);
-            }
-            return { action: again ? CloseAction.Restart : CloseAction.DoNotRestart, handled: true };
-          },
-        },
-        middleware: {
-          provideCompletionItem: async (document, position, context, token, next) =>
-            withoutSnippets(await next(document, position, context, token)),
-          executeCommand: (name, [argument]: unknown[]) => this.execute(name, argument),
-        },
-        // Python's logging writes everything to stderr; that alone does not make a line an error.
-        stdioOptions: { stdout: forwardLines, stderr: forwardLines },
-      },
-    );
-    client.onNotification("robbdd/runMessage", (notification: unknown) => {
-      if (isRunNotification(notification)) {
-        this.runs.accept(notification);
-      } else {
-        this.log.warn(`Not a run message of this version: ${JSON.stringify(notification)}`);
-      }
-    });
-    client.onDidChangeState(({ newState }) => {
-      if (newState === State.Starting) {
+  private async createClient(command: string): Promise<LanguageClient> {
+    const { createClient } = await import("./connection");
+    const client = createClient(command, LANGUAGES, this.log, {
+      starting: () => {
         this.publish({ kind: "starting" });
-      } else if (newState === State.Running) {
-        answered = true;
+      },
+      running: () => {
         this.publish({ kind: "ready", command });
-      }
+      },
+      ended: () => {
+        this.runs.abandon();
+      },
+      gaveUp: () => {
+        this.fail(client, `The RobBDD language server (${command}) ended unexpectedly. See the log.`);
+      },
+      runMessage: (notification) => {
+        if (isRunNotification(notification)) {
+          this.runs.accept(notification);
+        } else {
+          this.log.warn(`Not a run message of this version: ${JSON.stringify(notification)}`);
+        }
+      },
+      execute: (name, argument) => this.execute(name, argument),
     });
     return client;
   }
@@ -347,24 +304,4 @@ function ask(answer: Thenable<string | undefined>, buttons: Record<string, () =>
 
 function hasUri(value: unknown): value is { readonly uri: string } {
   return typeof value === "object" && value !== null && "uri" in value && typeof value.uri === "string";
-}
-
-function forwardLines(input: Readable, channel: vscode.LogOutputChannel): void {
-  createInterface({ input }).on("line", (line) => {
-    channel.info(line);
-  });
-}
-
-/** Leaves out the server's snippets: the extension has the same ones, and offers them while there is no server, too. */
-function withoutSnippets<Found extends vscode.CompletionItem[] | vscode.CompletionList>(
-  found: Found | null | undefined,
-): Found | vscode.CompletionItem[] | null | undefined {
-  const isKept = ({ kind }: vscode.CompletionItem) => kind !== vscode.CompletionItemKind.Snippet;
-  if (Array.isArray(found)) {
-    return found.filter(isKept);
-  }
-  if (found) {
-    found.items = found.items.filter(isKept);
-  }
-  return found;
 }
