@@ -42,7 +42,29 @@ def test_an_element_is_found_in_every_file_that_uses_it() -> None:
 def test_a_variable_is_found_by_its_short_and_its_qualified_name() -> None:
     case, uri = marked("var goal", "var go$0al")
     assert len(references(case.snapshot, uri, case.cursor, with_declaration=False)) == 4
-    assert len(highlights(case.snapshot, uri, case.cursor)) == 5
+
+
+TABLE = """                | <fetch.part> | <fetch.robot> | <fetch.goal> |
+                |---|---|---|
+                | <parts.bolt> | <arms.panda> | <places.tray_ws> |
+"""
+PRODUCT = MODEL[MODEL.index("                var <fetch.part>") :].rpartition("        }")[0]
+
+
+@pytest.mark.parametrize("text", [MODEL, MODEL.replace(PRODUCT, TABLE)], ids=["product", "table"])
+def test_a_variable_is_written_where_it_is_declared_and_given_values_and_read_in_clauses(text: str) -> None:
+    assert "<fetch.goal>" in text
+    case = fixture(text.replace("var goal", "var go$0al"))
+    found = highlights(case.snapshot, case.uri, case.cursor)
+    written = [(text[place.span.start : place.span.end], place.writes) for place in found]
+    assert written == [("goal", True), ("goal", False), ("goal", False), ("goal", False), ("fetch.goal", True)]
+
+
+def test_an_imported_name_is_only_read() -> None:
+    case, uri = marked("<places.tray_ws>", "<places.tray$0_ws>")
+    assert [place.writes for place in highlights(case.snapshot, uri, case.cursor)] == [False]
+    case, uri = marked("workspace tray_ws", "workspace tray$0_ws", scene=True)
+    assert [place.writes for place in highlights(case.snapshot, uri, case.cursor)] == [True, False]
 
 
 def renamed(old: str, new: str, name: str, scene: bool = False) -> tuple[str, str]:

@@ -51,8 +51,10 @@ async def test_completion_and_definition_across_files(editor: Editor) -> None:
     assert [item.label for item in items] == ["arms"]
     where = types.DefinitionParams(**editor.at("cubes.cube0", after=True))
     found = await editor.client.text_document_definition_async(where)
-    assert isinstance(found, types.Location)
-    assert found.uri.endswith("bench.scene")
+    assert isinstance(found, list | tuple)
+    (place,) = found
+    assert isinstance(place, types.Location)
+    assert place.uri.endswith("bench.scene")
 
 
 async def test_a_rename_reaches_the_imported_scene(editor: Editor) -> None:

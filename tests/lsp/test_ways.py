@@ -49,4 +49,18 @@ async def test_types_implementations_links_and_selections_are_answered(editor: E
     declared = await client.text_document_declaration_async(
         types.DeclarationParams(**editor.at("template: <pick", after=True))
     )
-    assert isinstance(declared, types.Location)
+    assert isinstance(declared, list | tuple)
+    (place,) = declared
+    assert isinstance(place, types.Location)
+
+
+@CLIENTS
+async def test_highlights_tell_where_a_variable_is_written(editor: Editor) -> None:
+    editor.open()
+    where = types.DocumentHighlightParams(**editor.at("var thing", after=True))
+    found = await editor.client.text_document_document_highlight_async(where)
+    kinds = {place.range.start.line: place.kind for place in found or ()}
+    read, write = types.DocumentHighlightKind.Read, types.DocumentHighlightKind.Write
+    assert kinds[editor.position("var thing").line] == write
+    assert kinds[editor.position("<thing> is").line] == read
+    assert kinds[editor.position("<pick-place.thing>").line] == write

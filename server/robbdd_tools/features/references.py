@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.definition import symbol_at
+from robbdd_tools.names.types import columns_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.analysis import Definition, FileAnalysis
     from robbdd_tools.names.project import Snapshot
 
 
@@ -23,6 +26,14 @@ class Use:
     span: Span
     written: str
     target: Definition
+
+
+@dataclass(frozen=True, slots=True)
+class Highlight:
+    """A place of a name; it ``writes`` where the name is declared or a variation gives values to the variable."""
+
+    span: Span
+    writes: bool
 
 
 def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool) -> list[tuple[str, Span]]:
@@ -37,25 +48,51 @@ def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool
     return sorted(places)
 
 
-def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Span]:
-    """Return the places of the name under a cursor within its own document."""
-    return [span for found, span in references(snapshot, uri, offset, with_declaration=True) if found == uri]
+def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
+    """Return the places of the name under a cursor within its own document, in their order."""
+    found = symbol_at(snapshot, uri, offset)
+    file = snapshot.file(uri)
+    if found is None or file is None:
+        return []
+    definition = found[1]
+    spans = {use.span for use in _uses_in(file, definition) if _same(use.target, definition)}
+    written = _written(file) if definition.kind in (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE) else set[Span]()
+    if definition.uri == uri:
+        spans.add(definition.span)
+        written.add(definition.span)
+    return [Highlight(span, span in written) for span in sorted(spans)]
+
+
+def _written(file: FileAnalysis) -> set[Span]:
+    """Return where the variations of a file name the variables that they give values to."""
+    return {
+        ref.span.shifted(placed.offset)
+        for placed in file.declarations
+        if isinstance(placed.declaration.tree, tree.Story)
+        for variant in placed.declaration.tree.variants
+        for ref, _ in columns_of(variant.variation)
+    }
 
 
 def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Use]:
     """Yield every reference to a definition or to a part of it (a template's variable, a set's element)."""
-    name, path = definition.symbol.name, definition.symbol.path
     for uri in sorted({definition.uri, *snapshot.importers(definition.uri)}):
-        analysis = snapshot.file(uri)
-        for placed in analysis.declarations if analysis is not None else ():
-            checkpoint()
-            for ref in placed.targets:
-                # Reading the written name is cheap; only what may mean the definition is followed.
-                if name not in ref.path and not ref.path.startswith(path):
-                    continue
-                target = placed.targets[ref]
-                if target.uri == definition.uri and f"{target.symbol.path}.".startswith(f"{path}."):
-                    yield Use(uri, ref.span.shifted(placed.offset), ref.path, target)
+        file = snapshot.file(uri)
+        if file is not None:
+            yield from _uses_in(file, definition)
+
+
+def _uses_in(file: FileAnalysis, definition: Definition) -> Iterator[Use]:
+    name, path = definition.symbol.name, definition.symbol.path
+    for placed in file.declarations:
+        checkpoint()
+        for ref in placed.targets:
+            # Reading the written name is cheap; only what may mean the definition is followed.
+            if name not in ref.path and not ref.path.startswith(path):
+                continue
+            target = placed.targets[ref]
+            if target.uri == definition.uri and f"{target.symbol.path}.".startswith(f"{path}."):
+                yield Use(file.document.uri, ref.span.shifted(placed.offset), ref.path, target)
 
 
 def _same(one: Definition, other: Definition) -> bool:

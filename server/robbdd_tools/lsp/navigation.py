@@ -5,7 +5,6 @@ from __future__ import annotations
 from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
-from robbdd_tools.features.definition import definition
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.outline import Item, outline, project_names
 from robbdd_tools.features.references import highlights, references
@@ -22,15 +21,6 @@ def register_navigation(server: RobbddServer) -> None:
 
 
 def _register_uses(server: RobbddServer) -> None:
-    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
-    async def go_to_definition(ls: RobbddServer, params: types.DefinitionParams) -> types.Location | None:
-        def find(snapshot: Snapshot) -> types.Location | None:
-            document = document_of(snapshot, params.text_document.uri)
-            found = definition(snapshot, document.uri, ls.convert.offset(document, params.position))
-            return None if found is None else ls.convert.location(snapshot, *found)
-
-        return await ls.analyse(find)
-
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     async def find_references(ls: RobbddServer, params: types.ReferenceParams) -> list[types.Location]:
         def find(snapshot: Snapshot) -> list[types.Location]:
@@ -45,8 +35,14 @@ def _register_uses(server: RobbddServer) -> None:
     async def highlight(ls: RobbddServer, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
         def find(snapshot: Snapshot) -> list[types.DocumentHighlight]:
             document = document_of(snapshot, params.text_document.uri)
-            spans = highlights(snapshot, document.uri, ls.convert.offset(document, params.position))
-            return [types.DocumentHighlight(range=ls.convert.range(document, span)) for span in spans]
+            found = highlights(snapshot, document.uri, ls.convert.offset(document, params.position))
+            return [
+                types.DocumentHighlight(
+                    range=ls.convert.range(document, place.span),
+                    kind=types.DocumentHighlightKind.Write if place.writes else types.DocumentHighlightKind.Read,
+                )
+                for place in found
+            ]
 
         return await ls.analyse(find)
 

@@ -1,7 +1,8 @@
-"""The protocol's methods that lead on from a place: type definition, implementation, call hierarchy and others."""
+"""The protocol's methods that lead on from a place: definition, implementation, call hierarchy and others."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, cast
 
 from lsprotocol import types
@@ -18,6 +19,8 @@ from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.analysis import Definition
 from robbdd_tools.names.project import Snapshot
 
+Targets = Callable[[Snapshot, str, int], list[tuple[str, Span]]]
+
 
 def register_ways(server: RobbddServer) -> None:
     """Add the methods to a server."""
@@ -27,32 +30,26 @@ def register_ways(server: RobbddServer) -> None:
 
 
 def _register_targets(server: RobbddServer) -> None:
-    @server.feature(types.TEXT_DOCUMENT_DECLARATION)
-    async def declared(ls: RobbddServer, params: types.DeclarationParams) -> types.Location | None:
-        def find(snapshot: Snapshot) -> types.Location | None:
-            document = document_of(snapshot, params.text_document.uri)
-            found = definition(snapshot, document.uri, ls.convert.offset(document, params.position))
-            return None if found is None else ls.convert.location(snapshot, *found)
+    for method in (types.TEXT_DOCUMENT_DEFINITION, types.TEXT_DOCUMENT_DECLARATION):
+        _register_target(server, method, _definitions)
+    _register_target(server, types.TEXT_DOCUMENT_TYPE_DEFINITION, type_definition)
+    _register_target(server, types.TEXT_DOCUMENT_IMPLEMENTATION, implementation)
 
-        return await ls.analyse(find)
 
-    @server.feature(types.TEXT_DOCUMENT_TYPE_DEFINITION)
-    async def typed(ls: RobbddServer, params: types.TypeDefinitionParams) -> list[types.Location]:
+def _register_target(server: RobbddServer, method: str, targets: Targets) -> None:
+    @server.feature(method)
+    async def lead(ls: RobbddServer, params: types.TextDocumentPositionParams) -> list[types.Location]:
         def find(snapshot: Snapshot) -> list[types.Location]:
             document = document_of(snapshot, params.text_document.uri)
-            found = type_definition(snapshot, document.uri, ls.convert.offset(document, params.position))
+            found = targets(snapshot, document.uri, ls.convert.offset(document, params.position))
             return [ls.convert.location(snapshot, uri, span) for uri, span in found]
 
         return await ls.analyse(find)
 
-    @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
-    async def implemented(ls: RobbddServer, params: types.ImplementationParams) -> list[types.Location]:
-        def find(snapshot: Snapshot) -> list[types.Location]:
-            document = document_of(snapshot, params.text_document.uri)
-            found = implementation(snapshot, document.uri, ls.convert.offset(document, params.position))
-            return [ls.convert.location(snapshot, uri, span) for uri, span in found]
 
-        return await ls.analyse(find)
+def _definitions(snapshot: Snapshot, uri: str, offset: int) -> list[tuple[str, Span]]:
+    found = definition(snapshot, uri, offset)
+    return [] if found is None else [found]
 
 
 def _register_calls(server: RobbddServer) -> None:
