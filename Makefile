@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo test setup lint test-python test-client test-editors fuzz bench clean
+.PHONY: demo test setup lint test-python test-client test-editors fuzz bench package publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -44,6 +44,21 @@ fuzz: $(READY)
 # Measures speed as ratios of one run and writes the figures into docs/performance.md.
 bench: $(READY)
 	$(BIN)/python -m tests.bench
+
+# What a release consists of: wheel, source distribution and VSIX, in dist/.
+package: $(READY) $(CLIENT_READY)
+	$(BIN)/pytest -q tests/packaging
+	rm -rf dist
+	$(BIN)/python -m build --outdir dist .
+	cd $(CLIENT) && npm run --silent package
+	cp $(CLIENT)/robbdd-workbench.vsix dist/
+
+# Uploads dist/ as it is. Wheel first: the extension installs the server of its own version. CONTRIBUTING.md tells the tokens.
+publish:
+	@: $${UV_PUBLISH_TOKEN:?} $${VSCE_PAT:?} $${OVSX_PAT:?}
+	uv publish dist/*.whl dist/*.tar.gz
+	cd $(CLIENT) && npm run --silent publish:marketplace
+	cd $(CLIENT) && npm run --silent publish:openvsx
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
