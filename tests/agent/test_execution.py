@@ -240,3 +240,15 @@ def test_a_simulation_that_breaks_down_ends_with_a_remark() -> None:
     trace = to_the_end(run)
     assert trace.finished
     assert trace.remark.startswith("the simulation became unstable at ")
+
+
+def test_an_execution_ends_when_its_simulated_time_is_up_and_says_so() -> None:
+    run = execution([pick_place(CUBE)], timing=Timing(timeout=2.0))
+    trace = to_the_end(run)
+    assert trace.finished
+    assert trace.end == pytest.approx(2.0, abs=TICK)
+    assert "t:pick-start" in names(trace)
+    assert trace.remark == "the execution was stopped after 2 s of simulated time"
+    found = judged(run, "located-at", After("t:place-end"), object=CUBE, workspace=BIN_WS)
+    assert found.outcome is Outcome.UNKNOWN
+    assert found.reason == f"event t:place-end never occurred: {trace.remark}"

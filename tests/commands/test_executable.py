@@ -63,3 +63,17 @@ def test_a_missing_model_file_is_the_reason_of_the_scenario(tmp_path: Path) -> N
     code, scenarios = run(folder / "tidy.bddx", "--scenario", "by-catalog", "--first", "1")
     assert code == FINDINGS
     assert all("cell.scenex:67:15: there is no model file" in clause["reason"] for clause in scenarios[0]["clauses"])
+
+
+def test_the_timeout_of_an_execution_bounds_its_simulated_time(tmp_path: Path) -> None:
+    model = example(tmp_path, "ownrobot") / "tidy.bddx"
+    text = model.read_text(encoding="utf-8")
+    model.write_text(text.replace("seed: 1", "seed: 1 timeout: 2 seconds", 1), encoding="utf-8")
+    code, scenarios = run(model, "--first", "1")
+    assert code == FINDINGS
+    bounded, other = scenarios
+    told = {clause["name"]: clause for clause in bounded["clauses"]}
+    assert told["at-source"]["verdict"] == "holds"
+    assert told["at-goal"]["verdict"] == "unknown"
+    assert "the execution was stopped after 2 s of simulated time" in told["at-goal"]["reason"]
+    assert other["verdict"] == "holds"
