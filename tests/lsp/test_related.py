@@ -1,0 +1,67 @@
+"""Related scenarios in an editor: each story's clauses show what one execution of their tree has told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from lsprotocol import types
+from pytest_lsp import LanguageClient
+
+from commands.test_related import LOST, model
+from lsp.test_runs import execute
+from lsp_kit import Editor
+from robbdd_tools.base.files import path_to_uri
+
+pytestmark = pytest.mark.physics
+
+
+def opened(client: LanguageClient, folder: Path, weight: float | None = None) -> Editor:
+    """The example for its cube alone, which weighs so many kg where something is said, open in the client."""
+    below = folder / "stories"
+    below.mkdir()
+    editor = Editor(client, folder)
+    editor.path = model(below, weight)
+    editor.uri = path_to_uri(editor.path)
+    editor.open(editor.path.read_text(encoding="utf-8"))
+    return editor
+
+
+async def shown(editor: Editor) -> dict[str, str]:
+    """Verdict and margin of each clause, by its name; behaviours by the end of theirs."""
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    params = types.InlayHintParams(text_document=document, range=editor.everything())
+    found = await editor.client.text_document_inlay_hint_async(params) or []
+    lines = editor.text.split("\n")
+    return {
+        name: str(hint.label)
+        for hint in found
+        if hint.kind is None and (name := lines[hint.position.line].strip(" (").partition(":")[0]) != "}"
+    }
+
+
+async def test_three_stories_show_what_one_execution_told(client: LanguageClient, tmp_path: Path) -> None:
+    editor = opened(client, tmp_path)
+    answer = await execute(editor, "run")
+    assert (answer["total"], answer["holds"]) == (3, 3)
+    found = await shown(editor)
+    names = ["at-source", "in-hand", "still-in-hand", "at-goal", "goal-untouched", "on-bench", "in-bin"]
+    assert list(found) == names
+    assert all(label.startswith("✔") for label in found.values()), found
+    # The thing is found on the bench by two stories, at one moment of one execution.
+    assert found["at-source"] == found["on-bench"]
+
+
+async def test_what_was_not_reached_is_told_at_the_clauses_of_its_story(client: LanguageClient, tmp_path: Path) -> None:
+    editor = opened(client, tmp_path, weight=10)
+    answer = await execute(editor, "run")
+    assert (answer["total"], answer["violated"], answer["unknown"]) == (3, 2, 1)
+    found = await shown(editor)
+    placing = ["still-in-hand", "at-goal", "goal-untouched"]
+    assert {found[name] for name in placing} == {"? unknown"}
+    assert found["on-bench"].startswith("✔")
+    unknown = [entry for entry in client.diagnostics[editor.uri] if entry.code == "clause-unknown"]
+    lines = editor.text.split("\n")
+    told = [lines[entry.range.start.line].strip(" (") for entry in unknown if LOST in entry.message]
+    assert [line.partition(":")[0] for line in told if "Behaviour" not in line] == placing
+    assert len(told) == 4
