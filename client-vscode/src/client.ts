@@ -116,21 +116,23 @@ export class Server implements vscode.Disposable {
 
   /**
    * Run a command of the server, whether a code lens or the palette asked for it, and do what follows from its
-   * answer. Undefined, after a message, when there is no server or it refuses.
+   * answer. With `problem`, after a message, when there is no server or it refuses.
    */
   async execute(command: string, argument: unknown): Promise<unknown> {
     // A command may be what has activated us: the server is just starting then.
     await this.begin();
     const client = this.client;
     if (client?.isRunning() !== true) {
-      void vscode.window.showWarningMessage("The RobBDD language server is not running.");
-      return undefined;
+      const problem = "The RobBDD language server is not running.";
+      void vscode.window.showWarningMessage(problem);
+      return { problem };
     }
     if (RUNNING.has(command) && !vscode.workspace.isTrusted) {
-      this.complain("Nothing was run: scenarios run code of this workspace, which you do not trust yet.", {
+      const problem = "Nothing was run: scenarios run code of this workspace, which you do not trust yet.";
+      this.complain(problem, {
         "Manage Workspace Trust": () => void vscode.commands.executeCommand("workbench.trust.manage"),
       });
-      return undefined;
+      return { problem };
     }
     try {
       const params = { command, arguments: [argument] };
@@ -140,8 +142,7 @@ export class Server implements vscode.Disposable {
       }
       return result;
     } catch (error) {
-      this.refused(command, error);
-      return undefined;
+      return { problem: this.refused(command, error) };
     } finally {
       if (RUNNING.has(command) && hasUri(argument)) {
         // The answer comes after the last message. A cancelled or crashed run has not said that it ended.
@@ -232,7 +233,7 @@ export class Server implements vscode.Disposable {
     return client;
   }
 
-  private refused(command: string, error: unknown): void {
+  private refused(command: string, error: unknown): string {
     const reason = error instanceof Error ? error.message : String(error);
     this.log.error(`${command}: ${reason}`);
     this.complain(`RobBDD: ${reason}`, {
@@ -240,6 +241,7 @@ export class Server implements vscode.Disposable {
         this.log.show();
       },
     });
+    return reason;
   }
 
   private async shutDown(): Promise<void> {

@@ -3,6 +3,7 @@ import { createInterface } from "node:readline";
 import type { Readable } from "node:stream";
 import * as vscode from "vscode";
 import { CloseAction, ErrorAction, LanguageClient, State, TransportKind } from "vscode-languageclient/node";
+import { failuresFirst } from "./hints";
 import { RestartBudget } from "./restarts";
 
 /** What hears of a connection, and does what the server's commands ask for. */
@@ -59,6 +60,8 @@ export function createClient(
       middleware: {
         provideCompletionItem: async (document, position, context, token, next) =>
           withoutSnippets(await next(document, position, context, token)),
+        provideInlayHints: async (document, range, token, next) =>
+          failuresFirst(document, (await next(document, range, token)) ?? []),
         executeCommand: (name, [argument]: unknown[]) => owner.execute(name, argument),
       },
       // Python's logging writes everything to stderr; that alone does not make a line an error.

@@ -308,7 +308,8 @@ function recorded(): { told: string[]; sink: Sink<Node> } {
   const sink: Sink<Node> = {
     started: (item) => told.push(`started ${label(item)}`),
     passed: (item, duration) => told.push(`passed ${label(item)} ${duration ?? "?"}`),
-    failed: (item, failure, place) => told.push(`failed ${label(item)} ${failure.text} @${place?.range.start.line ?? "?"}`),
+    failed: (item, { text, actual }, place) =>
+      told.push(`failed ${label(item)} ${text} @${place?.range.start.line ?? "?"} (${actual ?? "?"})`),
     errored: (item, failure) => told.push(`errored ${label(item)} ${failure.text}`),
     output: () => undefined,
     end: () => told.push("end"),
@@ -338,7 +339,7 @@ test("a run turns clauses of files that nobody has opened, and ends", async () =
     "started part = cube2 / Then held",
     "passed part = cube2 / Then held 10",
     "started part = cube2 / Then placed",
-    "failed part = cube2 / Then placed violated by −20.0 mm at 1.00 s [part = cube2] @3",
+    "failed part = cube2 / Then placed violated by −20.0 mm at 1.00 s [part = cube2] @3 (−20.0 mm at 1.00 s)",
     "end",
   ]);
   // Listing the scenarios afterwards keeps what the run found.
@@ -348,18 +349,48 @@ test("a run turns clauses of files that nobody has opened, and ends", async () =
   assert.equal(item.description, "−20.0 mm · at 1.00 s · cube is placed");
 });
 
+test("a clause that a cancelled run left open gets no result", async () => {
+  const world = new World();
+  const { told, sink } = recorded();
+  const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => 0);
+  const open = { type: "ClauseJudged", index: 0, line: 7, robustness: null, unit: "", at: null, cancelled: true } as const;
+  for (const message of [
+    { type: "ScenarioStarted", index: 0, name: "fetch", values: "", variant: "t:fetch", variation: 2, source: at(9) },
+    { ...open, verdict: "unknown", reason: "the run was cancelled", ...words("held", 0) },
+  ] as const) {
+    follower.take({ run: "1", uri: FILE, message });
+  }
+  await follower.settled();
+  assert.deepEqual(told, []);
+});
+
+test("a refused run says why at what was to be run", async () => {
+  const world = new World();
+  await world.tree.load(FILE);
+  const { told, sink } = recorded();
+  const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => 0);
+  const refused = (variations?: number[]) => {
+    const wanted = world.tree.wanted(FILE, { variant: "t:fetch", ...(variations && { variations }) });
+    follower.refuse(wanted, "a run is going on");
+  };
+  refused();
+  await world.tree.expand(world.item("tidy", "fetch"));
+  refused([3]);
+  assert.deepEqual(told, ["errored tidy / fetch a run is going on", "errored fetch / part = cube3 a run is going on"]);
+});
+
 const found = { uri: FILE, variant: "t:fetch", variation: 2, values: "part = cube2", seconds: null, stale: false };
 const held = { clause: null, position: 0, sentence: "cube is held", verdict: "holds", margin: "", said: "✔" } as const;
 
 test("imported results are shown by position, with their words and their share of the time", async () => {
   const world = new World();
   const { told, sink } = recorded();
-  const placed = { ...held, position: 1, verdict: "violated", margin: "−3.0 mm", said: "✗ −3.0 mm at 2.00 s" } as const;
+  const placed = { ...held, position: 1, verdict: "violated", margin: "−3.0 mm", said: "✗ −3.0 mm at 2.00 s: pushed" } as const;
   const clauses = [held, placed].map((clause) => ({ ...clause, stale: false }));
   assert.deepEqual(await showResults(world.tree, [{ ...found, seconds: 1, clauses }], sink), []);
   assert.deepEqual(told, [
     "passed part = cube2 / Then held 500",
-    "failed part = cube2 / Then placed ✗ −3.0 mm at 2.00 s [part = cube2] @3",
+    "failed part = cube2 / Then placed ✗ −3.0 mm at 2.00 s: pushed [part = cube2] @3 (−3.0 mm at 2.00 s)",
   ]);
   assert.equal(world.item("tidy", "fetch", "part = cube2", "Then placed").description, "−3.0 mm · cube is placed");
 });

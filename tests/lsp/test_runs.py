@@ -202,8 +202,12 @@ async def test_a_cancelled_run_leaves_its_open_clauses_unknown(editor: Editor, r
     messages = [entry.message for entry in run_messages]
     assert (messages[-1].type, messages[-1].ok) == ("RunFinished", False)
     judged = [message for message in messages if message.type == "ClauseJudged"]
-    assert {message.verdict for message in judged if message.reason == "the run was cancelled"} == {"unknown"}
+    assert {message.verdict for message in judged if message.cancelled} == {"unknown"}
     assert len(judged) == 20
+    results = await editor.client.protocol.send_request_async("robbdd/testResults", {})
+    kept = [clause for scenario in plain(results)["scenarios"] for clause in scenario["clauses"]]
+    assert 0 < len(kept) < 20
+    assert "unknown" not in {clause["verdict"] for clause in kept}
 
 
 @pytest.mark.parametrize(
@@ -221,14 +225,15 @@ async def test_options_that_cannot_be_followed_are_answered(
     editor: Editor, options: dict[str, object], words: str
 ) -> None:
     editor.open()
-    assert await execute(editor, "run", **options) == {}
+    assert words in plain(await execute(editor, "run", **options))["problem"]
     assert any(words in message.message for message in editor.client.messages), editor.client.messages
 
 
 async def test_a_run_of_a_broken_model_says_why_it_cannot_run(editor: Editor) -> None:
     editor.open(editor.text.replace("task: <pick-place-task>", "task <pick-place-task>"))
     params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
-    await editor.client.workspace_execute_command_async(params)
+    answer = plain(await editor.client.workspace_execute_command_async(params))
+    assert "the model has errors" in answer["problem"]
     assert any("the model has errors" in message.message for message in editor.client.messages)
 
 

@@ -118,5 +118,6 @@ async def test_chosen_scenarios_of_an_unopened_file_are_run_under_the_clients_na
 )
 async def test_a_choice_that_cannot_be_run_is_answered(editor: Editor, only: list[object], words: str) -> None:
     params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri, "only": only}])
-    assert await editor.client.workspace_execute_command_async(params) == {}
+    answer = plain(await editor.client.workspace_execute_command_async(params))
+    assert words in answer["problem"]
     assert any(words in message.message for message in editor.client.messages), editor.client.messages

@@ -59,6 +59,8 @@ export interface ClauseJudged extends ClauseWords {
   readonly reason: string;
   /** Why the clause could not have been violated; empty where it could. */
   readonly vacuous?: string;
+  /** The run was cancelled before the clause was judged, which is no result. */
+  readonly cancelled?: boolean;
 }
 
 export interface MarginRanges {

@@ -55,6 +55,15 @@ export class RunFollower<I extends Item<I>> {
     });
   }
 
+  /** Say at what was to be run why nothing was. */
+  refuse(items: readonly I[], problem: string): void {
+    for (const item of items) {
+      this.sink.errored(item, { text: problem }, null);
+    }
+    this.report.interrupt(problem);
+    this.sink.output(`■ ${problem}`);
+  }
+
   /** Resolves when everything that was taken is shown. */
   settled(): Promise<void> {
     return this.pending;
@@ -97,7 +106,7 @@ export class RunFollower<I extends Item<I>> {
   private judge(message: ClauseJudged, instant: number): void {
     const scenario = this.scenarios.get(message.index);
     const item = scenario && this.clause(scenario, message, message.sentence);
-    if (scenario === undefined || item === undefined) {
+    if (scenario === undefined || item === undefined || message.cancelled === true) {
       return;
     }
     const outcome = outcomeOf(message, scenario.values);

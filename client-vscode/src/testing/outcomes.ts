@@ -1,6 +1,9 @@
 // What a verdict on a clause is in the words of the editor's tests.
 import { marginOf, seconds } from "../runs/report";
 
+/** What is expected of a margin. */
+export const NO_LESS = "margin ≥ 0";
+
 /** A verdict, from a run's message or from a stored result. */
 export interface Judged {
   readonly verdict: "holds" | "violated" | "unknown";
@@ -44,7 +47,7 @@ export function outcomeOf(judged: Judged, values: string): Outcome {
       const instant = judged.at === null ? "" : ` at ${seconds(judged.at)}`;
       const words = `violated${margin === "" ? "" : ` by ${margin}`}${instant}`;
       // Short, so that the editor shows both whole in one line beside the clause.
-      const expected = margin === "" ? "holds" : "margin ≥ 0";
+      const expected = margin === "" ? "holds" : NO_LESS;
       const actual = margin === "" ? `violated${instant}` : `${margin}${instant}`;
       return {
         state: "failed",

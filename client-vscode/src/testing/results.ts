@@ -3,7 +3,7 @@ import { isRecord } from "../values";
 import type { Sink } from "./follower";
 import type { Item } from "./items";
 import type { ListedTest } from "./listing";
-import type { Outcome } from "./outcomes";
+import { type Failure, NO_LESS } from "./outcomes";
 import type { TestTree } from "./tree";
 
 export interface FoundClause {
@@ -104,23 +104,23 @@ function show<I extends Item<I>>(
   duration: number | undefined,
 ): void {
   tree.note(item, found.margin);
-  const { state, text } = failureOf(found, values);
+  const text = `${found.said}${values === "" ? "" : ` [${values}]`}`;
   const place = tree.about(item)?.place ?? null;
-  if (state === "passed") {
-    sink.passed(item, duration);
-  } else {
-    sink[state](item, { text }, place, duration);
+  switch (found.verdict) {
+    case "holds":
+      sink.passed(item, duration);
+      break;
+    case "violated":
+      sink.failed(item, { text, ...compared(found) }, place, duration);
+      break;
+    case "unknown":
+      sink.errored(item, { text }, place, duration);
+      break;
   }
 }
 
-function failureOf(found: FoundClause, values: string): { state: Outcome["state"]; text: string } {
-  const text = `${found.said}${values === "" ? "" : ` [${values}]`}`;
-  switch (found.verdict) {
-    case "holds":
-      return { state: "passed", text };
-    case "violated":
-      return { state: "failed", text };
-    case "unknown":
-      return { state: "errored", text };
-  }
+/** As short as that of a run of our own, so that it fits beside the clause: without sign and reason. */
+function compared({ margin, said }: FoundClause): Omit<Failure, "text"> {
+  const actual = said.replace(/^\S+ /, "").split(": ", 1)[0] ?? margin;
+  return margin === "" ? {} : { expected: NO_LESS, actual };
 }

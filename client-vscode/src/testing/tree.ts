@@ -1,6 +1,7 @@
 // The tree of tests: stories, variants, scenarios, clauses; it grows as it is asked for and follows the text.
 import type { Facts, Factory, Item, Items } from "./items";
 import type { Ask, ListedTest, Listing, Place } from "./listing";
+import type { Wanted } from "./selection";
 
 /** Scenarios of a variant that are listed before anybody asks, so that rows and clauses have icons of their own. */
 export const EAGER = 100;
@@ -89,6 +90,18 @@ export class TestTree<I extends Item<I>> {
 
   variant(uri: string, iri: string): I | undefined {
     return this.variantsOf(uri).find((item) => this.facts.get(item)?.variant === iri);
+  }
+
+  /** The listed scenarios that are wanted of a variant. */
+  scenariosOf(uri: string, { variant, variations }: Wanted): I[] {
+    const scenarios = [...(this.variant(uri, variant)?.children ?? [])].map(([, item]) => item);
+    return scenarios.filter((item) => variations?.includes(this.facts.get(item)?.number ?? 0) ?? true);
+  }
+
+  /** What is wanted of a variant: the variant as a whole, or those of its scenarios. */
+  wanted(uri: string, wanted: Wanted): I[] {
+    const whole = this.variant(uri, wanted.variant);
+    return wanted.variations === undefined && whole !== undefined ? [whole] : this.scenariosOf(uri, wanted);
   }
 
   /** The item of a scenario; one that was not listed yet is made with the words of its run. */

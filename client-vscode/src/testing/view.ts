@@ -10,6 +10,7 @@ import { type Place, type Question, isListing } from "./listing";
 import { type FoundScenario, isFoundResults, showResults } from "./results";
 import { type FileRun, fileRuns } from "./selection";
 import { TestTree } from "./tree";
+import { isRecord } from "../values";
 
 const LANGUAGE = "robbdd";
 const FILES = "**/*.{bdd,scene}";
@@ -299,12 +300,10 @@ export class TestingView implements vscode.Disposable {
   }
 
   private enqueue(run: vscode.TestRun, { uri, only }: FileRun): void {
-    for (const { variant, variations } of only) {
-      for (const [, scenario] of this.tree.variant(uri, variant)?.children ?? []) {
-        if (variations === undefined || variations.includes(this.tree.about(scenario)?.number ?? 0)) {
-          for (const clause of this.tree.clauses(scenario)) {
-            run.enqueued(clause);
-          }
+    for (const wanted of only) {
+      for (const scenario of this.tree.scenariosOf(uri, wanted)) {
+        for (const clause of this.tree.clauses(scenario)) {
+          run.enqueued(clause);
         }
       }
     }
@@ -339,6 +338,10 @@ export class TestingView implements vscode.Disposable {
       cancelling.dispose();
       pass();
       await follower.settled();
+      const problem = problemOf(answer);
+      if (problem !== undefined) {
+        follower.refuse(only.flatMap((wanted) => this.tree.wanted(uri, wanted)), problem);
+      }
       for (const picture of picturesOf(answer)) {
         run.appendOutput(`    picture: ${vscode.Uri.parse(picture).fsPath}\r\n`);
       }
@@ -475,8 +478,13 @@ async function chooseFile(): Promise<vscode.Uri | undefined> {
   return file;
 }
 
+function problemOf(answer: unknown): string | undefined {
+  const problem = isRecord(answer) ? answer["problem"] : undefined;
+  return typeof problem === "string" ? problem : undefined;
+}
+
 function picturesOf(answer: unknown): string[] {
-  const found: unknown = typeof answer === "object" && answer !== null && "pictures" in answer ? answer.pictures : [];
+  const found: unknown = isRecord(answer) ? answer["pictures"] : undefined;
   return Array.isArray(found) ? found.filter((entry) => typeof entry === "string") : [];
 }
 

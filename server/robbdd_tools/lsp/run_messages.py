@@ -18,6 +18,7 @@ from robbdd_tools.run.protocol import (
     ScenarioStarted,
 )
 from robbdd_tools.run.report import plain_sentence, values_words
+from robbdd_tools.run.scheduler import CANCELLED
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.run_plan import RunPlan
@@ -51,6 +52,8 @@ def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage
                     "sentence": plain_sentence(clause.sentence),
                     "source": plan.places.get(clause.iri),
                 }
+            if isinstance(message, ClauseJudged):
+                fields["cancelled"] = message.reason == CANCELLED
         case ScenarioFinished(index):
             fields["verdict"] = str(results.scenarios[index].verdict)
         case RunFinished():

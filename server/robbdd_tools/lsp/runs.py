@@ -67,13 +67,11 @@ class ActiveRun:
 
 
 async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) -> dict[str, Any]:
-    """Run scenarios to their end, showing results as they come; returns how it went, ``{}`` when nothing was run."""
+    """Run scenarios to their end, showing results as they come; returns how it went, or why nothing was run."""
     if not ls.trusted:
-        ls.tell(UNTRUSTED)
-        return {}
+        return _refused(ls, UNTRUSTED)
     if ls.run is not None:
-        ls.tell("a run is going on: cancel it first")
-        return {}
+        return _refused(ls, "a run is going on: cancel it first")
     try:
         options = RunOptions.of({**argument, **more})
         ls.run = run = ActiveRun(options, options.token or f"robbdd-run-{next(ls.run_numbers)}")
@@ -95,10 +93,14 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
         stored = {"run": place.number, "folder": path_to_uri(place.folder)}
         return {**follower.summary(), "stored": stored, "pictures": pictures}
     except (ModelError, OSError) as error:
-        ls.tell(str(error))
-        return {}
+        return _refused(ls, str(error))
     finally:
         ls.run = None
+
+
+def _refused(ls: RobbddServer, problem: str) -> dict[str, Any]:
+    ls.tell(problem)
+    return {"problem": problem}
 
 
 def cancel_run(ls: RobbddServer) -> None:
@@ -142,6 +144,7 @@ class _Follower:
         if self._run.options.is_whole and not scheduler.ending:
             for variant, begun in self._begun.items():
                 self._ls.results.drop_others(variant, begun)
+        self._drop_unjudged()
         request = self._plan.request
         known = {variant.iri for story in request.model.stories for variant in story.variants}
         self._ls.results.drop_deleted(request.name, known)
@@ -205,10 +208,16 @@ class _Follower:
             self._ls.results.add([found])
         return found
 
+    def _drop_unjudged(self) -> None:
+        """Forget scenarios that a cancelled run began, and no clause of which was judged."""
+        for scenario in self._run.judged.values():
+            if not scenario.finished and not scenario.clauses:
+                self._ls.results.drop(scenario.variant, scenario.variation)
+
     def _judge(self, message: ClauseJudged) -> None:
         clause = clause_at(self._results, message.index, message.line)
-        # What a cancelled run left open is unknown in its report, but no result worth keeping.
-        if clause is None or (message.reason == CANCELLED and message.index not in self._run.judged):
+        # What a cancelled run left open is unknown in its report, but no result.
+        if clause is None or message.reason == CANCELLED:
             return
         outcome = Outcome(message.verdict)
         undefined = outcome is Outcome.UNKNOWN and message.reason.startswith(NO_STEP)
