@@ -30,7 +30,8 @@ export class ReplayView implements vscode.Disposable {
 
   /** Show an execution of a model's project that the user chooses. */
   async choose(model: string): Promise<void> {
-    const recording = await chooseRecording(this.server, model);
+    // The command may be what has activated us.
+    const recording = (await this.server.ready()) ? await chooseRecording(this.server, model) : undefined;
     if (recording !== undefined) {
       await this.open(recording);
     }
