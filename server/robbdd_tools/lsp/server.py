@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable, Coroutine, Iterable, Sequence
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -23,6 +24,7 @@ from robbdd_tools.lsp.analysis import AnalysisThread
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.kept_results import load_results
+from robbdd_tools.lsp.newest import Newest
 from robbdd_tools.lsp.protocol import Protocol
 from robbdd_tools.lsp.refresh import COLOURS, DIAGNOSTICS, GATHERING, HINTS, LENSES, SETTLING, Refreshes
 from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
@@ -84,7 +86,7 @@ class RobbddServer(LanguageServer):
         self.refreshes = Refreshes(self)
         self.survey = Survey(self)
         self._tasks: set[asyncio.Task[None]] = set()
-        self._publishing: dict[str, asyncio.Task[None]] = {}
+        self._publishing = Newest(self.spawn)
         self._changed: dict[str, None] = {}
 
     def feature(self, feature_name: str, options: Any | None = None) -> Callable[[Handler], Handler]:
@@ -129,8 +131,7 @@ class RobbddServer(LanguageServer):
         """Go back to the file on disk and take its diagnostics from the editor."""
         self._opened.pop(uri, None)
         self._shapes.pop(uri, None)
-        if (publishing := self._publishing.pop(uri, None)) is not None:
-            publishing.cancel()
+        self._publishing.end(uri)
         self.validator.forget(uri)
         for forget in self.when_closed:
             forget(uri)
@@ -168,10 +169,8 @@ class RobbddServer(LanguageServer):
         if any(uri != changed for uri in uris):
             self.refreshes.want(DIAGNOSTICS, COLOURS, HINTS, LENSES, after=SETTLING)
         for uri in uris:
-            # What is being found in an older text is of no use any more.
-            if (older := self._publishing.get(uri)) is not None:
-                older.cancel()
-            self._publishing[uri] = self.spawn(self._publish_and_order(uri))
+            # What is being found in an older text is of hardly any use any more.
+            self._publishing.begin(uri, partial(self._publish_and_order, uri))
 
     async def _publish_and_order(self, uri: str) -> None:
         if not self.pulls:

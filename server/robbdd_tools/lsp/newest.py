@@ -1,0 +1,58 @@
+"""Work of which only the newest counts, but which comes to an end even if newer work never ceases to come."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+Work = Callable[[], Coroutine[Any, Any, None]]
+MOST_REPLACED = 8
+"""Works in a row that a newer one may replace: about a second of fast typing, then users see findings all the same."""
+
+
+class Newest:
+    """Runs one work at a time for each key; a newer one replaces it, or, after ``MOST_REPLACED``, waits for its end.
+
+    ``spawn`` starts a coroutine as a task.
+    """
+
+    def __init__(self, spawn: Callable[[Coroutine[Any, Any, None]], asyncio.Task[None]]) -> None:
+        self._spawn = spawn
+        self._running: dict[str, asyncio.Task[None]] = {}
+        self._replaced: dict[str, int] = {}
+        self._waiting: dict[str, Work] = {}
+
+    def begin(self, key: str, work: Work) -> None:
+        """Run ``work`` in place of what runs or waits for this key."""
+        running = self._running.get(key)
+        if running is not None:
+            replaced = self._replaced.get(key, 0)
+            if replaced == MOST_REPLACED:
+                self._waiting[key] = work
+                return
+            self._replaced[key] = replaced + 1
+            running.cancel()
+        self._start(key, work)
+
+    def end(self, key: str) -> None:
+        """Leave what runs and waits for a key."""
+        self._waiting.pop(key, None)
+        self._replaced.pop(key, None)
+        running = self._running.pop(key, None)
+        if running is not None:
+            running.cancel()
+
+    def _start(self, key: str, work: Work) -> None:
+        task = self._spawn(work())
+        self._running[key] = task
+        task.add_done_callback(lambda done: self._ended(key, done))
+
+    def _ended(self, key: str, done: asyncio.Task[None]) -> None:
+        if self._running.get(key) is not done:
+            return
+        del self._running[key]
+        self._replaced.pop(key, None)
+        waiting = self._waiting.pop(key, None)
+        if waiting is not None:
+            self._start(key, waiting)
