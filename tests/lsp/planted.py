@@ -1,6 +1,6 @@
 """The language server with faults planted in it, and with eyes: what tests of its manners start.
 
-Words in a text plant the faults: ``planted fault`` breaks hover, completion's neighbours keep working; ``planted
+Words in a text plant the faults: ``planted fault`` breaks hover and preview, all else keeps working; ``planted
 defect`` breaks the diagnostics; ``endless`` makes the semantic tokens of a text a work without end.
 """
 
@@ -17,7 +17,7 @@ from types import ModuleType
 from typing import Any
 
 from robbdd_tools.base.checkpoint import Abandoned, checkpoint
-from robbdd_tools.lsp import handlers, main, reading, server, tokens
+from robbdd_tools.lsp import handlers, main, preview, reading, server, tokens
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.names.project import Snapshot
 
@@ -85,6 +85,7 @@ def watch_the_loop() -> None:
 
 def start() -> int:
     plant(reading, "hover", breaking, "planted fault")
+    plant(preview, "preview", breaking, "planted fault")
     plant(server, "fast_diagnostics", breaking, "planted defect")
     plant(tokens, "coloured", endless)
     watch_the_loop()

@@ -101,6 +101,23 @@ async def test_an_internal_error_answers_its_request_and_is_logged_with_its_plac
     assert await hover(editor) is not None
 
 
+async def test_an_error_in_the_background_thread_costs_one_answer_and_is_logged(editor: Editor) -> None:
+    async def previewed() -> Any:
+        return await editor.client.protocol.send_request_async("robbdd/preview", {"uri": editor.uri})
+
+    editor.open(editor.text + "// planted fault\n")
+    error = await refused(previewed())
+    assert error.code == INTERNAL_ERROR
+    assert error.message.startswith("internal error in robbdd/preview")
+    log = Path((await state(editor)).log).read_text(encoding="utf-8")
+    assert "robbdd/preview" in log
+    assert editor.uri in log
+    assert "RuntimeError: planted fault in preview" in log
+
+    editor.change("// planted fault\n", "")
+    assert (await previewed()).total > 0
+
+
 async def test_an_error_behind_a_notification_is_logged_and_the_next_edit_is_answered(editor: Editor) -> None:
     editor.open(editor.text + "// planted defect\n")
     async with asyncio.timeout(PATIENCE):
