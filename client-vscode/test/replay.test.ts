@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type Clause, type PackedArray, type Part, firstClause, isTrace } from "../src/panels/replay/answer";
+import { type Clause, type PackedArray, type Part, ageOf, firstClause, isTrace } from "../src/panels/replay/answer";
 import { clauseOf, recordingOf } from "../src/panels/replay/request";
 import { isRuns, outcome } from "../src/panels/runs";
 import { signed } from "../src/quantity";
@@ -126,4 +126,12 @@ test("an answer of another version is no trace", () => {
   for (const name of Object.keys(lists)) {
     assert.ok(!isTrace({ ...trace, ...lists, [name]: undefined }), name);
   }
+});
+
+test("a reader is told which clauses read otherwise by now, and when that cannot be told", () => {
+  const one = clause("at-goal", "holds", null);
+  assert.equal(ageOf([one, { ...one, stale: false }]), "");
+  assert.match(ageOf([one, { ...one, stale: true }, { ...one, name: "in-hand", stale: true }]), /at-goal, in-hand read otherwise/);
+  assert.match(ageOf([{ ...one, stale: true }]), /at-goal reads otherwise/);
+  assert.match(ageOf([{ ...one, stale: null }]), /has errors/);
 });

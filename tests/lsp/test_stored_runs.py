@@ -80,6 +80,26 @@ async def test_a_stored_run_is_listed_and_shown_as_documented(editor: Editor) ->
         await ask(editor, "trace", run=1, index=2)
 
 
+@pytest.mark.physics
+async def test_clauses_of_a_trace_are_stale_where_the_model_states_them_no_more(editor: Editor) -> None:
+    async def stale() -> dict[str, bool | None]:
+        shown = await ask(editor, "trace")
+        assert schema_errors("trace.schema.json", shown) == []
+        return {clause["name"]: clause["stale"] for clause in shown["clauses"]}
+
+    editor.open()
+    assert main(["run", str(editor.path), "--where", "thing = cube0", "--first", "1"]) == 0
+    before = await stale()
+    assert len(before) == 5
+    assert set(before.values()) == {False}
+    editor.change("at-goal: holds(", "at-goal:   holds( ")
+    assert await stale() == before
+    editor.change("located at <goal>, after <evt-place-end>", "located at <goal>, after <evt-end>")
+    assert await stale() == {**before, "at-goal": True}
+    editor.change("Scenario Template", "Scenario Tmplate")
+    assert set((await stale()).values()) == {None}
+
+
 async def test_a_broken_run_is_listed_with_what_is_wrong(editor: Editor) -> None:
     folder = editor.path.parent / ".robbdd" / "runs" / "3"
     folder.mkdir(parents=True)

@@ -9,7 +9,7 @@ import { type Viewport, fitted, panned, revealed, zoomed } from "./viewport";
 const STEP = 60;
 const ZOOM = 1.25;
 /** A picture is not begun smaller than this: its text could not be read. */
-const READABLE = 0.55;
+const READABLE = 0.75;
 
 const host = connect<FromGraph, GraphState>((message) => {
   receive(message as ToGraph);

@@ -1,6 +1,6 @@
 // The page of a replay: the scene, the controls, the time line; all show one time.
 import "./replay.css";
-import { type Trace, firstClause } from "../../src/panels/replay/answer";
+import { type Trace, ageOf, firstClause } from "../../src/panels/replay/answer";
 import type { FromReplay, Recording, ReplayState, ToReplay } from "../../src/panels/replay/messages";
 import { button, element } from "../shared/elements";
 import { connect } from "../shared/host";
@@ -59,15 +59,19 @@ new ResizeObserver(() => {
 }).observe(document.body);
 
 function receive(message: ToReplay): void {
-  if (message.type === "problem") {
-    status.textContent = message.text;
-    status.classList.add("problem");
+  if (message.type === "age") {
+    tell(message.text);
   } else if (message.type === "clause") {
     choose(firstClause(trace?.clauses ?? [], message.clause));
     toViolation();
   } else {
     begin(message.trace, message.recording, message.clause);
   }
+}
+
+function tell(problem: string): void {
+  status.textContent = problem;
+  status.classList.toggle("problem", problem !== "");
 }
 
 /** Show a trace: as it was left in an earlier life of the page, else from what one should look at first. */
@@ -79,6 +83,7 @@ function begin(shown: Trace, of: Recording, clause: string | undefined): void {
   slider.max = String(shown.duration);
   title.textContent = [shown.scenario.name.replace(/^[^:]*:/, ""), shown.scenario.values].filter(Boolean).join(" · ");
   title.title = title.textContent;
+  tell(ageOf(shown.clauses));
   line = timeline(shown, { seek: scrub, choose, open });
   place.replaceChildren(scene(shown), line.root);
   if (kept?.clause !== undefined && kept.time !== undefined && clause === undefined) {

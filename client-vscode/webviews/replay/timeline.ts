@@ -12,6 +12,7 @@ const PLOT = 120;
 const EDGE = 14;
 /** Mean width of a letter of a label, px. */
 const LETTER = 6.6;
+const EDITED = "This is what was judged; the model reads otherwise by now.";
 const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
 
 export interface Timeline {
@@ -124,7 +125,8 @@ function row(clause: Clause, index: number, chosen: boolean, { choose, open }: A
     open(index);
   });
   source.disabled = clause.source === null;
-  return element("div", { class: chosen ? "row chosen" : "row" }, label, source);
+  const classes = ["row", ...(chosen ? ["chosen"] : []), ...(clause.stale === true ? ["stale"] : [])];
+  return element("div", { class: classes.join(" ") }, label, source);
 }
 
 /** A behaviour has a name that the graph made up: it is called what it says. */
@@ -136,7 +138,7 @@ function caption(clause: Clause | undefined): HTMLElement {
   if (clause === undefined) {
     return element("div", { class: "caption" });
   }
-  const details = [margin(clause), clause.reason, clause.vacuous].filter((text) => text !== "");
+  const details = [margin(clause), clause.reason, clause.vacuous, clause.stale === true ? EDITED : ""].filter((text) => text !== "");
   const list = details.map((text) => element("p", {}, text));
   return element("div", { class: "caption" }, element("p", { class: "sentence" }, clause.sentence), ...list);
 }

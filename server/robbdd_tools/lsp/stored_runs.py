@@ -6,14 +6,15 @@ Both take the ``uri`` of a document of the project; docs/schemas/runs.schema.jso
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.lsp.run_plan import places_of
+from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
+from robbdd_tools.names.variants import variants_of
 from robbdd_tools.run.shown import NoTrace, find_trace, scenarios, shown_trace, summary
 from robbdd_tools.run.store import NoSuchRun, RunStore
 
@@ -35,14 +36,19 @@ def register_stored_runs(server: RobbddServer) -> None:
     @server.feature(TRACE)
     async def trace(ls: RobbddServer, params: Any) -> dict[str, Any]:
         def places(snapshot: Snapshot) -> dict[str, types.Location]:
-            files = [str(params.uri), found["model"]]
             return {iri: place for uri in files for iri, place in places_of(snapshot, ls.convert, uri)[1].items()}
 
+        def now(snapshot: Snapshot) -> set[tuple[str, str]] | None:
+            return _stated(snapshot, files, scenario["variant"], scenario["variation"])
+
         found = await _answered(lambda: _trace(ls.stores.of(str(params.uri)), params))
-        placed = await ls.in_background(places)
-        del found["model"]
-        clauses = [{**clause, "source": placed.get(clause["iri"])} for clause in found["clauses"]]
-        return {**found, "source": placed.get(found["scenario"]["variant"]), "clauses": clauses}
+        files, scenario = list(dict.fromkeys([str(params.uri), found.pop("model")])), found["scenario"]
+        placed, sentences = await ls.in_background(lambda snapshot: (places(snapshot), now(snapshot)))
+        for clause in found["clauses"]:
+            iri, written = clause["iri"], clause.pop("written")
+            clause["source"] = placed.get(iri)
+            clause["stale"] = None if sentences is None else (iri, written) not in sentences
+        return {**found, "source": placed.get(scenario["variant"])}
 
 
 def _runs(store: RunStore, params: Any) -> dict[str, Any]:
@@ -65,6 +71,20 @@ def _trace(store: RunStore, params: Any) -> dict[str, Any]:
     else:
         run = store.find(word or "latest")
     return {**shown_trace(run, int(index)), "model": path_to_uri(run.model())}
+
+
+def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: int) -> set[tuple[str, str]] | None:
+    """Return what a scenario states now by the first file that has its variant; ``None`` while that has errors."""
+    from robbdd_tools.gherkin.stated import stated
+
+    for uri in files:
+        known = (file.document.uri for file in snapshot.closure(uri))
+        if any(placed.iri == variant for name in known for placed in variants_of(snapshot, name)):
+            try:
+                return stated(feature_plan(snapshot, uri).model, variant, variation)
+            except ModelError:
+                return None
+    return set()
 
 
 async def _answered(work: Callable[[], Result]) -> Result:

@@ -64,7 +64,11 @@ def find_trace(
 
 
 def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
-    """Return the document of a trace, clauses without ``source``; raises ``NoTrace`` and ``NoSuchRun``."""
+    """Return the document of a trace; raises ``NoTrace`` and ``NoSuchRun``.
+
+    Of the text as it is now it knows nothing: clauses have no ``source`` and no ``stale``, but the sentence of their
+    step as ``written``.
+    """
     specs, results = run.manifest().scenarios, run.results()["scenarios"]
     if not 0 <= index < min(len(specs), len(results)):
         raise NoTrace(f"run {run.number} has no scenario number {index}")
@@ -83,7 +87,12 @@ def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
         "events": kept["events"],
         **seen,
         "clauses": [
-            {**entry, "sentence": plain_sentence(clause.sentence), "parts": parts[str(clause.line)]}
+            {
+                **entry,
+                "sentence": plain_sentence(clause.sentence),
+                "written": clause.sentence,
+                "parts": parts[str(clause.line)],
+            }
             for clause, entry in zip(spec.clauses, result["clauses"], strict=True)
         ],
     }

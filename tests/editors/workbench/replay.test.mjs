@@ -84,10 +84,13 @@ step("the keyboard plays, stops and steps", async () => {
 
 step("what moves is somewhere else at another time", async () => {
   const label = page.locator(".label", { hasText: "ball" });
-  await page.locator(".stage").press("Home");
-  const beginning = await label.boundingBox();
+  const place = () => label.getAttribute("style");
   await page.locator(".stage").press("End");
-  assert.notDeepEqual(await label.boundingBox(), beginning);
+  await drawn();
+  const end = await place();
+  await page.locator(".stage").press("Home");
+  await drawn();
+  assert.notEqual(await place(), end);
 });
 
 step("pressing the time line goes there", async () => {
@@ -103,6 +106,21 @@ step("a clause is chosen by its name, and leads to its text", async () => {
   await page.getByRole("button", { name: "Go to the text of in-hand" }).click();
   const line = (await session.text(FILE)).split("\n").findIndex((text) => text.includes("in-hand:")) + 1;
   await workbench.page.locator(".statusbar-item", { hasText: new RegExp(`Ln ${line}, Col`) }).waitFor();
+});
+
+step("a recording of another text says so", async () => {
+  const lines = (await session.text(FILE)).split("\n");
+  const line = lines.findIndex((text) => text.includes("at-goal: holds("));
+  await workbench.command("View: Focus First Editor Group");
+  await workbench.goTo(line + 1, lines[line].lastIndexOf("evt-place-end") + 1);
+  for (let letter = 0; letter < "evt-place-end".length; letter += 1) {
+    await workbench.page.keyboard.press("Delete");
+  }
+  await workbench.page.keyboard.insertText("evt-end");
+  await workbench.page.keyboard.press("Control+S");
+  await workbench.command("RobBDD: Show Replay…");
+  await page.getByText("The model has been edited since: at-goal reads otherwise").waitFor();
+  await workbench.screenshot("replay-stale");
 });
 
 step("the panel comes back with the window", async () => {
@@ -131,6 +149,13 @@ async function run(workspace) {
 
 async function time() {
   return Number.parseFloat(await page.locator(".readout").textContent());
+}
+
+/** Wait until the screen has shown what was asked for. */
+function drawn() {
+  return page
+    .locator(".stage")
+    .evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 }
 
 /** Whether the picture of the scene has more than one colour. */

@@ -59,6 +59,8 @@ export interface Clause {
   readonly reason: string;
   readonly vacuous: string;
   readonly source: Location | null;
+  /** Whether the model states it no more; null (or nothing, from older servers) where that cannot be told. */
+  readonly stale?: boolean | null;
   readonly parts: readonly Part[];
 }
 
@@ -112,6 +114,15 @@ export function isTrace(value: unknown): value is Trace {
 /** The part of a name that a reader looks for: what stands behind its prefix. */
 export function local(name: string): string {
   return name.replace(/^[^:]*:/, "");
+}
+
+/** What a reader is to know of the model's text as it was when a trace was recorded; empty where nothing has changed. */
+export function ageOf(clauses: readonly Clause[]): string {
+  const changed = clauses.filter(({ stale }) => stale === true).map(({ name }) => name);
+  if (changed.length > 0) {
+    return `The model has been edited since: ${[...new Set(changed)].join(", ")} ${changed.length === 1 ? "reads" : "read"} otherwise by now. Run again to judge what is written.`;
+  }
+  return clauses.some(({ stale }) => stale === null) ? "The model has errors now: it may state something else by now." : "";
 }
 
 /** The clause that a reader should look at first: the one asked for, else the first violated, else the last. */

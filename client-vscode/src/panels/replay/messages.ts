@@ -15,7 +15,8 @@ export interface Recording {
 export type ToReplay =
   | { readonly type: "trace"; readonly recording: Recording; readonly trace: Trace; readonly clause?: string }
   | { readonly type: "clause"; readonly clause: string }
-  | { readonly type: "problem"; readonly text: string };
+  /** What has changed since it was recorded. */
+  | { readonly type: "age"; readonly text: string };
 
 /** Beside `{ type: "ready" }`, which every page says when it can listen: the number of a clause whose text is wanted. */
 export interface FromReplay {

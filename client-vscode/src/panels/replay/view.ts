@@ -4,7 +4,7 @@ import type { Server } from "../../client";
 import { isRecord } from "../../values";
 import { Panel, beside } from "../panel";
 import { reveal } from "../reveal";
-import { type Trace, isTrace, local } from "./answer";
+import { type Trace, ageOf, isTrace, local } from "./answer";
 import { chooseRecording } from "./choice";
 import type { Recording, ToReplay } from "./messages";
 import { clauseOf, recordingOf } from "./request";
@@ -53,6 +53,7 @@ export class ReplayView implements vscode.Disposable {
       this.adopt(beside(TYPE, titleOf(trace)), exactly(recording, trace), trace, clause);
     } else {
       open.panel.view.reveal(undefined, true);
+      open.panel.post({ type: "age", text: ageOf(trace.clauses) });
       if (clause !== undefined) {
         open.panel.post({ type: "clause", clause });
       }
