@@ -125,9 +125,10 @@ step("a run can be cancelled, and says that it is not complete", async () => {
 step("a restarted server marks mistakes again", async () => {
   await workbench.command("RobBDD: Restart Language Server");
   await workbench.command("RobBDD: Show Log");
-  // The old server is gone: whatever is marked from here on, the new one has marked.
+  // The old server is gone: whatever is marked from here on, the new one has marked. On a busy machine its time to end by
+  // itself may run out, so that it is ended by force.
   const output = workbench.page.locator(".part.panel .view-lines");
-  await output.filter({ hasText: /Server\sprocess\sexited\ssuccessfully/ }).waitFor();
+  await output.filter({ hasText: /Server\sprocess\sexited/ }).waitFor();
   await workbench.focusEditor();
   await workbench.goTo(1, 1);
   await workbench.type("import 'no-such.scene' ");
