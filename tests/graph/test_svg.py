@@ -11,13 +11,15 @@ import pytest
 from commands.test_graph_models import robbdd
 from graph.models import EVERYTHING
 from graph.statements import built
-from kit import EXAMPLES, MODEL
+from graph.test_behaviour_trees import LINKED, NESTED
+from kit import EVENTS, EXAMPLES, MODEL, STORY
 from robbdd_tools.graph.source_map import Location
 from robbdd_tools.graph.structure import structure_of
 from robbdd_tools.graph.svg import LETTER, draw
 
 SVG = "{http://www.w3.org/2000/svg}"
-MODELS = pytest.mark.parametrize("text", [MODEL, EVERYTHING], ids=["small", "everything"])
+TREES = EVENTS + NESTED + LINKED + STORY
+MODELS = pytest.mark.parametrize("text", [MODEL, EVERYTHING, TREES], ids=["small", "everything", "trees"])
 
 
 def place(location: Location) -> str:
@@ -65,6 +67,23 @@ def test_each_node_tells_where_it_is_written() -> None:
             assert group.attrib["data-iri"].endswith(written)
 
 
+def test_a_behaviour_leads_to_its_node_of_a_tree_and_composites_to_their_parts() -> None:
+    drawn = picture(TREES)
+    iris = {group.attrib["data-iri"]: "".join(group.itertext()) for group in drawn.iter() if "data-iri" in group.attrib}
+    links = [(path.attrib["data-from"], path.attrib["data-to"]) for path in drawn.iter() if "data-from" in path.attrib]
+    names = {iri: iri.rpartition("node-handling.")[2] for iri in iris if "node-handling." in iri}
+    assert list(names.values()) == ["whole", "grasp", "pick", "pick-again", "place"]
+    assert "selector" in iris[next(iri for iri, name in names.items() if name == "grasp")]
+    found = [(names.get(start, "behaviour"), names[end]) for start, end in links if end in names]
+    assert sorted(found) == [
+        ("behaviour", "pick"),
+        ("grasp", "pick"),
+        ("grasp", "pick-again"),
+        ("whole", "grasp"),
+        ("whole", "place"),
+    ]
+
+
 @MODELS
 def test_nothing_covers_anything_else(text: str) -> None:
     boxes = [extent(group) for group in nodes(text)]
@@ -95,7 +114,7 @@ def test_the_same_text_gives_the_same_bytes_and_nothing_is_fetched(text: str) ->
 
 def test_all_colours_are_explained() -> None:
     legend = {group.findtext(f"{SVG}text") for group in picture(MODEL).iter(f"{SVG}g") if "transform" in group.attrib}
-    concepts = {"User story", "Scenario variant", "Scenario template", "Given", "When", "Then", "Event"}
+    concepts = {"User story", "Scenario variant", "Scenario template", "Given", "When", "Then", "Event", "Tree node"}
     assert legend == concepts | {"leads to", "lasts from and until"}
 
 

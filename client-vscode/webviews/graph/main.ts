@@ -148,6 +148,7 @@ function legend(): HTMLElement {
     when: "When",
     then: "Then",
     event: "Event",
+    node: "Tree node",
   };
   const entries = Object.entries(words).map(([concept, word]) =>
     element(

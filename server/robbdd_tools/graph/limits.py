@@ -62,5 +62,6 @@ def _only(structure: Structure, kept: set[str]) -> Structure:
         those(structure.templates),
         those(structure.clauses),
         those(structure.events),
+        those(structure.tree_nodes),
         [link for link in structure.links if {link[0], link[1]} <= kept],
     )

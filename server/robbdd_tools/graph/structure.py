@@ -1,4 +1,4 @@
-"""The structure of a graph for a picture: stories, variants, templates, clauses and events, each with its place."""
+"""The structure of a graph for a picture: stories, variants, templates, clauses, events, nodes of behaviour trees."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from robbdd_tools.graph.model import Iri
 from robbdd_tools.graph.records import Records
 from robbdd_tools.graph.roles import words_of
 from robbdd_tools.graph.source_map import Location
+from robbdd_tools.graph.vocabulary import COMPOSITES
 
 JOINED = {
     "rbw:Conjunction": "all of",
@@ -28,8 +29,9 @@ JOINED = {
 class Node:
     """Something to draw.
 
-    ``concept`` is ``story``, ``variant``, ``template``, ``given``, ``when``, ``then`` or ``event``; ``depth`` counts
-    the groups and quantifiers around a clause; ``location`` is where it is written.
+    ``concept`` is ``story``, ``variant``, ``template``, ``given``, ``when``, ``then``, ``event`` or ``node`` (of a
+    behaviour tree); ``depth`` counts the groups and quantifiers around a clause, or the composites above a node;
+    ``location`` is where it is written.
     """
 
     iri: str
@@ -49,11 +51,12 @@ class Structure:
     templates: list[Node] = field(default_factory=list[Node])
     clauses: list[Node] = field(default_factory=list[Node])
     events: list[Node] = field(default_factory=list[Node])
+    tree_nodes: list[Node] = field(default_factory=list[Node])
     links: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
 
     def nodes(self) -> Iterator[Node]:
         """Yield all nodes, by layer."""
-        return chain(self.stories, self.variants, self.templates, self.clauses, self.events)
+        return chain(self.stories, self.variants, self.templates, self.clauses, self.events, self.tree_nodes)
 
 
 def structure_of(built: BuiltGraph) -> Structure:
@@ -79,7 +82,22 @@ class _Reader:
             self._template(template)
         for event in records.instances("time:Event"):
             self._event(event)
+        for tree in records.instances("bt:BehaviourTree"):
+            self._tree(tree)
         return found
+
+    def _tree(self, tree: Iri) -> None:
+        above: dict[Iri, int] = {}
+        for node in self.records.iris(items_of(self.records, tree, "rbw:node-list")):
+            if node in self._seen:
+                continue
+            self._seen.add(node)
+            depth = above.get(node, 0)
+            kinds = tuple(kind for kind, class_ in COMPOSITES.items() if self.records.is_a(node, class_))
+            self.found.tree_nodes.append(self._node(node, "node", kinds, depth))
+            for child in self.records.iris(items_of(self.records, node, "bt:children")):
+                above[child] = depth + 1
+                self.found.links.append((node, child, ""))
 
     def _position(self, story: Iri) -> int:
         value = self.records.literal(story, "rbw:position")
@@ -122,6 +140,9 @@ class _Reader:
                 lines = (*self._sentence(clause), *self._time(clause))
                 self.found.clauses.append(self._node(clause, self._role(clause), lines, depth))
                 self._timed(clause, "time")
+                for behaviour in records.iris(records.all(clause, "bhv:of-behaviour")):
+                    nodes = records.iris(records.all(behaviour, "rbw:coordination-node"))
+                    self.found.links += [(clause, node, "") for node in nodes]
                 self._clauses(clause, clause, depth + 1)
 
     def _role(self, clause: Iri) -> str:

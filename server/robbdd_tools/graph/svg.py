@@ -1,5 +1,7 @@
 """Draws the structure of a graph: one column each for stories, variants, templates, clauses and events.
 
+The nodes of behaviour trees stand below the events, each below what it is a part of.
+
 Every link leads from a column to one further right, so that a layout is only a matter of heights: clauses are stacked
 in written order, and everything else stands beside the middle of what it leads to. A library for layered layout would
 have nothing left to decide.
@@ -23,6 +25,7 @@ COLOURS = {
     "when": "#f9d3bd",
     "then": "#d5dde8",
     "event": "#f6f2c4",
+    "node": "#e3e3e3",
 }
 """Fill of each concept; tints of colours that people with any colour vision tell apart, each with its own shape."""
 STROKES = {
@@ -33,8 +36,15 @@ STROKES = {
     "when": "#b04a00",
     "then": "#44546a",
     "event": "#7a7000",
+    "node": "#4d4d4d",
 }
-WORDS = {"story": "User story", "variant": "Scenario variant", "template": "Scenario template", "event": "Event"}
+WORDS = {
+    "story": "User story",
+    "variant": "Scenario variant",
+    "template": "Scenario template",
+    "event": "Event",
+    "node": "Tree node",
+}
 COLUMNS = (("story", 210), ("variant", 180), ("template", 190), ("clause", 300), ("event", 170))
 """Columns from the left with their widths, px."""
 SPACE, MARGIN, LINE, PADDING, GAP, INDENT = 70, 24, 16, 8, 12, 18
@@ -60,12 +70,16 @@ class _Box:
     def middle(self) -> float:
         return self.y + self.height / 2
 
+    @property
+    def bottom(self) -> float:
+        return self.y + self.height
+
 
 def draw(structure: Structure, source: Callable[[Location], str]) -> str:
     """Return an SVG; ``source`` writes a place for the reader (``model.bdd:3:7``), which each node carries."""
     boxes = _laid_out(structure)
     right = MARGIN * 2 + sum(width for _, width in COLUMNS) + SPACE * (len(COLUMNS) - 1)
-    bottom = max((box.y + box.height for box in boxes.values()), default=MARGIN) + 70
+    bottom = max((box.bottom for box in boxes.values()), default=MARGIN) + 70
     drawn = [
         _link(boxes[start], boxes[end], kind) for start, end, kind in structure.links if {start, end} <= boxes.keys()
     ]
@@ -101,7 +115,7 @@ def _laid_out(structure: Structure) -> dict[str, _Box]:
         left, width = lefts["clause"]
         indent = INDENT * min(clause.depth, 5)
         boxes[clause.iri] = box = _box(clause, left + indent, y, width - indent)
-        y, before = box.y + box.height + GAP, top
+        y, before = box.bottom + GAP, top
     targets: dict[str, list[str]] = {}
     sources: dict[str, list[str]] = {}
     for start, end, _ in structure.links:
@@ -110,6 +124,12 @@ def _laid_out(structure: Structure) -> dict[str, _Box]:
     layers = (structure.templates, targets), (structure.variants, targets), (structure.stories, targets)
     for nodes, beside in (*layers, (structure.events, sources)):
         _stack(nodes, beside, boxes, lefts)
+    left, width = lefts["event"]
+    y = max((boxes[event.iri].bottom for event in structure.events), default=float(MARGIN)) + 2 * GAP
+    for node in structure.tree_nodes:
+        indent = INDENT * min(node.depth, 5)
+        boxes[node.iri] = box = _box(node, left + indent, y, width - indent)
+        y = box.bottom + GAP
     return boxes
 
 
@@ -201,6 +221,8 @@ def _outline(box: _Box) -> str:
             tip = 10
             points = [(x + tip, y), (x + width - tip, y), (x + width, box.middle), (x + width - tip, y + height)]
             return _polygon([*points, (x + tip, y + height), (x, box.middle)], paint)
+        case "node":
+            return _rectangle(x, y, width, height, f'rx="4" {paint}')
         case _:
             return _rectangle(x, y, width, height, paint) + _rectangle(x, y, 5, height, f'fill="{stroke}"')
 
@@ -218,7 +240,7 @@ def _link(start: _Box, end: _Box, kind: str) -> str:
     style = "link duration" if kind == "duration" else "link"
     if end.x < start.x + start.width:
         x = start.x + 5
-        path = f"M{x:g} {start.y + start.height:g}V{end.middle:g}H{end.x:g}"
+        path = f"M{x:g} {start.bottom:g}V{end.middle:g}H{end.x:g}"
     else:
         bend = (end.x - start.x - start.width) / 2
         x, top, bottom = start.x + start.width, start.middle, end.middle
