@@ -226,7 +226,11 @@ def _view(options: argparse.Namespace) -> int:
 def _query(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.query import query
 
-    return query(options.path, options.query, options.file, options.name, options.format, options.results)
+    text, results = options.query, options.results
+    if text is None and options.file is None and options.name is None and results is not None and "{" in results:
+        # A query right behind --results is taken for its value; no run is called so.
+        text, results = results, "latest"
+    return query(options.path, text, options.file, options.name, options.format, results)
 
 
 if __name__ == "__main__":

@@ -86,6 +86,7 @@ def test_without_a_file_the_newest_stored_run_counts(tmp_path: Path) -> None:
     run.write_results(json.loads(RESULTS.read_text(encoding="utf-8")))
     (tmp_path / "robbdd.toml").touch()
     assert "true" in robbdd("query", model, ask, "--results").stdout
+    assert "true" in robbdd("query", model, "--results", ask).stdout
 
 
 def test_what_holds_no_results_is_refused_in_a_sentence(tmp_path: Path) -> None:
