@@ -1,4 +1,4 @@
-// The Testing view: its tree, runs begun in it and elsewhere, a failing clause, running again, cancelling, runs on save.
+// The Testing view: its tree, runs begun in it and elsewhere, a failing clause, again, cancelling, refusals, runs on save.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 import { readFile, rename, rm, writeFile } from "node:fs/promises";
@@ -73,6 +73,8 @@ async function expand(text) {
   const found = row(text).first();
   await found.waitFor();
   if ((await found.getAttribute("aria-expanded")) === "false") {
+    // The words about the row that was pointed at last may cover this one.
+    await workbench.page.mouse.move(0, 0);
     await found.click();
     await workbench.page.keyboard.press("ArrowRight");
     await workbench.page.locator('.monaco-list-row[aria-expanded="true"]', { hasText: text }).first().waitFor();
@@ -152,6 +154,8 @@ step("a failing clause shows its margin and instant where it stands, and what wa
   const told = /−\d+.*mm\sat\s\d+\.\d+\ss\s!=\smargin\s≥\s0/;
   const message = workbench.page.locator(".test-error-content-widget", { hasText: told });
   await message.first().waitFor();
+  // The message covers what stands behind the clause, so that the verdict stands before it.
+  await workbench.lines(/^\s*✗.*at-goal:/).waitFor();
   for (const scheme of Object.keys(SCHEMES)) {
     await workbench.changeScheme(scheme);
     await workbench.screenshot(`testing-failed-${scheme}`);
@@ -178,6 +182,7 @@ step("a run that is cancelled ends at once", async () => {
   const begun = Date.now();
   await rowsThat("run").first().waitFor({ state: "detached" });
   assert.ok(Date.now() - begun < CANCEL_LIMIT, `${Date.now() - begun} ms`);
+  assert.equal(await rowsThat("error").count(), 0, "what was not judged has no result");
 });
 
 step("a continuous run follows each save", async () => {
@@ -200,10 +205,24 @@ step("results of CI are imported, and a broken file says where", async () => {
   await importFile(RESULTS);
   await workbench.notification(`2 results of ${RESULTS} are shown`);
   await rowsThat("failed", "part-stays").waitFor();
+  await rowsThat("failed", /Then at-goal.*−\d+ mm/).waitFor();
   await workbench.screenshot("testing-imported");
   await writeFile(join(session.workspace, BROKEN_RESULTS), '{\n  "scenarios": [,]\n}');
   await importFile(BROKEN_RESULTS);
   await workbench.notification(`${BROKEN_RESULTS}, line 2, column 17`);
+});
+
+step("a run that is refused says why at the variant, until it is run again", async () => {
+  await rewrite(FAILING_FILE, (text) => text.replace("Given:", "Given"));
+  await workbench.waitForError();
+  await runRow("part-stays");
+  await rowsThat("error", "part-stays").waitFor();
+  await workbench.page.locator(".part.panel", { hasText: /the\smodel\shas\serrors/ }).first().waitFor();
+  await workbench.screenshot("testing-refused");
+  await rewrite(FAILING_FILE, (text) => text.replace("Given", "Given:"));
+  await workbench.waitForNoError();
+  await runRow("part-stays");
+  await rowsThat("passed", "part-stays").waitFor({ timeout: RUN_LIMIT });
 });
 
 step("after a restart the results of the session before are there", async () => {
@@ -211,8 +230,16 @@ step("after a restart the results of the session before are there", async () => 
   await showView();
   await rowsThat("passed", "tidy-bench").or(rowsThat("failed", "no-bench")).first().waitFor();
   await rowsThat("passed", "no-bench").waitFor();
+  assert.equal(await rowsThat("error").count(), 0, "what the cancelled run left open has no result");
   await workbench.screenshot("testing-restored");
 });
+
+async function rewrite(file, change) {
+  const text = await session.text(file);
+  const changed = change(text);
+  assert.notEqual(changed, text);
+  await writeFile(join(session.workspace, file), changed);
+}
 
 async function showView() {
   await workbench.page.locator('.activitybar .action-label[aria-label^="Testing"]').click();
@@ -222,6 +249,8 @@ async function showView() {
 async function importFile(name) {
   await workbench.command("RobBDD: Import Results");
   const input = workbench.page.locator(".quick-input-widget .quick-input-filter input");
+  // The dialog writes its folder there when it has read it.
+  await workbench.page.locator(".quick-input-list .monaco-list-row", { hasText: name }).waitFor();
   await input.fill(join(session.workspace, name));
   await workbench.page.keyboard.press("Enter");
 }
