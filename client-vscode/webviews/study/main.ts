@@ -117,7 +117,7 @@ function distribution(clause: JudgedClause): HTMLElement {
   const count = (wanted: string) => judged.filter(({ verdict }) => verdict === wanted).length;
   const tally = (["holds", "violated", "unknown"] as const)
     .filter((verdict) => count(verdict) > 0)
-    .map((verdict) => element("span", { class: verdict }, `${count(verdict)} ${verdict}`));
+    .map((verdict) => element("span", { class: verdict }, `${count(verdict)} ${verdict === "holds" && count(verdict) > 1 ? "hold" : verdict}`));
   const head = element("div", { class: "clause", title: clause.sentence }, element("span", { class: "name" }, named(clause)), ...tally);
   const bins = clause.unit === "" ? [] : histogram(scenarios, clause.iri, BINS);
   return element("section", {}, head, bins.length > 0 ? bars(bins, clause) : element("div", { class: "none" }, noMargin(clause)));
