@@ -219,6 +219,7 @@ async def test_a_cancelled_run_leaves_its_open_clauses_unknown(editor: Editor, r
         ({"where": "thing=none"}, "no scenario fits the selection"),
         ({"failed": True}, "no scenario failed"),
         ({"seed": "seven"}, "no usable 'seed'"),
+        ({"only": [7]}, "no usable 'only'"),
     ],
 )
 async def test_options_that_cannot_be_followed_are_answered(
@@ -252,6 +253,13 @@ async def test_a_run_is_kept_as_the_command_line_keeps_its_runs(
     assert main(["replay", "latest", "--store", str(folder.parent)]) == 0
     assert main(["judge", "latest", str(editor.path)]) == 0
     assert "1 of 1 traces are the same" in capsys.readouterr().out
+
+
+@pytest.mark.physics
+async def test_a_client_may_call_two_runs_by_one_name(editor: Editor) -> None:
+    editor.open(short(editor))
+    answers = [await execute(editor, "run", token="mine") for _ in range(2)]
+    assert [(answer["run"], answer["holds"]) for answer in answers] == [("mine", 1)] * 2
 
 
 @pytest.mark.physics

@@ -62,7 +62,7 @@ class RunOptions:
         wrong = [name for name, value in known.items() if value is not None and not isinstance(value, _TYPES[name])]
         if wrong or "uri" not in known:
             raise ModelError(f"the command's argument has no usable '{(wrong or ['uri'])[0]}'")
-        if any("variant" not in entry for entry in known.get("only") or ()):
+        if not all(isinstance(entry, Mapping) and "variant" in entry for entry in known.get("only") or ()):
             raise ModelError("the command's argument has no usable 'only'")
         return cls(**known)
 

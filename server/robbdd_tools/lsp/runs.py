@@ -5,10 +5,12 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 
 from robbdd_tools import __version__
 from robbdd_tools.base.files import path_to_uri, uri_to_path
@@ -129,6 +131,15 @@ class _Follower:
     async def follow(self) -> None:
         """Follow the run to its end."""
         await self._begin_progress()
+        try:
+            await self._follow()
+        finally:
+            self._end_progress()
+        self._ls.show_results(self._plan.uris)
+        await self._ls.show_changed()
+        await asyncio.to_thread(self._keep, list(self._ls.results))
+
+    async def _follow(self) -> None:
         scheduler = self._run.scheduler
         assert scheduler is not None
 
@@ -151,10 +162,6 @@ class _Follower:
         for scenario in self._run.judged.values():
             scenario.mark_vacuous(self._results.vacuous())
         self._take(RunFinished(not scheduler.ending))
-        self._ls.work_done_progress.end(self._run.id, types.WorkDoneProgressEnd(message=self._told()))
-        self._ls.show_results(self._plan.uris)
-        await self._ls.show_changed()
-        await asyncio.to_thread(self._keep, list(self._ls.results))
 
     def _keep(self, results: list[JudgedScenario]) -> None:
         """Keep the run, and what is known of all scenarios now."""
@@ -236,10 +243,18 @@ class _Follower:
     async def _begin_progress(self) -> None:
         window = self._ls.client_capabilities.window
         if window is not None and window.work_done_progress:
-            # pygls leaves the type of the client's (empty) answer open.
-            await self._ls.work_done_progress.create_async(self._run.id)  # pyright: ignore[reportUnknownMemberType]
+            # A client that refuses is told all the same, as one that cannot be asked.
+            with suppress(JsonRpcException):
+                # pygls leaves the type of the client's (empty) answer open.
+                await self._ls.work_done_progress.create_async(self._run.id)  # pyright: ignore[reportUnknownMemberType]
         begin = types.WorkDoneProgressBegin(title="RobBDD run", cancellable=True, percentage=0)
         self._ls.work_done_progress.begin(self._run.id, begin)
+
+    def _end_progress(self) -> None:
+        progress = self._ls.work_done_progress
+        progress.end(self._run.id, types.WorkDoneProgressEnd(message=self._told()))
+        # pygls keeps the names for ever, and takes none again.
+        progress.tokens.pop(self._run.id, None)
 
     def _report_progress(self) -> None:
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]

@@ -15,7 +15,6 @@ from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from robbdd_tools import __version__
-from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics
@@ -29,6 +28,7 @@ from robbdd_tools.lsp.protocol import Protocol
 from robbdd_tools.lsp.refresh import COLOURS, DIAGNOSTICS, GATHERING, HINTS, LENSES, SETTLING, Refreshes
 from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
 from robbdd_tools.lsp.settings import Settings
+from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.stores import Stores
 from robbdd_tools.lsp.survey import Survey
@@ -70,9 +70,7 @@ class RobbddServer(LanguageServer):
         """Whether the client shows pictures in Markdown."""
         self.shows_replays = False
         """Whether the client has the command ``robbdd.showReplay``, in links of Markdown too."""
-        self._shapes: dict[str, tuple[Diagnostic, ...]] = {}
-        self._shaped_texts: dict[str, dict[str, str]] = {}
-        self._requested_texts: dict[str, dict[str, str]] = {}
+        self._shapes = ShapeFindings()
         self._analysis = AnalysisThread()
         self.requests = Requests()
         self._background = Background()
@@ -130,9 +128,9 @@ class RobbddServer(LanguageServer):
     async def text_closed(self, uri: str) -> None:
         """Go back to the file on disk and take its diagnostics from the editor."""
         self._opened.pop(uri, None)
-        self._shapes.pop(uri, None)
         self._publishing.end(uri)
         self.validator.forget(uri)
+        self._shapes.forget(uri)
         for forget in self.when_closed:
             forget(uri)
         await self._in_thread(lambda: self.project.close(uri))
@@ -168,16 +166,16 @@ class RobbddServer(LanguageServer):
         uris = await self.analyse(affected)
         if any(uri != changed for uri in uris):
             self.refreshes.want(DIAGNOSTICS, COLOURS, HINTS, LENSES, after=SETTLING)
-        for uri in uris:
+        # Some may have been closed meanwhile.
+        for uri in filter(self.is_open, uris):
             # What is being found in an older text is of hardly any use any more.
             self._publishing.begin(uri, partial(self._publish_and_order, uri))
 
     async def _publish_and_order(self, uri: str) -> None:
         if not self.pulls:
             await self._publish_one(uri)
-        request, self._requested_texts[uri] = await self.analyse(
-            lambda snapshot: self._order(snapshot, uri), urgent=False
-        )
+        request, texts = await self.analyse(lambda snapshot: self._order(snapshot, uri), urgent=False)
+        self._shapes.request(uri, texts)
         self.validator.request(request)
 
     def is_open(self, uri: str) -> bool:
@@ -196,7 +194,13 @@ class RobbddServer(LanguageServer):
 
     async def load_results(self) -> None:
         """Show what earlier runs have found in the workspace."""
-        self.results = Results(await asyncio.to_thread(load_results, self.folders()))
+        kept = Results(await asyncio.to_thread(load_results, self.folders()))
+        # What a run has found by now is newer than what is kept.
+        going_on = list(self.run.judged.values()) if self.run is not None else []
+        for scenario in going_on:
+            kept.drop(scenario.variant, scenario.variation)
+        kept.add(going_on)
+        self.results = kept
         self.show_results(list(self._opened))
 
     def show_results(self, uris: Sequence[str]) -> None:
@@ -222,7 +226,7 @@ class RobbddServer(LanguageServer):
             self.refreshes.want(DIAGNOSTICS)
             return
         for uri in uris:
-            if uri in self._opened:
+            if self.is_open(uri):
                 await self._publish_one(uri)
 
     def folders(self, uri: str | None = None) -> list[Path]:
@@ -249,36 +253,24 @@ class RobbddServer(LanguageServer):
 
     async def _publish_one(self, uri: str) -> None:
         version, diagnostics = await self.diagnostics(uri)
-        self.send(uri, version, diagnostics)
+        # It may have been closed meanwhile.
+        if self.is_open(uri):
+            self.send(uri, version, diagnostics)
 
     async def diagnostics(self, uri: str) -> tuple[int, list[types.Diagnostic]]:
         """Return all that is known of a file now, with the version of the text that it is about."""
 
         def find(snapshot: Snapshot) -> tuple[int, list[types.Diagnostic]]:
-            found = [*fast_diagnostics(snapshot, uri), *self._valid_shapes(snapshot, uri)]
+            found = [*fast_diagnostics(snapshot, uri), *self._shapes.valid(snapshot, uri)]
             found += clause_diagnostics(snapshot, uri, self.findings)
             document = document_of(snapshot, uri)
             return document.version, [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
 
         return await self.analyse(find, urgent=False)
 
-    def _valid_shapes(self, snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-        """Return the shapes' findings in a file, from every open file's validation, while its text is the same."""
-        kept: list[Diagnostic] = []
-        for owner, found in self._shapes.items():
-            text = self._shaped_texts[owner].get(uri)
-            if text == document_of(snapshot, uri).text:
-                kept += [diagnostic for diagnostic in found if diagnostic.uri == uri]
-        return kept
-
     def _shapes_found(self, answer: Answer) -> None:
         """Take an answer of the validation process, which is the newest for its file."""
-        if answer.error:
-            return
-        before = self._shapes.get(answer.uri)
-        self._shapes[answer.uri] = answer.diagnostics
-        self._shaped_texts[answer.uri] = self._requested_texts[answer.uri]
-        if before or answer.diagnostics:
+        if self._shapes.take(answer):
             self.spawn(self._show_diagnostics(list(self._opened)))
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:

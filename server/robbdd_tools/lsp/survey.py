@@ -115,6 +115,7 @@ class Survey:
         files = await asyncio.to_thread(model_files, roots)
         for gone in self._found.keys() - set(files):
             del self._found[gone]
+            self._reached.pop(gone, None)
         for uri in files:
             outdated = everything or uri not in self._found or not changed.isdisjoint(self._reached.get(uri, ()))
             if outdated or uri in changed:
@@ -123,10 +124,13 @@ class Survey:
         self._tell_soon()
 
     def _ask(self) -> None:
-        while self._waiting and len(self._asked) < AT_ONCE:
-            uri = next(iter(self._waiting))
+        while len(self._asked) < AT_ONCE:
+            # What has changed while it is being looked at waits for its turn, as the answer may be about the old state.
+            uri = next((uri for uri in self._waiting if uri not in self._asked), None)
+            if uri is None:
+                return
             del self._waiting[uri]
-            if not self._server.is_open(uri) and uri not in self._asked:
+            if not self._server.is_open(uri):
                 self._asked.add(uri)
                 self._server.spawn(self._ask_for(uri))
 
@@ -137,12 +141,14 @@ class Survey:
         self._server.spawn(self._keep(answer))
 
     async def _keep(self, answer: Answer) -> None:
-        if not answer.error:
-            self._reached[answer.uri] = answer.reached
-            self._found[answer.uri] = await asyncio.to_thread(self._converted, answer)
-        self._asked.discard(answer.uri)
-        self._ask()
-        self._tell_soon()
+        try:
+            if not answer.error:
+                self._reached[answer.uri] = answer.reached
+                self._found[answer.uri] = await asyncio.to_thread(self._converted, answer)
+        finally:
+            self._asked.discard(answer.uri)
+            self._ask()
+            self._tell_soon()
 
     def _converted(self, answer: Answer) -> dict[str, Findings]:
         convert, documents = self._server.convert, answer.documents
