@@ -16,6 +16,7 @@ from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
 from lsp_kit import CLIENTS, PATIENCE, Editor, begin_session
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.lsp.handlers import create_server
 
 REQUEST_CANCELLED = -32800
 SCENE = """ns env = 'https://example.org/env/'
@@ -191,3 +192,29 @@ async def test_a_project_of_a_thousand_files_is_told_while_documents_are_answere
     assert list((await whole).items) == []
     faulty = [uri for uri, found in told.items() if "syntax" in found]
     assert (len([uri for uri in told if "/many/" in uri]), len(faulty)) == (1000, 10)
+
+
+async def test_what_is_found_in_a_document_that_is_closed_meanwhile_is_not_published(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    server, sent = create_server(), list[int | None]()
+    uri = "file:///folder/one.bdd"
+
+    async def closing(_: str) -> tuple[int, list[types.Diagnostic]]:
+        await server.text_closed(uri)
+        return 1, []
+
+    def validate(_: object) -> None:
+        """Begin no process."""
+
+    def send(_: str, version: int | None, __: object) -> None:
+        sent.append(version)
+
+    monkeypatch.setattr(server.validator, "request", validate)
+    await server.text_changed(uri, 1, "")
+    monkeypatch.setattr(server, "send", send)
+    monkeypatch.setattr(server, "diagnostics", closing)
+    server.show_results([uri])
+    await server.show_changed()
+    server.stop()
+    assert set(sent) == {None}

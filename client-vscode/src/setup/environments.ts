@@ -43,8 +43,17 @@ export function installedServer(storage: string, wanted: string): PrivateServer 
   return best && { command: best.command, package: best.package };
 }
 
+/**
+ * Delete an environment as far as that can be done: Windows keeps programs that another window still runs. The record
+ * goes first, so that no half of one is ever taken for a server.
+ */
 export function discard(folder: string): void {
-  rmSync(folder, { recursive: true, force: true, maxRetries: 3 });
+  try {
+    rmSync(join(folder, RECORD), { force: true });
+    rmSync(folder, { recursive: true, force: true, maxRetries: 3 });
+  } catch {
+    // An installation does not fail because an old one could not be deleted.
+  }
 }
 
 /** The complete ones, the latest first. */

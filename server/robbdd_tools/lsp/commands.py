@@ -69,7 +69,7 @@ def _register_runs(server: RobbddServer) -> None:
 
     @server.feature(types.WINDOW_WORK_DONE_PROGRESS_CANCEL)
     def cancel_progress(ls: RobbddServer, params: types.WorkDoneProgressCancelParams) -> None:
-        if ls.run is not None and ls.run.id == params.token:
+        if ls.run is not None and ls.run.progress == params.token:
             cancel_run(ls)
 
 

@@ -53,13 +53,21 @@ _BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 
 @dataclass
 class ActiveRun:
-    """A run from the moment it is asked for; ``judged`` are its scenarios by their number in the manifest."""
+    """A run from the moment it is asked for; ``judged`` are its scenarios by their number in the manifest.
+
+    ``progress`` is the token of its progress, which no other run has.
+    """
 
     options: RunOptions
-    id: str
+    progress: str
     scheduler: Scheduler | None = None
     cancelled: bool = False
     judged: dict[int, JudgedScenario] = field(default_factory=dict[int, JudgedScenario])
+
+    @property
+    def id(self) -> str:
+        """What its messages call it."""
+        return self.options.token or self.progress
 
     def cancel(self) -> None:
         """Stop the agents, or what prepares the run; what waits for it then ends by itself."""
@@ -76,7 +84,7 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
         return _refused(ls, "a run is going on: cancel it first")
     try:
         options = RunOptions.of({**argument, **more})
-        ls.run = run = ActiveRun(options, options.token or f"robbdd-run-{next(ls.run_numbers)}")
+        ls.run = run = ActiveRun(options, f"robbdd-run-{next(ls.run_numbers)}")
         failed = [(known.variant, known.variation) for known in ls.results if known.outcome != "holds"]
         plan = await ls.in_background(lambda snapshot: plan_run(snapshot, ls.convert, options, failed), options.uri)
         place, excuse = await asyncio.to_thread(ls.stores.begin, options.uri)
@@ -246,15 +254,15 @@ class _Follower:
             # A client that refuses is told all the same, as one that cannot be asked.
             with suppress(JsonRpcException):
                 # pygls leaves the type of the client's (empty) answer open.
-                await self._ls.work_done_progress.create_async(self._run.id)  # pyright: ignore[reportUnknownMemberType]
+                await self._ls.work_done_progress.create_async(self._run.progress)  # pyright: ignore[reportUnknownMemberType]
         begin = types.WorkDoneProgressBegin(title="RobBDD run", cancellable=True, percentage=0)
-        self._ls.work_done_progress.begin(self._run.id, begin)
+        self._ls.work_done_progress.begin(self._run.progress, begin)
 
     def _end_progress(self) -> None:
         progress = self._ls.work_done_progress
-        progress.end(self._run.id, types.WorkDoneProgressEnd(message=self._told()))
-        # pygls keeps the names for ever, and takes none again.
-        progress.tokens.pop(self._run.id, None)
+        progress.end(self._run.progress, types.WorkDoneProgressEnd(message=self._told()))
+        # pygls keeps the tokens for ever.
+        progress.tokens.pop(self._run.progress, None)
 
     def _report_progress(self) -> None:
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
@@ -262,7 +270,7 @@ class _Follower:
         done, total = len(finished), len(self._results.scenarios)
         told = f"{done}/{total} scenarios" + (f", {failed} not passed" if failed else "")
         report = types.WorkDoneProgressReport(message=told, percentage=100 * done // total)
-        self._ls.work_done_progress.report(self._run.id, report)
+        self._ls.work_done_progress.report(self._run.progress, report)
 
     def _told(self) -> str:
         return f"{self._results.count(Outcome.HOLDS)} of {len(self._results.scenarios)} scenarios hold"
