@@ -62,7 +62,7 @@ class _Server:
         self._tasks.append(asyncio.get_running_loop().create_task(work))
 
     async def survey_request(self, uri: str) -> Request:
-        return Request(len(self._tasks), uri, {}, EditorShapes(()), surveyed=True)
+        return Request(len(self._tasks), uri, {}, EditorShapes(), surveyed=True)
 
 
 @pytest.fixture

@@ -261,8 +261,8 @@ class _Follower:
     def _end_progress(self) -> None:
         progress = self._ls.work_done_progress
         progress.end(self._run.progress, types.WorkDoneProgressEnd(message=self._told()))
-        # pygls keeps the tokens for ever.
-        progress.tokens.pop(self._run.progress, None)
+        # pygls keeps the tokens for ever, and leaves the type of what belongs to them open.
+        progress.tokens.pop(self._run.progress, None)  # pyright: ignore[reportUnknownMemberType]
 
     def _report_progress(self) -> None:
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
