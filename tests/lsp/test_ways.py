@@ -26,11 +26,11 @@ async def test_the_call_hierarchy_goes_from_the_story_to_the_behaviour(editor: E
 async def test_types_implementations_links_and_selections_are_answered(editor: Editor) -> None:
     editor.open()
     client = editor.client
-    at_clause = editor.at("at-goal", after=True)
+    at_clause = editor.at("in-hand", after=True)
     found = await client.text_document_implementation_async(types.ImplementationParams(**at_clause))
     assert isinstance(found, list | tuple)
     assert [location.uri.rsplit("/", 1)[-1] for location in found if isinstance(location, types.Location)] == [
-        "located_at.py"
+        "held_by.py"
     ]
     at_variant = editor.at("Scenario part-to", after=True)
     kinds = await client.text_document_type_definition_async(types.TypeDefinitionParams(**at_variant))

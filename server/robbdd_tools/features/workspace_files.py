@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 MOST_FILES = 5_000
 """Model files of a workspace that are looked at."""
+MOST_FOLDERS = 200
+"""Folders that are looked into around a file that is in no folder of the workspace."""
 _PASSED_OVER = frozenset({"node_modules", "__pycache__", "build", "dist"})
 
 
@@ -32,6 +35,12 @@ def model_files(folders: Iterable[str]) -> list[str]:
     return sorted(found)
 
 
+def model_files_near(uri: str) -> list[str]:
+    """Return the model files in a file's own folder and those below, as far as ``MOST_FOLDERS`` go, sorted."""
+    path = uri_to_path(uri)
+    return sorted(_below(path.parent, MOST_FOLDERS)) if path is not None else []
+
+
 def workspace_indices(snapshot: Snapshot, folders: Iterable[str]) -> Iterator[FileIndex]:
     """Yield every readable model file: as the project has it, else as it is on disk."""
     for uri in sorted({*model_files(folders), *snapshot.sources}):
@@ -42,8 +51,8 @@ def workspace_indices(snapshot: Snapshot, folders: Iterable[str]) -> Iterator[Fi
             yield index
 
 
-def _below(folder: Path) -> Iterator[str]:
-    for place, inner, names in os.walk(folder):
+def _below(folder: Path, most_folders: int | None = None) -> Iterator[str]:
+    for place, inner, names in islice(os.walk(folder), most_folders):
         inner[:] = sorted(name for name in inner if not name.startswith(".") and name not in _PASSED_OVER)
         for name in sorted(names):
             if language_of(name):

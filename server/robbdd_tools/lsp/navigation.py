@@ -29,7 +29,7 @@ def _register_uses(server: RobbddServer) -> None:
             found = references(snapshot, document.uri, offset, params.context.include_declaration)
             return [ls.convert.location(snapshot, uri, span) for uri, span in found]
 
-        return await ls.analyse(find)
+        return await ls.importers.analyse(params.text_document.uri, params.position, find)
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     async def highlight(ls: RobbddServer, params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
@@ -63,7 +63,7 @@ def _register_uses(server: RobbddServer) -> None:
             return ls.convert.workspace_edit(snapshot, rename(snapshot, document.uri, offset, params.new_name))
 
         try:
-            return await ls.analyse(find)
+            return await ls.importers.analyse(params.text_document.uri, params.position, find)
         except RenameRefused as refused:
             raise JsonRpcInvalidParams(str(refused)) from refused
 

@@ -69,7 +69,7 @@ def _register_hover(server: RobbddServer) -> None:
             found = hover(snapshot, document.uri, ls.convert.offset(document, params.position), ls.findings)
             return None if found is None else (found, ls.convert.range(document, found.span))
 
-        answer = await ls.analyse(find)
+        answer = await ls.importers.analyse(params.text_document.uri, params.position, find)
         if answer is None:
             return None
         found, place = answer

@@ -22,6 +22,7 @@ from robbdd_tools.features.results import NOTHING, Results
 from robbdd_tools.lsp.analysis import AnalysisThread
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.importers import Importers
 from robbdd_tools.lsp.kept_results import load_results
 from robbdd_tools.lsp.newest import Newest
 from robbdd_tools.lsp.protocol import Protocol
@@ -82,6 +83,7 @@ class RobbddServer(LanguageServer):
         self.pulls = False
         """Whether the client asks for diagnostics; else they are published, never both."""
         self.refreshes = Refreshes(self)
+        self.importers = Importers(self)
         self.survey = Survey(self)
         self._tasks: set[asyncio.Task[None]] = set()
         self._publishing = Newest(self.spawn)
@@ -119,6 +121,8 @@ class RobbddServer(LanguageServer):
 
     async def text_changed(self, uri: str, version: int, text: str) -> None:
         """Take a new text of an open document and publish what it means."""
+        if uri not in self._opened:
+            self.spawn(self.importers.look_around())
         self._opened.setdefault(uri)
         self.requests.text_changed(uri)
         await self._in_thread(lambda: self.project.open(uri, version, text))
@@ -147,6 +151,7 @@ class RobbddServer(LanguageServer):
                 self.project.refresh(uri)
 
         await self._in_thread(forget)
+        await self.importers.look_around()
         self.refreshes.want(COLOURS, HINTS, LENSES)
         await self.settings_changed(uris if all(language_of(uri) for uri in uris) else None)
 
@@ -177,6 +182,10 @@ class RobbddServer(LanguageServer):
         request, texts = await self.analyse(lambda snapshot: self._order(snapshot, uri), urgent=False)
         self._shapes.request(uri, texts)
         self.validator.request(request)
+
+    def opened(self) -> list[str]:
+        """Return the files whose text the client holds."""
+        return list(self._opened)
 
     def is_open(self, uri: str) -> bool:
         """Tell whether the client holds the text of a file."""

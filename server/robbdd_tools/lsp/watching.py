@@ -29,6 +29,7 @@ def register_watching(server: RobbddServer) -> None:
     async def folders(ls: RobbddServer, _: types.DidChangeWorkspaceFoldersParams) -> None:
         await read_settings(ls)
         ls.survey.look()
+        await ls.importers.look_around()
         await ls.load_results()
 
 

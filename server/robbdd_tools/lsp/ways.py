@@ -33,10 +33,11 @@ def _register_targets(server: RobbddServer) -> None:
     for method in (types.TEXT_DOCUMENT_DEFINITION, types.TEXT_DOCUMENT_DECLARATION):
         _register_target(server, method, _definitions)
     _register_target(server, types.TEXT_DOCUMENT_TYPE_DEFINITION, type_definition)
-    _register_target(server, types.TEXT_DOCUMENT_IMPLEMENTATION, implementation)
+    # What carries something out may be in files that nobody has opened.
+    _register_target(server, types.TEXT_DOCUMENT_IMPLEMENTATION, implementation, everywhere=True)
 
 
-def _register_target(server: RobbddServer, method: str, targets: Targets) -> None:
+def _register_target(server: RobbddServer, method: str, targets: Targets, everywhere: bool = False) -> None:
     @server.feature(method)
     async def lead(ls: RobbddServer, params: types.TextDocumentPositionParams) -> list[types.Location]:
         def find(snapshot: Snapshot) -> list[types.Location]:
@@ -44,6 +45,8 @@ def _register_target(server: RobbddServer, method: str, targets: Targets) -> Non
             found = targets(snapshot, document.uri, ls.convert.offset(document, params.position))
             return [ls.convert.location(snapshot, uri, span) for uri, span in found]
 
+        if everywhere:
+            return await ls.importers.analyse(params.text_document.uri, params.position, find)
         return await ls.analyse(find)
 
 
@@ -90,6 +93,7 @@ def _register_calls(server: RobbddServer) -> None:
                 for call in (calls_to(snapshot, used) if used is not None else ())
             ]
 
+        await ls.importers.load([params.item.uri])
         return await ls.analyse(find)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib.machinery import PathFinder
 from pathlib import Path
 from urllib.parse import quote, urljoin
@@ -54,6 +54,16 @@ def not_importable(importer: str, imported: str) -> str | None:
     *others, last = (f"'.{kind}'" for kind in kinds)
     listed = f"{', '.join(others)} and {last}" if others else last
     return f"only {listed} files can be imported here"
+
+
+def reached(edges: Mapping[str, Iterable[str]], start: str) -> frozenset[str]:
+    """Return where edges lead to from a start, which is itself left out."""
+    found, waiting = {start}, [start]
+    while waiting:
+        fresh = [uri for uri in edges.get(waiting.pop(), ()) if uri not in found]
+        found.update(fresh)
+        waiting += fresh
+    return frozenset(found - {start})
 
 
 def _package_folder(package: str) -> Path | None:

@@ -11,7 +11,7 @@ from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text, too_large, uri_to_path
 from robbdd_tools.names.analyse import Resolved, analyse, syntax_errors
 from robbdd_tools.names.analysis import FileAnalysis, ImportLink
-from robbdd_tools.names.imports import missing_package, not_importable
+from robbdd_tools.names.imports import missing_package, not_importable, reached
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 from robbdd_tools.names.scope import Scope
 
@@ -59,6 +59,10 @@ class Project:
             if not isinstance(known, FileIndex) or known.document.text != text:
                 self.open(uri, version, text)
         self._disk.clear()
+
+    def has(self, uri: str) -> bool:
+        """Tell whether a file was loaded, by itself or as an import."""
+        return uri in self._open or uri in self._disk
 
     def load(self, uri: str) -> Source:
         """Return a file, from the editor where it is open there, else from disk; kept until ``refresh``."""
@@ -136,12 +140,16 @@ class Snapshot:
 
     def importers(self, uri: str) -> tuple[str, ...]:
         """Return the files that import a file, directly or not, in alphabetical order."""
-        readable = (name for name, source in self.sources.items() if isinstance(source, FileIndex) and name != uri)
-        return tuple(sorted(name for name in readable if self._reaches(name, uri)))
+        return tuple(sorted(reached(self._users, uri)))
 
-    def _reaches(self, start: str, uri: str) -> bool:
-        scope = self.scope(start)
-        return uri in scope.unread or any(index.document.uri == uri for index in scope.files)
+    @cached_property
+    def _users(self) -> dict[str, list[str]]:
+        """The files that import a file directly."""
+        users: dict[str, list[str]] = {}
+        for name, source in self.sources.items():
+            for link in source.imports if isinstance(source, FileIndex) else ():
+                users.setdefault(link.uri, []).append(name)
+        return users
 
     def _reach(self, uri: str) -> Scope:
         order: list[FileIndex] = []

@@ -1,0 +1,64 @@
+"""Which model files on disk import which, found without parsing them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from robbdd_tools.base.checkpoint import checkpoint
+from robbdd_tools.base.files import read_text, uri_to_path
+from robbdd_tools.features.workspace_files import MOST_FILES
+from robbdd_tools.names.imports import import_uri, reached
+
+# Finds too much (in comments), never too little: what matters is read properly afterwards.
+_IMPORT = re.compile(r"\bimport\s*([\"'])(.*?)\1")
+
+
+@dataclass(frozen=True, slots=True)
+class ImportGraph:
+    """What files import, as their texts on disk say, by URI, and the other way round."""
+
+    imports: Mapping[str, frozenset[str]]
+    users: Mapping[str, frozenset[str]]
+
+    @classmethod
+    def of(cls, files: Iterable[str]) -> ImportGraph:
+        """Look at some files; what was read is kept until it changes on disk."""
+        imports: dict[str, frozenset[str]] = {}
+        users: dict[str, set[str]] = {}
+        for uri in files:
+            checkpoint()
+            imports[uri] = imports_on_disk(uri)
+            for imported in imports[uri]:
+                users.setdefault(imported, set()).add(uri)
+        return cls(imports, {uri: frozenset(found) for uri, found in users.items()})
+
+    def importers(self, uri: str) -> frozenset[str]:
+        """Return the files that import a file, directly or not."""
+        return reached(self.users, uri)
+
+    def imported(self, uri: str) -> frozenset[str]:
+        """Return the files that a file imports, directly or not."""
+        return reached(self.imports, uri)
+
+
+def imports_on_disk(uri: str) -> frozenset[str]:
+    """Return the URIs that the import lines of a file on disk mean; none of one that cannot be read."""
+    path = uri_to_path(uri)
+    try:
+        status = path.stat() if path is not None else None
+    except OSError:
+        status = None
+    return frozenset() if path is None or status is None else _read(uri, path, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=MOST_FILES)
+def _read(uri: str, path: Path, changed: int, size: int) -> frozenset[str]:
+    """Read a file; the time and size of its last change stand for its text in the cache."""
+    del changed, size
+    text = read_text(path)
+    found = _IMPORT.finditer(text) if isinstance(text, str) else ()
+    return frozenset(import_uri(uri, written[2]) for written in found)

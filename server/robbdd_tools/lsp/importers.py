@@ -1,0 +1,81 @@
+"""Takes the files on disk that import others into the project: those who ask for uses want them all, open or not."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable
+from functools import partial
+from time import monotonic
+from typing import TYPE_CHECKING, TypeVar
+
+from robbdd_tools.base.checkpoint import checkpoint
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.features.definition import symbol_at
+from robbdd_tools.features.import_graph import ImportGraph
+from robbdd_tools.features.workspace_files import model_files, model_files_near
+from robbdd_tools.lsp.convert import document_of
+
+if TYPE_CHECKING:
+    from lsprotocol import types
+
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.names.project import Snapshot
+
+Result = TypeVar("Result")
+LASTING = 2.0
+"""Seconds after which the disk is looked at again, for clients that do not tell of changes there."""
+
+
+class Importers:
+    """Which files on disk import which, as it was found lately."""
+
+    def __init__(self, server: RobbddServer) -> None:
+        self._server = server
+        self._known: dict[str, tuple[float, ImportGraph]] = {}
+
+    async def graph(self, uri: str | None = None) -> ImportGraph:
+        """Return what the files of the workspace import; for a file outside of it, those in its folder and below."""
+        is_inside = uri is None or bool(self._server.folders(uri))
+        near = "" if is_inside or uri is None else uri
+        at, known = self._known.get(near, (-LASTING, ImportGraph({}, {})))
+        if monotonic() - at > LASTING:
+            roots = list(self._server.workspace.folders)
+            files = partial(model_files_near, near) if near else partial(model_files, roots)
+            known = await asyncio.to_thread(lambda: ImportGraph.of(files()))
+            self._known[near] = monotonic(), known
+        return known
+
+    async def load(self, uris: Iterable[str]) -> bool:
+        """Take all files that import some others into the project; tell whether any was new. Requests go first."""
+        found: set[str] = set()
+        for uri in uris:
+            if uri_to_path(uri) is not None:
+                found |= (await self.graph(uri)).importers(uri)
+        project = self._server.project
+
+        def read(_: Snapshot) -> bool:
+            fresh = [uri for uri in sorted(found) if not project.has(uri)]
+            for uri in fresh:
+                checkpoint()
+                project.load(uri)
+            return bool(fresh)
+
+        return bool(found) and await self._server.analyse(read, urgent=False)
+
+    async def analyse(self, uri: str, position: types.Position, work: Callable[[Snapshot], Result]) -> Result:
+        """Run ``work`` once all files are there that may use what the name at a position stands for."""
+        convert = self._server.convert
+
+        def declaring(snapshot: Snapshot) -> str:
+            found = symbol_at(snapshot, uri, convert.offset(document_of(snapshot, uri), position))
+            return uri if found is None else found[1].uri
+
+        await self.load([await self._server.analyse(declaring)])
+        return await self._server.analyse(work)
+
+    async def look_around(self) -> None:
+        """Look on disk for the files that import open ones, and publish what these mean for them."""
+        self._known.clear()
+        if await self.load(self._server.opened()):
+            for uri in self._server.opened():
+                await self._server.publish(uri)
