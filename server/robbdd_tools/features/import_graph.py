@@ -19,30 +19,23 @@ _IMPORT = re.compile(r"\bimport\s*([\"'])(.*?)\1")
 
 @dataclass(frozen=True, slots=True)
 class ImportGraph:
-    """What files import, as their texts on disk say, by URI, and the other way round."""
+    """Which files import a file directly, as their texts on disk say, by its URI."""
 
-    imports: Mapping[str, frozenset[str]]
     users: Mapping[str, frozenset[str]]
 
     @classmethod
     def of(cls, files: Iterable[str]) -> ImportGraph:
         """Look at some files; what was read is kept until it changes on disk."""
-        imports: dict[str, frozenset[str]] = {}
         users: dict[str, set[str]] = {}
         for uri in files:
             checkpoint()
-            imports[uri] = imports_on_disk(uri)
-            for imported in imports[uri]:
+            for imported in imports_on_disk(uri):
                 users.setdefault(imported, set()).add(uri)
-        return cls(imports, {uri: frozenset(found) for uri, found in users.items()})
+        return cls({uri: frozenset(found) for uri, found in users.items()})
 
     def importers(self, uri: str) -> frozenset[str]:
         """Return the files that import a file, directly or not."""
         return reached(self.users, uri)
-
-    def imported(self, uri: str) -> frozenset[str]:
-        """Return the files that a file imports, directly or not."""
-        return reached(self.imports, uri)
 
 
 def imports_on_disk(uri: str) -> frozenset[str]:

@@ -37,7 +37,7 @@ class Importers:
         """Return what the files of the workspace import; for a file outside of it, those in its folder and below."""
         is_inside = uri is None or bool(self._server.folders(uri))
         near = "" if is_inside or uri is None else uri
-        at, known = self._known.get(near, (-LASTING, ImportGraph({}, {})))
+        at, known = self._known.get(near, (-LASTING, ImportGraph({})))
         if monotonic() - at > LASTING:
             roots = list(self._server.workspace.folders)
             files = partial(model_files_near, near) if near else partial(model_files, roots)
