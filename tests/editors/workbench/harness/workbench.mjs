@@ -70,6 +70,12 @@ export class Workbench {
     await this.page.keyboard.type(text);
   }
 
+  /** Save the active editor and wait until it is no longer marked as changed. */
+  async save() {
+    await this.page.keyboard.press("Control+S");
+    await this.page.locator(`${GROUP} .tab.active.dirty`).waitFor({ state: "detached" });
+  }
+
   async undo() {
     await this.page.keyboard.press("Control+Z");
   }

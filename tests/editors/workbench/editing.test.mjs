@@ -1,0 +1,75 @@
+// Writing a model: a mistake is mended by its quick fix, names are completed by kind, a name changes in all files.
+import assert from "node:assert/strict";
+import { story } from "./harness/story.mjs";
+
+const FILE = "pickplace/pickplace.bdd";
+const SCENE = "pickplace/bench.scene";
+
+const { told, step } = story("editing");
+
+step("a misspelt name is mended by its quick fix", async () => {
+  const { session, workbench } = told;
+  await workbench.openFile(FILE);
+  await workbench.codeLens("Run").first().waitFor();
+  await goBefore(FILE, "evt-end>");
+  await workbench.type("x");
+  await workbench.waitForError();
+  await workbench.page.keyboard.press("Control+.");
+  await workbench.page.locator(".action-widget .monaco-list-row.focused", { hasText: "Change to 'evt-end'" }).waitFor();
+  await workbench.screenshot("editing-quick-fix");
+  await workbench.page.keyboard.press("Enter");
+  await workbench.waitForNoError();
+  await workbench.save();
+  assert.match(await session.text(FILE), /until <evt-end>/);
+});
+
+step("behind a time's bracket only events are offered", async () => {
+  const { workbench } = told;
+  await goBefore(FILE, "evt-end>");
+  await workbench.page.keyboard.press("Control+Space");
+  const offered = workbench.page.locator(".suggest-widget.visible .monaco-list-row .label-name");
+  await offered.filter({ hasText: "evt-pick-start" }).first().waitFor();
+  await workbench.screenshot("editing-completion");
+  const names = await offered.allTextContents();
+  assert.deepEqual(
+    names.filter((name) => !name.startsWith("evt-")),
+    [],
+  );
+  await workbench.page.keyboard.press("Escape");
+});
+
+step("a renamed workspace has its new name in the story, whose file is closed", async () => {
+  const { session, workbench } = told;
+  await workbench.command("View: Close All Editors");
+  await workbench.openFile(SCENE);
+  await goBefore(SCENE, "right_ws,", "right_ws }");
+  await workbench.page.keyboard.press("F2");
+  const input = workbench.page.locator(".rename-box input, .rename-box .rename-input").first();
+  await input.waitFor();
+  await input.fill("far_ws");
+  await workbench.screenshot("editing-rename");
+  await workbench.page.keyboard.press("Enter");
+  await workbench.lines("workspace far_ws").first().waitFor();
+  await workbench.command("File: Save All Files");
+  await workbench.openFile(FILE);
+  await goBefore(FILE, "<places.far_ws>");
+  await workbench.lines("<places.far_ws>").first().waitFor();
+  await workbench.codeLens("Run").first().waitFor();
+  assert.equal(await workbench.errors.count(), 0);
+  for (const file of [FILE, SCENE]) {
+    assert.doesNotMatch(await session.text(file), /right_ws/);
+  }
+});
+
+/** Put the cursor before the first of these texts that a file has. */
+async function goBefore(path, ...texts) {
+  const lines = (await told.session.text(path)).split("\n");
+  for (const text of texts) {
+    const index = lines.findIndex((line) => line.includes(text));
+    if (index >= 0) {
+      await told.workbench.goTo(index + 1, lines[index].indexOf(text) + 1);
+      return;
+    }
+  }
+  throw new Error(`${path} has none of ${texts.join(", ")}`);
+}
