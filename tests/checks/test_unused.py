@@ -29,10 +29,12 @@ def test_a_file_without_stories_is_a_library(line: str) -> None:
     assert [entry.code for entry in found(EVENTS + line + TEMPLATE)] == ["no-scenario"]
 
 
-def test_what_importers_may_use_is_left_alone() -> None:
+def test_what_an_importer_uses_is_used_and_only_that() -> None:
     text = "//- main.bdd\n" + EVENTS + "Event (ns=t) spare\n" + TEMPLATE + STORY
-    text += "//- other.bdd\nimport \"main.bdd\"\nns u = 'https://example.org/u/'\nTask (ns=u) other\n"
-    check(text)
+    text += "//- other.bdd\nimport \"main.bdd\"\nns u = 'https://example.org/u/'\n"
+    user = "Scenario Template (ns=u) late {\n    duration: from <spare> until <spare>\n}\n"
+    assert "unused-event" not in {entry.code for entry in found(text + user)}
+    assert "unused-event" in {entry.code for entry in found(text + "Task (ns=u) other\n")}
 
 
 def test_a_name_in_a_broken_declaration_is_used() -> None:

@@ -72,7 +72,10 @@ async def test_parts_are_laid_out_and_names_linked(editor: Editor) -> None:
     )
     assert [edit.new_text for edit in typed or ()] == ["    var thing\n"]
     linked = await editor.client.text_document_linked_editing_range_async(
-        types.LinkedEditingRangeParams(**editor.at("var   thi", after=True))
+        types.LinkedEditingRangeParams(**editor.at("var rob", after=True))
     )
     assert linked is not None
-    assert len(linked.ranges) == 6
+    assert len(linked.ranges) == 5
+    # The executions in the file beside it observe this one: typing here would not change them.
+    observed = types.LinkedEditingRangeParams(**editor.at("var   thi", after=True))
+    assert await editor.client.text_document_linked_editing_range_async(observed) is None

@@ -58,6 +58,7 @@ async def test_an_untrusted_workspace_is_checked_but_not_run(command: str, tmp_p
 
     params = types.ExecuteCommandParams(command=f"robbdd.{command}", arguments=[{"uri": editor.uri}])
     answer: Any = await editor.client.workspace_execute_command_async(params)
+    assert "this workspace is not trusted" in answer.pop("problem")
     assert not answer
     assert "this workspace is not trusted" in editor.client.messages[0].message
     assert not list(tmp_path.rglob("imported"))

@@ -1,4 +1,4 @@
-"""``unused-event``: an event that nothing in its file refers to and that no other file can use."""
+"""``unused-event``: an event that neither its file nor one that imports it refers to."""
 
 from __future__ import annotations
 

@@ -33,14 +33,17 @@ def has_story(file: FileAnalysis) -> bool:
 
 
 def unused_declarations(snapshot: Snapshot, file: FileAnalysis, kind: SymbolKind) -> Iterator[Definition]:
-    """Yield the declarations of a kind that surely nobody uses: a story is there, but no importer."""
+    """Yield the declarations of a kind that neither their file uses, if it tells a story, nor one that imports it."""
     if not has_story(file):
         return
     used = used_names(file)
     declared = (placed.declaration.symbols[0] for placed in file.declarations if placed.declaration.symbols)
     paths = [symbol.path for symbol in declared if symbol.kind is kind and symbol.path not in used]
-    if paths and not snapshot.importers(file.document.uri):
-        yield from (file.definitions[path] for path in dict.fromkeys(paths))
+    if not paths:
+        return
+    importers = (snapshot.file(uri) for uri in snapshot.importers(file.document.uri))
+    used_elsewhere = frozenset[str]().union(*(used_names(each) for each in importers if each is not None))
+    yield from (file.definitions[path] for path in dict.fromkeys(paths) if path not in used_elsewhere)
 
 
 def unused(file: FileAnalysis, definition: Definition, code: str) -> Diagnostic:

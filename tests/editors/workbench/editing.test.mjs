@@ -5,10 +5,17 @@ import { story } from "./harness/story.mjs";
 const FILE = "pickplace/pickplace.bdd";
 const SCENE = "pickplace/bench.scene";
 
-const { told, step } = story("editing");
+/** @type {import("./harness/session.mjs").Session} */
+let session;
+/** @type {import("./harness/workbench.mjs").Workbench} */
+let workbench;
+
+const step = story("editing", (opened) => {
+  session = opened;
+  workbench = opened.workbench;
+});
 
 step("a misspelt name is mended by its quick fix", async () => {
-  const { session, workbench } = told;
   await workbench.openFile(FILE);
   await workbench.codeLens("Run").first().waitFor();
   await goBefore(FILE, "evt-end>");
@@ -24,7 +31,6 @@ step("a misspelt name is mended by its quick fix", async () => {
 });
 
 step("behind a time's bracket only events are offered", async () => {
-  const { workbench } = told;
   await goBefore(FILE, "evt-end>");
   await workbench.page.keyboard.press("Control+Space");
   const offered = workbench.page.locator(".suggest-widget.visible .monaco-list-row .label-name");
@@ -39,7 +45,6 @@ step("behind a time's bracket only events are offered", async () => {
 });
 
 step("a renamed workspace has its new name in the story, whose file is closed", async () => {
-  const { session, workbench } = told;
   await workbench.command("View: Close All Editors");
   await workbench.openFile(SCENE);
   await goBefore(SCENE, "right_ws,", "right_ws }");
@@ -63,11 +68,11 @@ step("a renamed workspace has its new name in the story, whose file is closed", 
 
 /** Put the cursor before the first of these texts that a file has. */
 async function goBefore(path, ...texts) {
-  const lines = (await told.session.text(path)).split("\n");
+  const lines = (await session.text(path)).split("\n");
   for (const text of texts) {
     const index = lines.findIndex((line) => line.includes(text));
     if (index >= 0) {
-      await told.workbench.goTo(index + 1, lines[index].indexOf(text) + 1);
+      await workbench.goTo(index + 1, lines[index].indexOf(text) + 1);
       return;
     }
   }

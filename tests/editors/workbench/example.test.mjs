@@ -2,9 +2,7 @@
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { EXAMPLES, LANGUAGE_SERVER, required } from "./harness/checkout.mjs";
-import { Session } from "./harness/session.mjs";
+import { story } from "./harness/story.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "pickplace/pickplace.bdd";
@@ -13,39 +11,18 @@ const LONG_FILE = "pickplace/long.bdd";
 const REPETITIONS = 10;
 const RUN_LIMIT = 5 * 60_000;
 
-/** @type {Session} */
+/** @type {import("./harness/session.mjs").Session} */
 let session;
 /** @type {import("./harness/workbench.mjs").Workbench} */
 let workbench;
-let failed;
 
-/** A step of the one story that this file tells; a later step stands on the earlier ones. */
-function step(name, body) {
-  test(name, async () => {
-    assert.equal(failed, undefined, `the step before failed: ${failed}`);
-    try {
-      await body();
-    } catch (error) {
-      failed = name;
-      throw error;
-    }
-  });
-}
-
-before(async () => {
-  const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
-  session = await Session.open({
-    workspace: EXAMPLES,
-    settings: { "robbdd.server.path": server },
-    prepare: async (workspace) => {
-      await writeFile(join(workspace, LONG_FILE), lengthened(await readFile(join(workspace, FILE), "utf8")));
-    },
-  });
-  workbench = session.workbench;
-});
-
-after(async () => {
-  await session?.close(failed === undefined ? undefined : "example-failed");
+const step = story("example", (opened) => {
+  session = opened;
+  workbench = opened.workbench;
+}, {
+  prepare: async (workspace) => {
+    await writeFile(join(workspace, LONG_FILE), lengthened(await readFile(join(workspace, FILE), "utf8")));
+  },
 });
 
 step("the example opens without an error", async () => {

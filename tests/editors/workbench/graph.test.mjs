@@ -1,40 +1,20 @@
 // The graph of a model beside its text: it follows edits and the cursor, leads to the text, and comes back.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { EXAMPLES, LANGUAGE_SERVER, required } from "./harness/checkout.mjs";
-import { Session } from "./harness/session.mjs";
+import { story } from "./harness/story.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "tworobots/heights.bdd";
 
-/** @type {Session} */
+/** @type {import("./harness/session.mjs").Session} */
 let session;
 /** @type {import("./harness/workbench.mjs").Workbench} */
 let workbench;
 /** The page of the graph. */
 let page;
-let failed;
 
-function step(name, body) {
-  test(name, async () => {
-    assert.equal(failed, undefined, `the step before failed: ${failed}`);
-    try {
-      await body();
-    } catch (error) {
-      failed = name;
-      throw error;
-    }
-  });
-}
-
-before(async () => {
-  const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
-  session = await Session.open({ workspace: EXAMPLES, settings: { "robbdd.server.path": server } });
-  workbench = session.workbench;
-});
-
-after(async () => {
-  await session?.close(failed === undefined ? undefined : "graph-failed");
+const step = story("graph", (opened) => {
+  session = opened;
+  workbench = opened.workbench;
 });
 
 /** The node with a name. */
@@ -129,6 +109,8 @@ step("a page that was hidden shows what it showed before", async () => {
 
 step("the panel comes back with the window", async () => {
   await workbench.reload();
+  // Which tab was in front VS Code writes down now and then only.
+  await workbench.page.locator(".tab", { hasText: "Graph heights.bdd" }).click();
   page = workbench.webview();
   await node("at-goal").waitFor();
 });

@@ -1,37 +1,17 @@
 // The Gherkin of a model beside its text: it follows every edit and the cursor, and outlives a mistake.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { EXAMPLES, LANGUAGE_SERVER, required } from "./harness/checkout.mjs";
-import { Session } from "./harness/session.mjs";
+import { story } from "./harness/story.mjs";
 
 const FILE = "pickplace/pickplace.bdd";
 
-/** @type {Session} */
+/** @type {import("./harness/session.mjs").Session} */
 let session;
 /** @type {import("./harness/workbench.mjs").Workbench} */
 let workbench;
-let failed;
 
-function step(name, body) {
-  test(name, async () => {
-    assert.equal(failed, undefined, `the step before failed: ${failed}`);
-    try {
-      await body();
-    } catch (error) {
-      failed = name;
-      throw error;
-    }
-  });
-}
-
-before(async () => {
-  const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
-  session = await Session.open({ workspace: EXAMPLES, settings: { "robbdd.server.path": server } });
-  workbench = session.workbench;
-});
-
-after(async () => {
-  await session?.close(failed === undefined ? undefined : "preview-failed");
+const step = story("preview", (opened) => {
+  session = opened;
+  workbench = opened.workbench;
 });
 
 /** The lines of the preview that match; it is the group that does not have the keyboard. */

@@ -3,11 +3,10 @@ import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 import { readFile, rename, rm, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
-import { after, before, test } from "node:test";
 import { promisify } from "node:util";
-import { EXAMPLES, LANGUAGE_SERVER, required } from "./harness/checkout.mjs";
-import { Session } from "./harness/session.mjs";
-import { SCHEMES } from "./harness/workbench.mjs";
+import { EXAMPLES, LANGUAGE_SERVER } from "./harness/checkout.mjs";
+import { story } from "./harness/story.mjs";
+import { PATIENCE, SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "pickplace.bdd";
 /** A clause of it says that the part is in the bin before it was picked. */
@@ -17,45 +16,27 @@ const BROKEN_RESULTS = "ci-broken.json";
 const RUN_LIMIT = 3 * 60_000;
 /** What a user may wait for a cancelled run, ms: half a second, and what this driver takes to look. */
 const CANCEL_LIMIT = 1500;
+const MOST_TRIES = 6;
 
-/** @type {Session} */
+/** @type {import("./harness/session.mjs").Session} */
 let session;
 /** @type {import("./harness/workbench.mjs").Workbench} */
 let workbench;
-let failed;
 
-/** A step of the one story that this file tells; a later step stands on the earlier ones. */
-function step(name, body) {
-  test(name, async () => {
-    assert.equal(failed, undefined, `the step before failed: ${failed}`);
-    try {
-      await body();
-    } catch (error) {
-      failed = name;
-      throw error;
-    }
-  });
-}
-
-before(async () => {
-  const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
-  session = await Session.open({
-    workspace: join(EXAMPLES, "pickplace"),
-    settings: { "robbdd.server.path": server, "testing.automaticallyOpenPeekView": "never" },
-    prepare: async (workspace) => {
-      const text = await readFile(join(workspace, FILE), "utf8");
-      await writeFile(join(workspace, FAILING_FILE), failing(text));
-      // What a CI job would have left: the failing model's results. It ends with 1, as they do not hold.
-      const arguments_ = ["run", FAILING_FILE, "--no-store", "--junit", RESULTS];
-      const run = promisify(execFile)(join(dirname(server), "robbdd"), arguments_, { cwd: workspace });
-      await assert.rejects(run, { code: 1 });
-    },
-  });
-  workbench = session.workbench;
-});
-
-after(async () => {
-  await session?.close(failed === undefined ? undefined : "testing-failed");
+const step = story("testing", (opened) => {
+  session = opened;
+  workbench = opened.workbench;
+}, {
+  workspace: join(EXAMPLES, "pickplace"),
+  settings: { "testing.automaticallyOpenPeekView": "never" },
+  prepare: async (workspace) => {
+    const text = await readFile(join(workspace, FILE), "utf8");
+    await writeFile(join(workspace, FAILING_FILE), failing(text));
+    // What a CI job would have left: the failing model's results. It ends with 1, as they do not hold.
+    const arguments_ = ["run", FAILING_FILE, "--no-store", "--junit", RESULTS];
+    const run = promisify(execFile)(join(dirname(LANGUAGE_SERVER), "robbdd"), arguments_, { cwd: workspace });
+    await assert.rejects(run, { code: 1 });
+  },
 });
 
 /** A row of the tree by its words. */
@@ -71,14 +52,17 @@ function rowsThat(state, text = /./) {
 
 async function expand(text) {
   const found = row(text).first();
+  const expanded = workbench.page.locator('.monaco-list-row[aria-expanded="true"]', { hasText: text }).first();
   await found.waitFor();
-  if ((await found.getAttribute("aria-expanded")) === "false") {
+  // While the tree is being filled its rows move, and a click may meet nothing.
+  for (let tries = 0; tries < MOST_TRIES && !(await expanded.isVisible()); tries += 1) {
     // The words about the row that was pointed at last may cover this one.
     await workbench.page.mouse.move(0, 0);
     await found.click();
     await workbench.page.keyboard.press("ArrowRight");
-    await workbench.page.locator('.monaco-list-row[aria-expanded="true"]', { hasText: text }).first().waitFor();
+    await expanded.waitFor({ timeout: PATIENCE / MOST_TRIES }).catch(() => {});
   }
+  await expanded.waitFor();
 }
 
 async function runRow(text) {
@@ -135,8 +119,10 @@ step("a run begun from the code lens shows in the view too", async () => {
   await workbench.closePanel();
   const { line } = await placeOf(FILE, "Scenario part-to-bin");
   await workbench.goTo(line, 1);
+  // It lasts less than a second: one has to look before it begins.
+  const running = rowsThat("run", "part-to-bin").waitFor({ timeout: RUN_LIMIT });
   await workbench.codeLens("Run").first().click();
-  await rowsThat("run", "part-to-bin").waitFor({ timeout: RUN_LIMIT });
+  await running;
   await rowsThat("passed", "part-to-bin").waitFor({ timeout: RUN_LIMIT });
 });
 

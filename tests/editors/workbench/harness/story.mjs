@@ -8,29 +8,30 @@ import { Session } from "./session.mjs";
  * Open a session before the first step and close it after the last, with a picture where one failed.
  *
  * @param {string} name of that picture
+ * @param {(session: Session) => void} opened takes the session before the first step
  * @param {Partial<Parameters<typeof Session.open>[0]>} [options] of the session
- * @returns {{ told: { session: Session, workbench: Session["workbench"] }, step: (name: string, body: () => Promise<void>) => void }}
- *   what the steps share, there once they begin, and what adds a step: a later one stands on the earlier ones
+ * @returns {(title: string, body: () => Promise<void>) => void} what adds a step: a later one stands on the earlier ones
  */
-export function story(name, { settings = {}, ...options } = {}) {
-  const told = { session: undefined, workbench: undefined };
+export function story(name, opened, { settings = {}, ...options } = {}) {
+  /** @type {Session} */
+  let session;
   let failed;
 
   before(async () => {
     const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
-    told.session = await Session.open({
+    session = await Session.open({
       workspace: EXAMPLES,
       ...options,
       settings: { "robbdd.server.path": server, ...settings },
     });
-    told.workbench = told.session.workbench;
+    opened(session);
   });
 
   after(async () => {
-    await told.session?.close(failed === undefined ? undefined : `${name}-failed`);
+    await session?.close(failed === undefined ? undefined : `${name}-failed`);
   });
 
-  function step(title, body) {
+  return function step(title, body) {
     test(title, async () => {
       assert.equal(failed, undefined, `the step before failed: ${failed}`);
       try {
@@ -40,7 +41,5 @@ export function story(name, { settings = {}, ...options } = {}) {
         throw error;
       }
     });
-  }
-
-  return { told, step };
+  };
 }
