@@ -1,4 +1,4 @@
-"""``unused-task``: a task that nothing in its file refers to and that no other file can use."""
+"""``unused-task``: a task that neither its file nor one that imports it refers to."""
 
 from __future__ import annotations
 
