@@ -1,4 +1,4 @@
-"""``unused-set``: a constant set that nothing in its file refers to and that no other file can use."""
+"""``unused-set``: a constant set that neither its file nor one that imports it refers to."""
 
 from __future__ import annotations
 
