@@ -139,6 +139,34 @@ async def test_unsaved_text_counts_for_files_that_build_on_it(pull_editor: Edito
     assert "unknown-name" in codes(told[path_to_uri(user)])
 
 
+async def test_what_only_an_importer_may_use_is_not_called_unused_in_a_file_that_is_not_open(
+    pull_editor: Editor,
+) -> None:
+    values = "var <pick-place.robot>: agn set <arms>"
+    text = pull_editor.text.replace("    var robot\n", "    var robot\n    var spare\n")
+    text = text.replace(values, f"{values}\n                var <pick-place.spare>: {{ 1, 2 }}")
+    pull_editor.path.write_text(text, encoding="utf-8")
+    client, execution = pull_editor.client, pull_editor.path.with_suffix(".bddx")
+    first = await workspace(client)
+    assert codes(first[pull_editor.uri]) == []
+
+    async def now(kind: types.FileChangeType) -> list[str]:
+        """What is told of the closed file after a change of the one that imports it."""
+        change = types.FileEvent(uri=path_to_uri(execution), type=kind)
+        client.workspace_did_change_watched_files(types.DidChangeWatchedFilesParams(changes=[change]))
+        told = dict[str, Any]()
+        while pull_editor.uri not in told:
+            told = await workspace(client, {uri: report.result_id for uri, report in first.items()})
+            first.update(told)
+        return codes(told[pull_editor.uri])
+
+    importer = execution.read_text(encoding="utf-8")
+    execution.unlink()
+    assert await now(types.FileChangeType.Deleted) == ["unused-variable"]
+    execution.write_text(importer, encoding="utf-8")
+    assert await now(types.FileChangeType.Created) == []
+
+
 async def test_a_cancelled_question_about_the_workspace_is_answered(pull_editor: Editor) -> None:
     known = {name: report.result_id for name, report in (await workspace(pull_editor.client)).items()}
     previous = [types.PreviousResultId(uri=uri, value=value) for uri, value in known.items()]

@@ -38,6 +38,18 @@ class ImportGraph:
         return reached(self.users, uri)
 
 
+def imported_on_disk(uris: Iterable[str]) -> frozenset[str]:
+    """Return all that some files on disk import, directly or not, and these files themselves."""
+    found = set(uris)
+    waiting = list(found)
+    while waiting:
+        checkpoint()
+        fresh = imports_on_disk(waiting.pop()) - found
+        found |= fresh
+        waiting += fresh
+    return frozenset(found)
+
+
 def imports_on_disk(uri: str) -> frozenset[str]:
     """Return the URIs that the import lines of a file on disk mean; none of one that cannot be read."""
     path = uri_to_path(uri)

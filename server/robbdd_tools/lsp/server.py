@@ -193,8 +193,9 @@ class RobbddServer(LanguageServer):
 
     async def survey_request(self, uri: str) -> Request:
         """Return the request to look at a file that is not open."""
+        importers = tuple(sorted((await self.importers.graph(uri)).importers(uri)))
         texts = await self.analyse(lambda _: self.project.texts(), urgent=False)
-        return Request(next(self._orders), uri, texts, self.settings.shapes(uri), surveyed=True)
+        return Request(next(self._orders), uri, texts, self.settings.shapes(uri), surveyed=True, importers=importers)
 
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
         """Return the request to validate a file, with the texts that its answer will be about."""

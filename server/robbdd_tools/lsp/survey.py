@@ -13,6 +13,7 @@ from hashlib import blake2b
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.features.import_graph import imported_on_disk
 from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.lsp.shapes import ShapeValidator
 
@@ -116,9 +117,11 @@ class Survey:
         for gone in self._found.keys() - set(files):
             del self._found[gone]
             self._reached.pop(gone, None)
+        # What a changed file has begun to import has not been reached from there yet.
+        imported = await asyncio.to_thread(imported_on_disk, changed)
         for uri in files:
-            outdated = everything or uri not in self._found or not changed.isdisjoint(self._reached.get(uri, ()))
-            if outdated or uri in changed:
+            is_new = everything or uri not in self._found or uri in imported
+            if is_new or not changed.isdisjoint(self._reached.get(uri, ())):
                 self._waiting[uri] = None
         self._ask()
         self._tell_soon()

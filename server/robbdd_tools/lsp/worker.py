@@ -32,7 +32,8 @@ LENGTH = struct.Struct(">I")
 class Request:
     """Validate ``uri``; ``texts`` holds the version and text of every open file, ``shapes`` what the editor adds.
 
-    A file that is not open is ``surveyed``: all findings are wanted, with the texts that they stand in.
+    A file that is not open is ``surveyed``: all findings are wanted, with the texts that they stand in. Its
+    ``importers`` are the files that build on it, open or not, without which what only they use would seem unused.
     """
 
     revision: int
@@ -40,6 +41,7 @@ class Request:
     texts: dict[str, tuple[int, str]]
     shapes: EditorShapes
     surveyed: bool = False
+    importers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +55,8 @@ class Forget:
 class Answer:
     """The findings about a file and its imports, or what went wrong inside.
 
-    Of a surveyed file also the files that were looked at or missed, and the ``documents`` that the findings name.
+    Of a surveyed file also the files that were ``reached``, looked at or missed, and the ``documents`` that the
+    findings name.
     """
 
     revision: int
@@ -137,7 +140,8 @@ class Worker:
 
     def _survey(self, request: Request) -> Answer:
         """Return everything about a file that is not open."""
-        self.project.load(request.uri)
+        for uri in (request.uri, *request.importers):
+            self.project.load(uri)
         snapshot = self.project.snapshot()
         try:
             found = fast_diagnostics(snapshot, request.uri)
@@ -147,7 +151,7 @@ class Worker:
         scope = snapshot.scope(request.uri)
         named = {entry.uri for entry in found} | {place.uri for entry in found for place in entry.related}
         documents = {uri: _document(snapshot, uri) for uri in named}
-        reached = frozenset((*scope.uris, *scope.unread))
+        reached = frozenset((*scope.uris, *scope.unread, *snapshot.importers(request.uri)))
         return Answer(request.revision, request.uri, tuple(dict.fromkeys(found)), "", reached, documents)
 
 
