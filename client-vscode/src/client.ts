@@ -3,6 +3,7 @@ import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 import { openFiles } from "./written";
 import { type Lookup, OWN, findServer } from "./lookup";
+import { complain, warn } from "./notices";
 import type { ServerState } from "./presentation";
 import { isRunNotification } from "./runs/messages";
 import type { RunMonitor } from "./runs/monitor";
@@ -96,7 +97,7 @@ export class Server implements vscode.Disposable {
       return (await vscode.window.showInformationMessage(message, modal, "Install")) === "Install" && this.install();
     }
     if (!this.isRunning()) {
-      this.complain("The RobBDD language server is not running.", {
+      complain("The RobBDD language server is not running.", {
         "Show Log": () => {
           this.log.show();
         },
@@ -124,12 +125,12 @@ export class Server implements vscode.Disposable {
     const client = this.client;
     if (client?.isRunning() !== true) {
       const problem = "The RobBDD language server is not running.";
-      void vscode.window.showWarningMessage(problem);
+      warn(problem);
       return { problem };
     }
     if (RUNNING.has(command) && !vscode.workspace.isTrusted) {
       const problem = "Nothing was run: scenarios run code of this workspace, which you do not trust yet.";
-      this.complain(problem, {
+      complain(problem, {
         "Manage Workspace Trust": () => void vscode.commands.executeCommand("workbench.trust.manage"),
       });
       return { problem };
@@ -236,7 +237,7 @@ export class Server implements vscode.Disposable {
   private refused(command: string, error: unknown): string {
     const reason = error instanceof Error ? error.message : String(error);
     this.log.error(`${command}: ${reason}`);
-    this.complain(`RobBDD: ${reason}`, {
+    complain(`RobBDD: ${reason}`, {
       "Show Log": () => {
         this.log.show();
       },
@@ -267,7 +268,7 @@ export class Server implements vscode.Disposable {
     }
     this.client = undefined;
     this.publish({ kind: "failed", problem });
-    this.complain(problem, {
+    complain(problem, {
       "Show Log": () => {
         this.log.show();
       },
@@ -283,25 +284,11 @@ export class Server implements vscode.Disposable {
     this.publish({ kind: lookup.installable ? "missing" : "failed", problem: lookup.problem });
     const buttons = { "Open Setting": openServerSetting, "Try Again": () => void this.restart() };
     if (lookup.installable) {
-      const offer = { Install: () => void this.install(), ...buttons };
-      ask(vscode.window.showWarningMessage(lookup.problem, ...Object.keys(offer)), offer);
+      warn(lookup.problem, { Install: () => void this.install(), ...buttons });
     } else {
-      this.complain(lookup.problem, buttons);
+      complain(lookup.problem, buttons);
     }
   }
-
-  private complain(problem: string, buttons: Record<string, () => void>): void {
-    ask(vscode.window.showErrorMessage(problem, ...Object.keys(buttons)), buttons);
-  }
-}
-
-/** Do what the button of a message says. Nobody waits for the answer: a restart would wait for itself. */
-function ask(answer: Thenable<string | undefined>, buttons: Record<string, () => void>): void {
-  void answer.then((choice) => {
-    if (choice !== undefined) {
-      buttons[choice]?.();
-    }
-  });
 }
 
 function hasUri(value: unknown): value is { readonly uri: string } {

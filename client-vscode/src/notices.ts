@@ -1,0 +1,21 @@
+// Messages with buttons that say what can be done.
+import * as vscode from "vscode";
+
+export type Buttons = Readonly<Record<string, () => void>>;
+
+export function complain(problem: string, buttons: Buttons): void {
+  follow(vscode.window.showErrorMessage(problem, ...Object.keys(buttons)), buttons);
+}
+
+export function warn(problem: string, buttons: Buttons = {}): void {
+  follow(vscode.window.showWarningMessage(problem, ...Object.keys(buttons)), buttons);
+}
+
+/** Do what the button of a message says. Nobody waits for the answer: a restart would wait for itself. */
+function follow(answer: Thenable<string | undefined>, buttons: Buttons): void {
+  void answer.then((choice) => {
+    if (choice !== undefined) {
+      buttons[choice]?.();
+    }
+  });
+}

@@ -1,0 +1,14 @@
+// What the server's commands that run scenarios answer.
+import { isRecord } from "../values";
+
+/** Why nothing was run, where that is so. */
+export function problemOf(answer: unknown): string | undefined {
+  const problem = isRecord(answer) ? answer["problem"] : undefined;
+  return typeof problem === "string" ? problem : undefined;
+}
+
+/** Addresses of the moving pictures that were made of a run. */
+export function picturesOf(answer: unknown): string[] {
+  const found: unknown = isRecord(answer) ? answer["pictures"] : undefined;
+  return Array.isArray(found) ? found.filter((entry) => typeof entry === "string") : [];
+}

@@ -1,0 +1,91 @@
+// The editor's side of the tree of tests: its items, its runs, its addresses and places.
+import * as vscode from "vscode";
+import type { RunMessage, RunNotification } from "../runs/messages";
+import type { Sink } from "./follower";
+import type { Factory } from "./items";
+import type { Place } from "./listing";
+
+export function factory(controller: vscode.TestController): Factory<vscode.TestItem> {
+  return {
+    create: (id, label, uri) => controller.createTestItem(id, label, vscode.Uri.parse(uri)),
+    setPlace: (item, place) => {
+      const here = place !== null && item.uri?.toString() === vscode.Uri.parse(place.uri).toString();
+      item.range = here ? rangeOf(place) : undefined;
+    },
+    setProblem: (item, problem) => {
+      item.error = problem;
+    },
+  };
+}
+
+/** What one run of the server shows; the editor's run may hold several of these. */
+export function sinkOf(run: vscode.TestRun, onEnd: () => void = () => undefined): Sink<vscode.TestItem> {
+  let ended = false;
+  const open = (show: () => void) => {
+    if (!ended) {
+      show();
+    }
+  };
+  return {
+    started: (item) => {
+      open(() => {
+        run.started(item);
+      });
+    },
+    passed: (item, duration) => {
+      open(() => {
+        run.passed(item, duration);
+      });
+    },
+    failed: (item, { text, expected, actual }, place, duration) => {
+      open(() => {
+        const compared = expected !== undefined && actual !== undefined;
+        const message = compared ? vscode.TestMessage.diff(text, expected, actual) : new vscode.TestMessage(text);
+        run.failed(item, located(message, place), duration);
+      });
+    },
+    errored: (item, { text }, place, duration) => {
+      open(() => {
+        run.errored(item, located(new vscode.TestMessage(text), place), duration);
+      });
+    },
+    output: (line, item) => {
+      open(() => {
+        run.appendOutput(`${line}\r\n`, undefined, item);
+      });
+    },
+    end: () => {
+      open(onEnd);
+      ended = true;
+    },
+  };
+}
+
+/** An address as the editor writes it: the server may escape other characters. */
+export function normal(uri: string): string {
+  return vscode.Uri.parse(uri).toString();
+}
+
+export function normalised(notification: RunNotification): RunNotification {
+  const { message } = notification;
+  const source = "source" in message ? message.source : undefined;
+  return source
+    ? { ...notification, message: { ...message, source: { ...source, uri: normal(source.uri) } } as RunMessage }
+    : notification;
+}
+
+/** How the editor shows the address of a file to the user. */
+export function titleOf(uri: string): string {
+  return vscode.workspace.asRelativePath(vscode.Uri.parse(uri));
+}
+
+function located(message: vscode.TestMessage, place: Place | null): vscode.TestMessage {
+  if (place !== null) {
+    message.location = new vscode.Location(vscode.Uri.parse(place.uri), rangeOf(place));
+  }
+  return message;
+}
+
+function rangeOf({ range: { start, end } }: Place): vscode.Range {
+  return new vscode.Range(start.line, start.character, end.line, end.character);
+}
