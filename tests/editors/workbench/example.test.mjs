@@ -2,13 +2,13 @@
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
+import { lengthened } from "./harness/models.mjs";
 import { story } from "./harness/story.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "pickplace/pickplace.bdd";
 /** The example with its scenario repeated under other names: long enough to be cancelled while it runs. */
 const LONG_FILE = "pickplace/long.bdd";
-const REPETITIONS = 10;
 const RUN_LIMIT = 5 * 60_000;
 
 /** @type {import("./harness/session.mjs").Session} */
@@ -111,15 +111,6 @@ step("a restarted server marks mistakes again", async () => {
   await workbench.type("import 'no-such.scene' ");
   await (await workbench.problem("no-such.scene")).first().waitFor();
 });
-
-/** Repeat the first scenario of a story under other names. */
-function lengthened(text) {
-  const block = /^ {8}Scenario (?<name>[\w-]+) \{\n[^]*?^ {8}\}\n/m.exec(text);
-  assert.ok(block !== null, `${FILE} has no scenario of the expected layout`);
-  const { name } = block.groups;
-  const copies = Array.from({ length: REPETITIONS }, (_, index) => block[0].replace(name, `${name}-${index}`));
-  return text.replace(block[0], copies.join(""));
-}
 
 /** Where the name of the first reference to an event stands in the example: line and column from 1. */
 async function firstReference() {

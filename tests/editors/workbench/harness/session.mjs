@@ -1,10 +1,14 @@
 // A whole session: a copy of a workspace, a code-server on it, a browser that shows it; all of it gone at the end.
-import { cp, mkdir, mkdtemp, readFile, rm } from "node:fs/promises";
+import { cp, mkdir, mkdtemp, readFile, readdir, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { setTimeout as sleep } from "node:timers/promises";
 import { CHROMIUM, SCREENSHOTS, VSIX, playwright, required } from "./checkout.mjs";
 import { CodeServer } from "./codeServer.mjs";
 import { Workbench } from "./workbench.mjs";
+
+/** Between two looks into the store, ms. */
+const PAUSE = 100;
 
 const LOOPBACK = new Set(["127.0.0.1", "localhost", "[::1]"]);
 
@@ -72,6 +76,29 @@ export class Session {
   /** The text of a file of the workspace as it is on disk. */
   text(path) {
     return readFile(join(this.workspace, path), "utf8");
+  }
+
+  /** The results of all runs that the workspace's store holds and that have ended, oldest first. */
+  async runs() {
+    const store = join(this.workspace, ".robbdd", "runs");
+    const numbers = (await readdir(store).catch(() => [])).map(Number).filter((number) => number > 0);
+    const texts = numbers.sort((one, other) => one - other).map((number) => {
+      return readFile(join(store, String(number), "results.json"), "utf8").catch(() => undefined);
+    });
+    return (await Promise.all(texts)).filter((text) => text !== undefined).map((text) => JSON.parse(text));
+  }
+
+  /** Do what begins a run, wait until it has ended, and return its results. A short run leaves no other lasting sign. */
+  async runOf(action, limit) {
+    const { length } = await this.runs();
+    await action();
+    for (const deadline = Date.now() + limit; Date.now() < deadline; await sleep(PAUSE)) {
+      const ended = await this.runs();
+      if (ended.length > length) {
+        return ended.at(-1);
+      }
+    }
+    throw new Error(`no run has ended within ${limit} ms`);
   }
 
   /** Close everything. With the name of a failure a last picture and the server's log are kept. */
