@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 from robbdd_tools.commands.arguments import allow_selection, positive, wanted
 
@@ -35,7 +35,15 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     allow_store(outputs)
 
 
-def allow_store(parser: argparse._ActionsContainer) -> None:  # pyright: ignore[reportPrivateUsage]  # parser or group
+class TakesArguments(Protocol):
+    """What a parser and a group of its arguments have in common."""
+
+    def add_argument(self, *names: str, **options: Any) -> argparse.Action:
+        """Add an argument, as ``argparse`` does."""
+        ...
+
+
+def allow_store(parser: TakesArguments) -> None:
     """Add the argument that names another store."""
     text = "where runs are kept (default: .robbdd/runs in the project's root)"
     parser.add_argument("--store", metavar="DIR", type=Path, help=text)

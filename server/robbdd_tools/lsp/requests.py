@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import wraps
-from typing import Any
+from typing import Any, cast
 
 from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcInternalError
 
@@ -98,7 +98,7 @@ def _uri(arguments: tuple[Any, ...]) -> str:
     """Return the document that parameters speak of, if any."""
     params = arguments[-1] if arguments else None
     if isinstance(params, dict):
-        return str(params.get("uri", ""))  # pyright: ignore[reportUnknownMemberType, reportUnknownArgumentType]
+        return str(cast("dict[str, Any]", params).get("uri", ""))
     for holder in (getattr(params, "text_document", None), getattr(params, "item", None), params):
         if isinstance(uri := getattr(holder, "uri", None), str):
             return uri
