@@ -22,6 +22,8 @@ from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.outline import project_names
 from robbdd_tools.features.rename import rename
+from robbdd_tools.features.rename_files import concerned, import_edits
+from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.names.project import Project
 from robbdd_tools.syntax.parse import forget_declarations, parse_declaration
 from robbdd_tools.syntax.split import split
@@ -166,6 +168,9 @@ def _project() -> Iterator[tuple[str, str]]:
         place = SCENE.index("tray_ws")
         renamed = milliseconds(lambda: rename(snapshot, scene, place, "crate_ws"))
         yield f"rename in all files, project of {what}", f"{renamed:.0f} ms"
+        moves = {scene: path_to_uri(folder / "cell.scene")}
+        moved = milliseconds(lambda: import_edits(concerned(model_files([path_to_uri(folder)]), moves), moves))
+        yield f"imports of a moved file, project of {what}, all closed", f"{moved:.0f} ms"
 
 
 def _published(project: Project, uri: str, version: int, text: str) -> None:

@@ -13,9 +13,9 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.format_range import format_on_type, format_range
 from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.rename import linked_places
-from robbdd_tools.features.rename_files import import_edits
-from robbdd_tools.features.workspace_files import model_files, workspace_indices
-from robbdd_tools.names.project import Project
+from robbdd_tools.features.rename_files import concerned, import_edits
+from robbdd_tools.features.workspace_files import model_files
+from robbdd_tools.names.index import FileIndex, imports_of, index_file
 
 
 def edited(text: str, edits: list[Edit]) -> str:
@@ -50,10 +50,10 @@ def test_imports_follow_a_moved_file_and_a_moved_importer(tmp_path: Path) -> Non
     main, lab = path_to_uri(tmp_path / "main.bdd"), path_to_uri(tmp_path / "cells" / "lab.scene")
     folder = path_to_uri(tmp_path)
     assert model_files([folder]) == [lab, main]
-    indices = list(workspace_indices(Project().snapshot(), [folder]))
 
     def after(moves: dict[str, str]) -> str:
-        return edited(text, [edit for edit in import_edits(indices, moves) if edit.uri == main]).split("\n")[0]
+        found = import_edits(concerned(model_files([folder]), moves), moves)
+        return edited(text, [edit for edit in found if edit.uri == main]).split("\n")[0]
 
     assert after({lab: f"{folder}/bench.scene"}) == 'import "bench.scene"'
     assert after({f"{folder}/cells": f"{folder}/rooms/cells"}) == 'import "rooms/cells/lab.scene"'
@@ -64,9 +64,23 @@ def test_imports_follow_a_moved_file_and_a_moved_importer(tmp_path: Path) -> Non
 
 def test_an_unsaved_import_follows_a_moved_file() -> None:
     case = fixture(MODEL)
-    indices = workspace_indices(case.snapshot, [])
-    (edit,) = import_edits(indices, {"file:///fixture/lab.scene": "file:///fixture/deep/lab.scene"})
+    files = [file for file in case.snapshot.sources.values() if isinstance(file, FileIndex)]
+    (edit,) = import_edits(files, {"file:///fixture/lab.scene": "file:///fixture/deep/lab.scene"})
     assert (edit.uri, edit.text) == (case.uri, "deep/lab.scene")
+
+
+def test_only_files_that_a_move_concerns_are_read_closely(tmp_path: Path) -> None:
+    for name, text in {"lab.scene": SCENE, "main.bdd": MODEL, "other.bdd": MODEL.replace("lab.", "barn.")}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    folder = path_to_uri(tmp_path)
+    (found,) = concerned(model_files([folder]), {f"{folder}/lab.scene": f"{folder}/x.scene"})
+    assert found.document.uri == f"{folder}/main.bdd"
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.name)
+def test_imports_are_found_without_reading_the_rest(path: Path) -> None:
+    document = Document(path_to_uri(path), 0, path.read_text(encoding="utf-8"))
+    assert imports_of(document) == index_file(document).imports
 
 
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.name)

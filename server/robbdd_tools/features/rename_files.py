@@ -3,28 +3,50 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
 from robbdd_tools.base.diagnostic import Edit
+from robbdd_tools.base.document import Document
+from robbdd_tools.base.files import read_text, uri_to_path
+from robbdd_tools.features.import_graph import imports_on_disk
 from robbdd_tools.features.unimported import import_path
-
-if TYPE_CHECKING:
-    from robbdd_tools.names.index import FileIndex
+from robbdd_tools.names.index import FileIndex, ImportPath, imports_of
 
 
-def import_edits(indices: Iterable[FileIndex], moves: Mapping[str, str]) -> list[Edit]:
+@dataclass(frozen=True, slots=True)
+class ImportLines:
+    """A text and the imports in it."""
+
+    document: Document
+    imports: tuple[ImportPath, ...]
+
+
+def concerned(files: Iterable[str], moves: Mapping[str, str]) -> Iterator[ImportLines]:
+    """Yield those of some model files, as they are on disk, that move or import directly what moves."""
+    for uri in files:
+        imported = imports_on_disk(uri)
+        path = uri_to_path(uri)
+        if path is None or not imported or all(moved(one, moves) == one for one in (uri, *imported)):
+            continue
+        text = read_text(path)
+        if isinstance(text, str):
+            document = Document(uri, 0, text)
+            yield ImportLines(document, imports_of(document))
+
+
+def import_edits(files: Iterable[FileIndex | ImportLines], moves: Mapping[str, str]) -> list[Edit]:
     """Return the edits of the imports of some files that make them hold after moves.
 
     ``moves`` map the URIs of files or folders to their new ones; edits are for the texts at their old places.
     """
-    edits = [edit for index in indices for edit in _of_file(index, moves)]
+    edits = [edit for file in files for edit in _of_file(file, moves)]
     return sorted(edits, key=lambda edit: (edit.uri, edit.span))
 
 
-def _of_file(index: FileIndex, moves: Mapping[str, str]) -> Iterator[Edit]:
-    own = index.document.uri
+def _of_file(file: FileIndex | ImportLines, moves: Mapping[str, str]) -> Iterator[Edit]:
+    own = file.document.uri
     here = moved(own, moves)
-    for link in index.imports:
+    for link in file.imports:
         there = moved(link.uri, moves)
         # A file of a package (`name:path`) is found wherever its importer lies.
         if (here, there) == (own, link.uri) or ":" in link.text:

@@ -6,15 +6,9 @@ import os
 from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.files import path_to_uri, uri_to_path
-from robbdd_tools.features.unimported import file_on_disk
-from robbdd_tools.names.index import FileIndex, language_of
-
-if TYPE_CHECKING:
-    from robbdd_tools.names.project import Snapshot
+from robbdd_tools.names.index import language_of
 
 MOST_FILES = 5_000
 """Model files of a workspace that are looked at."""
@@ -39,16 +33,6 @@ def model_files_near(uri: str) -> list[str]:
     """Return the model files in a file's own folder and those below, as far as ``MOST_FOLDERS`` go, sorted."""
     path = uri_to_path(uri)
     return sorted(_below(path.parent, MOST_FOLDERS)) if path is not None else []
-
-
-def workspace_indices(snapshot: Snapshot, folders: Iterable[str]) -> Iterator[FileIndex]:
-    """Yield every readable model file: as the project has it, else as it is on disk."""
-    for uri in sorted({*model_files(folders), *snapshot.sources}):
-        checkpoint()
-        source = snapshot.sources.get(uri)
-        index = source if isinstance(source, FileIndex) else None if source is not None else file_on_disk(uri)
-        if index is not None:
-            yield index
 
 
 def _below(folder: Path, most_folders: int | None = None) -> Iterator[str]:

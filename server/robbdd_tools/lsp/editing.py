@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Iterator
 
 from lsprotocol import types
@@ -13,10 +14,11 @@ from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.refactor_declarations import NewFile, extracted_clauses, modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.rename import linked_places
-from robbdd_tools.features.rename_files import import_edits
-from robbdd_tools.features.workspace_files import workspace_indices
+from robbdd_tools.features.rename_files import ImportLines, concerned, import_edits
+from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.server import RobbddServer
+from robbdd_tools.names.index import FileIndex
 from robbdd_tools.names.project import Snapshot
 from robbdd_tools.syntax.parse import LANGUAGES
 
@@ -107,11 +109,15 @@ def _register_moves(server: RobbddServer) -> None:
         moves = {file.old_uri: file.new_uri for file in params.files}
         roots = [folder.uri for folder in ls.workspace.folders.values()]
 
+        on_disk = await asyncio.to_thread(lambda: list(concerned(model_files(roots), moves)))
+
         def find(snapshot: Snapshot) -> types.WorkspaceEdit | None:
-            indices = {index.document.uri: index for index in workspace_indices(snapshot, roots)}
+            files: dict[str, FileIndex | ImportLines] = {file.document.uri: file for file in on_disk}
+            # What the project has read goes before the disk: it may be open and changed.
+            files |= {uri: source for uri, source in snapshot.sources.items() if isinstance(source, FileIndex)}
             changes: dict[str, list[types.TextEdit]] = {}
-            for edit in import_edits(indices.values(), moves):
-                changes.setdefault(edit.uri, []).append(ls.convert.edit(indices[edit.uri].document, edit))
+            for edit in import_edits(files.values(), moves):
+                changes.setdefault(edit.uri, []).append(ls.convert.edit(files[edit.uri].document, edit))
             return types.WorkspaceEdit(changes=changes) if changes else None
 
         return await ls.analyse(find)

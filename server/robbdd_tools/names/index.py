@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
@@ -88,7 +88,16 @@ def index_file(document: Document, previous: FileIndex | None = None) -> FileInd
     return FileIndex(document, chunks, declarations, names, _imports(document, declarations))
 
 
-def _imports(document: Document, declarations: tuple[Placed, ...]) -> tuple[ImportPath, ...]:
+def imports_of(document: Document) -> tuple[ImportPath, ...]:
+    """Return the imports of a file by itself; nothing else in it is parsed."""
+    language = language_of(document.uri)
+    chunks = (
+        chunk for chunk in (split(language, document.text) if language else ()) if chunk.text.startswith("import")
+    )
+    return _imports(document, (Placed(parse_declaration(language, chunk.text), chunk.offset) for chunk in chunks))
+
+
+def _imports(document: Document, declarations: Iterable[Placed]) -> tuple[ImportPath, ...]:
     found: list[ImportPath] = []
     for placed in declarations:
         if isinstance(placed.declaration.tree, tree.Import):
