@@ -30,6 +30,16 @@ def test_an_element_leads_into_the_imported_scene() -> None:
     assert target(edited("<places.tray_ws>", "<places.tray_ws$0>")) == "lab.scene:5:tray_ws"
 
 
+def test_each_part_of_a_qualified_name_leads_to_what_it_stands_for() -> None:
+    assert target(edited("<places.tray_ws>", "<pla$0ces.tray_ws>")) == "lab.scene:5:places"
+    assert target(edited("<fetch.robot>", "<fet$0ch.robot>")) == "main.bdd:8:fetch"
+
+
+def test_the_sound_part_of_a_name_that_leads_nowhere_still_leads_on() -> None:
+    assert target(edited("<places.tray_ws>", "<pla$0ces.trai_ws>")) == "lab.scene:5:places"
+    assert target(edited("<places.tray_ws>", "<places.tra$0i_ws>")) is None
+
+
 def test_an_import_leads_to_its_file() -> None:
     assert target(edited('"lab.scene"', '"lab$0.scene"')) == "lab.scene:1:"
 

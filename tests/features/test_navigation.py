@@ -57,7 +57,7 @@ def test_a_variable_is_written_where_it_is_declared_and_given_values_and_read_in
     case = fixture(text.replace("var goal", "var go$0al"))
     found = highlights(case.snapshot, case.uri, case.cursor)
     written = [(text[place.span.start : place.span.end], place.writes) for place in found]
-    assert written == [("goal", True), ("goal", False), ("goal", False), ("goal", False), ("fetch.goal", True)]
+    assert written == [("goal", True), ("goal", False), ("goal", False), ("goal", False), ("goal", True)]
 
 
 def test_an_imported_name_is_only_read() -> None:
@@ -95,6 +95,60 @@ def test_a_set_is_renamed_inside_qualified_names() -> None:
     main, lab = renamed("ws set (ns=env) places", "ws set (ns=env) pla$0ces", "spots", scene=True)
     assert main == MODEL.replace("places.", "spots.")
     assert lab == SCENE.replace("places", "spots")
+
+
+TREES = """//- cell.scenex
+import "arm.ktree"
+ns c = 'https://example.org/c/'
+ktree inst (ns=c) left of <arm>
+ktree inst (ns=c) right of <arm>
+ktree (ns=c) cell {
+    tree <left>
+    tree <right>
+    body floor { frame ground { } }
+    joints {
+        fixed left-on-floor { parent: <floor.ground> child: <left.foot.base> }
+        fixed right-on-floor { parent: <floor.ground> child: <right.foot.base> }
+        fixed on-top { parent: <cell.left.foot.base> child: <right.foot.base> }
+    }
+}
+//- arm.ktree
+ktree arm { body foot { frame base { } } joints { } }
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "name", "places"),
+    [
+        ("inst (ns=c) left", "inst (ns=c) le$0ft", "first", ["left of", "left>", "left.foot.base>", "left.foot.base>"]),
+        ("cell.left.foot", "cell.left.fo$0ot", "plate", ["foot {", *["foot.base>"] * 4]),
+        ("cell.left.foot.base", "ce$0ll.left.foot.base", "room", ["cell {", "cell.left.foot.base>"]),
+    ],
+)
+def test_names_that_lead_through_an_instance_are_renamed_part_by_part(
+    old: str, new: str, name: str, places: list[str]
+) -> None:
+    case = fixture(TREES.replace(old, new, 1))
+    texts = {uri: text for uri, (_, text) in case.project.texts().items()}
+    edits = rename(case.snapshot, case.uri, case.cursor, name)
+    assert [
+        texts[edit.uri][edit.span.start :][: len(place)] for edit, place in zip(edits, places, strict=True)
+    ] == places
+    for edit in reversed(edits):
+        text = texts[edit.uri]
+        texts[edit.uri] = text[: edit.span.start] + edit.text + text[edit.span.end :]
+        case.project.open(edit.uri, 2, texts[edit.uri])
+    every = (found for uri in texts for found in fast_diagnostics(case.snapshot, uri))
+    assert [found.message for found in every if found.severity is Severity.ERROR] == []
+
+
+def test_the_set_before_its_element_is_a_name_of_its_own() -> None:
+    case, uri = marked("<places.tray_ws>", "<pla$0ces.tray_ws>")
+    span = prepare_rename(case.snapshot, uri, case.cursor)
+    assert span is not None
+    assert case.project.texts()[uri][1][span.start : span.end] == "places"
+    found = references(case.snapshot, uri, case.cursor, with_declaration=True)
+    assert lines(case, list(found)) == ["lab.scene:5", "lab.scene:7", "lab.scene:8", "main.bdd:33", "main.bdd:33"]
 
 
 def test_a_node_of_a_behaviour_tree_is_renamed_with_its_links() -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.cursor import cursor_at
+from robbdd_tools.names.parts import find_path, parts_of
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import Definition, FileAnalysis
@@ -13,16 +14,19 @@ if TYPE_CHECKING:
 
 
 def symbol_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definition] | None:
-    """Return the name under a cursor (absolute span) with its definition, where it is used or declared."""
+    """Return the name under a cursor (absolute span) with its definition, where it is used or declared.
+
+    Of a qualified name it is the part under the cursor.
+    """
     analysis = snapshot.file(uri)
     if analysis is None:
         return None
     placed = next((entry for entry in reversed(analysis.declarations) if entry.offset <= offset), None)
     if placed is not None:
-        for ref in placed.targets:
-            span = ref.span.shifted(placed.offset)
-            if span.contains(offset):
-                return span, placed.targets[ref]
+        for reference in placed.declaration.references:
+            if reference.ref in placed.targets and reference.ref.span.shifted(placed.offset).contains(offset):
+                parts = parts_of(snapshot, uri, placed, reference)
+                return next((part for part in parts if part[0].contains(offset)), None)
         for symbol in placed.declaration.symbols:
             span = symbol.span.shifted(placed.offset)
             if span.contains(offset) and symbol.path in analysis.definitions:
@@ -43,21 +47,18 @@ def definition(snapshot: Snapshot, uri: str, offset: int) -> tuple[str, Span] | 
 
 
 def _in_broken_text(snapshot: Snapshot, analysis: FileAnalysis, offset: int) -> tuple[Span, Definition] | None:
-    """Look a qualified name up by its text where it is missing from the tree of a broken declaration."""
+    """Look a name up by its text: in a broken declaration, or where what it is a part of leads nowhere."""
     cursor = cursor_at(analysis, offset)
     if cursor.quoted is not None or cursor.placed is None:
         return None
     text = analysis.document.text
-    declaration = cursor.placed.declaration
     is_reference = text.startswith("<", cursor.span.start - 1)
-    if declaration.tree is not None and not (declaration.faults and is_reference):
+    if cursor.placed.declaration.tree is not None and not is_reference:
         return None
     end = offset
-    while end < len(text) and (text[end].isalnum() or text[end] in "_-."):
+    while end < len(text) and (text[end].isalnum() or text[end] in "_-"):
         end += 1
     path = text[cursor.span.start : end]
-    scope = snapshot.scope(analysis.document.uri)
-    for name in (*(f"{prefix}.{path}" for prefix in cursor.scopes), path):
-        for file, declared in scope.find(name):
-            return Span(cursor.span.start, end), scope.define(file, declared)
-    return None
+    paths = (*(f"{scope}.{path}" for scope in cursor.scopes), path)
+    found = find_path(snapshot.scope(analysis.document.uri), paths)
+    return None if found is None else (Span(end - len(path.rpartition(".")[2]), end), found)

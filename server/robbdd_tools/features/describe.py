@@ -207,7 +207,7 @@ def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Ite
 
 
 def _used(snapshot: Snapshot, definition: Definition) -> str:
-    places = {(use.uri, use.span) for use in uses(snapshot, definition) if use.target == definition}
+    places = set(uses(snapshot, definition))
     files = {uri for uri, _ in places}
     if not places:
         return "not used"

@@ -54,7 +54,7 @@ def split_scene(snapshot: Snapshot, uri: str, offset: int) -> tuple[Fix, NewFile
     back = import_path(target, uri)
     if target in snapshot.sources or back is None:
         return None
-    users = sorted({use.uri for use in uses(snapshot, definition)} - {uri})
+    users = sorted({user for user, _ in uses(snapshot, definition)} - {uri})
     edits = [Edit(uri, _with_line_end(file, placed), "")]
     for user in users:
         importing, path = snapshot.file(user), import_path(user, target)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.definition import symbol_at
+from robbdd_tools.names.parts import parts_of
 from robbdd_tools.names.types import columns_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -18,14 +19,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 
-@dataclass(frozen=True, slots=True)
-class Use:
-    """A reference in a document: its absolute span, the path as written, and the definition that it leads to."""
-
-    uri: str
-    span: Span
-    written: str
-    target: Definition
+Place = tuple[str, Span]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,13 +30,13 @@ class Highlight:
     writes: bool
 
 
-def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool) -> list[tuple[str, Span]]:
+def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool) -> list[Place]:
     """Return the places that use the name under a cursor, in the order of files and places."""
     found = symbol_at(snapshot, uri, offset)
     if found is None:
         return []
     definition = found[1]
-    places = {(use.uri, use.span) for use in uses(snapshot, definition) if _same(use.target, definition)}
+    places = set(uses(snapshot, definition))
     if with_declaration:
         places.add((definition.uri, definition.span))
     return sorted(places)
@@ -55,7 +49,7 @@ def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
     if found is None or file is None:
         return []
     definition = found[1]
-    spans = {use.span for use in _uses_in(file, definition) if _same(use.target, definition)}
+    spans = set(_uses_in(snapshot, file, definition))
     written = _written(file) if definition.kind in (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE) else set[Span]()
     if definition.uri == uri:
         spans.add(definition.span)
@@ -66,7 +60,7 @@ def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
 def _written(file: FileAnalysis) -> set[Span]:
     """Return where the variations of a file name the variables that they give values to."""
     return {
-        ref.span.shifted(placed.offset)
+        Span(ref.span.end - len(ref.path.rpartition(".")[2]), ref.span.end).shifted(placed.offset)
         for placed in file.declarations
         if isinstance(placed.declaration.tree, tree.Story)
         for variant in placed.declaration.tree.variants
@@ -74,25 +68,23 @@ def _written(file: FileAnalysis) -> set[Span]:
     }
 
 
-def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Use]:
-    """Yield every reference to a definition or to a part of it (a template's variable, a set's element)."""
+def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Place]:
+    """Yield every place that uses a name, alone or as a part of a qualified name (a set before its element)."""
     for uri in sorted({definition.uri, *snapshot.importers(definition.uri)}):
         file = snapshot.file(uri)
         if file is not None:
-            yield from _uses_in(file, definition)
+            yield from ((uri, span) for span in _uses_in(snapshot, file, definition))
 
 
-def _uses_in(file: FileAnalysis, definition: Definition) -> Iterator[Use]:
-    name, path = definition.symbol.name, definition.symbol.path
+def _uses_in(snapshot: Snapshot, file: FileAnalysis, definition: Definition) -> Iterator[Span]:
+    name = definition.symbol.name
     for placed in file.declarations:
         checkpoint()
-        for ref in placed.targets:
+        for reference in placed.declaration.references:
             # Reading the written name is cheap; only what may mean the definition is followed.
-            if name not in ref.path and not ref.path.startswith(path):
-                continue
-            target = placed.targets[ref]
-            if target.uri == definition.uri and f"{target.symbol.path}.".startswith(f"{path}."):
-                yield Use(file.document.uri, ref.span.shifted(placed.offset), ref.path, target)
+            if name in reference.ref.path and reference.ref in placed.targets:
+                parts = parts_of(snapshot, file.document.uri, placed, reference)
+                yield from (span for span, meant in parts if _same(meant, definition))
 
 
 def _same(one: Definition, other: Definition) -> bool:

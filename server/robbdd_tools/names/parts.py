@@ -1,0 +1,59 @@
+"""What each part of a written name stands for: in ``<places.tray_ws>`` the set, then its element."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.document import Span
+from robbdd_tools.names.resolve import candidates
+from robbdd_tools.names.through import paths_through
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import Definition, PlacedDeclaration
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.scope import Scope
+    from robbdd_tools.syntax.declaration import Reference
+
+Part = tuple[Span, "Definition"]
+
+
+def parts_of(snapshot: Snapshot, uri: str, placed: PlacedDeclaration, reference: Reference) -> Iterator[Part]:
+    """Yield the parts of a reference that leads somewhere, each with its absolute span and what it stands for."""
+    target = placed.targets[reference.ref]
+    written = reference.ref.path.split(".")
+    above = _owners(snapshot, target, len(written) - 1)
+    if not f".{target.symbol.path}".endswith(f".{reference.ref.path}"):
+        above = _owners_through(snapshot.scope(uri), reference, target)
+    start = reference.ref.span.start + placed.offset
+    for name, definition in zip(written, (*above, target), strict=True):
+        if definition is not None:
+            yield Span(start, start + len(name)), definition
+        start += len(name) + 1
+
+
+def find_path(scope: Scope, paths: tuple[str, ...]) -> Definition | None:
+    """Return what the first of some qualified names means, by itself or through another name; ``None`` if nothing."""
+    for path in (*paths, *paths_through(scope, paths)):
+        for file, declared in scope.find(path):
+            return scope.define(file, declared)
+    return None
+
+
+def _owners(snapshot: Snapshot, target: Definition, number: int) -> list[Definition | None]:
+    """Return the nearest ``number`` declarations around another one, the outermost first."""
+    file = snapshot.file(target.uri)
+    path = target.symbol.path.split(".")
+    ends = range(len(path) - number, len(path))
+    return [None if file is None else file.definitions.get(".".join(path[:end])) for end in ends]
+
+
+def _owners_through(scope: Scope, reference: Reference, target: Definition) -> list[Definition | None]:
+    """Return what the parts before the last one stand for where one of them stands for another name."""
+    written = reference.ref.path.split(".")
+    for full in candidates(reference):
+        if target.symbol.path in paths_through(scope, (full,)):
+            path = full.split(".")
+            ends = range(len(path) - len(written) + 1, len(path))
+            return [find_path(scope, (".".join(path[:end]),)) for end in ends]
+    return [None] * (len(written) - 1)
