@@ -20,10 +20,10 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.memory import collect_rarely
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.features.outline import project_names
 from robbdd_tools.features.rename import rename
 from robbdd_tools.features.rename_files import concerned, import_edits
 from robbdd_tools.features.workspace_files import model_files
+from robbdd_tools.features.workspace_symbols import workspace_symbols
 from robbdd_tools.names.project import Project
 from robbdd_tools.syntax.parse import forget_declarations, parse_declaration
 from robbdd_tools.syntax.split import split
@@ -163,7 +163,7 @@ def _project() -> Iterator[tuple[str, str]]:
         ]
         yield f"keystroke to diagnostics, project of {what}", _percentiles(strokes)
         snapshot, scene = project.snapshot(), path_to_uri(folder / "lab.scene")
-        found = milliseconds(lambda: project_names(snapshot, "goal-777-"))
+        found = milliseconds(lambda: workspace_symbols(snapshot, (), "goal-777-"))
         yield f"workspace symbols, project of {what}", f"{found:.0f} ms"
         place = SCENE.index("tray_ws")
         renamed = milliseconds(lambda: rename(snapshot, scene, place, "crate_ws"))

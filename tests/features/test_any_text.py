@@ -22,7 +22,7 @@ from robbdd_tools.features.format_range import format_on_type, format_range
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.implementation import implementation
 from robbdd_tools.features.layout import lay_out
-from robbdd_tools.features.outline import outline, project_names
+from robbdd_tools.features.outline import outline
 from robbdd_tools.features.refactor_declarations import extracted_clauses, modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.references import highlights, references
@@ -33,6 +33,7 @@ from robbdd_tools.features.selection import selections
 from robbdd_tools.features.semantic_tokens import semantic_tokens
 from robbdd_tools.features.type_definition import type_definition
 from robbdd_tools.features.type_hints import type_hints
+from robbdd_tools.features.workspace_symbols import workspace_symbols
 from robbdd_tools.names.project import Project, Snapshot
 
 BROKEN = 6
@@ -83,7 +84,7 @@ def ask_everything(snapshot: Snapshot, uri: str, places: list[int]) -> None:
     document_links(snapshot, uri)
     folds(snapshot, uri)
     outline(snapshot, uri)
-    project_names(snapshot, "a")
+    workspace_symbols(snapshot, (), "a")
     modernised(snapshot, uri)
     lay_out(document.text)
     format_range(document, whole)

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from kit import MODEL, SCENE, Fixture, fixture
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.folding import folds
-from robbdd_tools.features.outline import Item, outline, project_names
+from robbdd_tools.features.outline import Item, outline
 from robbdd_tools.features.references import highlights, references
 from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
+from robbdd_tools.features.workspace_symbols import workspace_symbols
+from robbdd_tools.names.project import Project
 
 LAB = "file:///fixture/lab.scene"
 
@@ -219,11 +224,31 @@ def test_the_outline_survives_broken_text() -> None:
     assert "  robot: variable" in shown(outline(case.snapshot, case.uri))
 
 
-def test_project_names_are_found_by_some_of_their_letters() -> None:
-    case = fixture(MODEL)
-    assert [found.symbol.path for found in project_names(case.snapshot, "trws")] == ["places.tray_ws"]
-    assert project_names(case.snapshot, "zzz") == []
-    assert len(project_names(case.snapshot, "", most=3)) == 3
+def test_symbols_of_the_workspace_are_found_by_some_of_their_letters() -> None:
+    snapshot = fixture(MODEL).snapshot
+    (found,) = workspace_symbols(snapshot, (), "trws")
+    assert (found.path, found.document.text[found.span.start : found.span.end]) == ("places.tray_ws", "tray_ws")
+    assert workspace_symbols(snapshot, (), "zzz") == []
+    assert len(workspace_symbols(snapshot, (), "", most=3)) == 3
+
+
+def test_symbols_of_files_that_nobody_has_loaded_are_found_as_they_are_on_disk(tmp_path: Path) -> None:
+    closed, opened = tmp_path / "deep" / "lab.scene", tmp_path / "open.scene"
+    closed.parent.mkdir()
+    closed.write_text("ns env = 'https://example.org/'\nagn set (ns=env) arms { agent panda }\n", encoding="utf-8")
+    opened.write_text("ws set (ns=env) saved { }\n", encoding="utf-8")
+    (tmp_path / "odd.scene").write_bytes(b"\xff\xfe\0")
+    project = Project()
+    project.open(path_to_uri(opened), 1, "ws set (ns=env) unsaved { }\n")
+
+    def found(query: str) -> list[tuple[str, int]]:
+        symbols = workspace_symbols(project.snapshot(), [path_to_uri(tmp_path)], query)
+        return [(named.path, named.document.position(named.span.start).line) for named in symbols]
+
+    assert found("panda") == [("arms.panda", 1)]
+    assert (found("unsaved"), found("saved")) == ([("unsaved", 0)], [("unsaved", 0)])
+    closed.write_text("// changed\nagn set (ns=env) robots { agent ur10 }\n", encoding="utf-8")
+    assert (found("panda"), found("ur10")) == ([], [("robots.ur10", 1)])
 
 
 def test_blocks_comments_and_imports_fold() -> None:

@@ -122,6 +122,18 @@ async def test_what_carries_out_a_clause_is_found_in_closed_files(editor: Editor
     assert places == ["pickplace.bddx"]
 
 
+@CLIENTS
+async def test_symbols_of_closed_files_are_listed(client: LanguageClient, editor: Editor) -> None:
+    params = types.WorkspaceSymbolParams(query="near-goal")
+    found = await client.workspace_symbol_async(params)
+    policy = editor.path.with_suffix(".bddx")
+    lines = policy.read_text(encoding="utf-8").splitlines()
+    (symbol,) = list(found or [])
+    assert isinstance(symbol.location, types.Location)
+    assert (symbol.name, symbol.location.uri) == ("near-goal", path_to_uri(policy))
+    assert "near-goal" in lines[symbol.location.range.start.line]
+
+
 async def test_callers_are_found_in_closed_files(editor: Editor) -> None:
     library, story = editor.text[: editor.text.index("User Story")], editor.text[editor.text.index("User Story") :]
     namespaces = "".join(line for line in library.splitlines(keepends=True) if line.startswith("ns "))

@@ -18,6 +18,26 @@ class Unreadable:
     reason: str
 
 
+@dataclass(frozen=True, slots=True)
+class FileState:
+    """A file on disk at its last change (nanoseconds, size in bytes), which stands for its text as a key of caches."""
+
+    uri: str
+    path: Path
+    changed: int
+    size: int
+
+
+def file_state(uri: str) -> FileState | None:
+    """Return the present state of a file on disk; ``None`` where there is none."""
+    path = uri_to_path(uri)
+    try:
+        status = path.stat() if path is not None else None
+    except OSError:
+        return None
+    return None if path is None or status is None else FileState(uri, path, status.st_mtime_ns, status.st_size)
+
+
 def path_to_uri(path: Path) -> str:
     """Return the ``file:`` URI of a path, made absolute but with its links kept as the user wrote them."""
     return Path(path).absolute().as_uri()

@@ -6,10 +6,9 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
 from robbdd_tools.base.checkpoint import checkpoint
-from robbdd_tools.base.files import read_text, uri_to_path
+from robbdd_tools.base.files import FileState, file_state, read_text
 from robbdd_tools.features.workspace_files import MOST_FILES
 from robbdd_tools.names.imports import import_uri, reached
 
@@ -52,18 +51,12 @@ def imported_on_disk(uris: Iterable[str]) -> frozenset[str]:
 
 def imports_on_disk(uri: str) -> frozenset[str]:
     """Return the URIs that the import lines of a file on disk mean; none of one that cannot be read."""
-    path = uri_to_path(uri)
-    try:
-        status = path.stat() if path is not None else None
-    except OSError:
-        status = None
-    return frozenset() if path is None or status is None else _read(uri, path, status.st_mtime_ns, status.st_size)
+    state = file_state(uri)
+    return frozenset() if state is None else _imports_of(state)
 
 
 @lru_cache(maxsize=MOST_FILES)
-def _read(uri: str, path: Path, changed: int, size: int) -> frozenset[str]:
-    """Read a file; the time and size of its last change stand for its text in the cache."""
-    del changed, size
-    text = read_text(path)
+def _imports_of(state: FileState) -> frozenset[str]:
+    text = read_text(state.path)
     found = _IMPORT.finditer(text) if isinstance(text, str) else ()
-    return frozenset(import_uri(uri, written[2]) for written in found)
+    return frozenset(import_uri(state.uri, written[2]) for written in found)

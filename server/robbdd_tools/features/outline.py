@@ -1,11 +1,10 @@
-"""The outline of a file, and the names of the whole project by a search word."""
+"""The outline of a file."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 
 if TYPE_CHECKING:
@@ -35,33 +34,9 @@ def outline(snapshot: Snapshot, uri: str) -> list[Item]:
     return [_item(definition, inner) for definition in inner.get("", [])]
 
 
-def project_names(snapshot: Snapshot, query: str, most: int = 200) -> list[Definition]:
-    """Return the definitions of all files whose qualified name has the query's letters in order."""
-    found: list[Definition] = []
-    for uri in sorted(snapshot.sources):
-        checkpoint()
-        analysis = snapshot.file(uri)
-        for path in analysis.definitions if analysis is not None else ():
-            if _has_letters(path.lower(), query.lower()):
-                assert analysis is not None
-                found.append(analysis.definitions[path])
-                if len(found) == most:
-                    return found
-    return found
-
-
 def _item(definition: Definition, inner: dict[str, list[Definition]]) -> Item:
     parts = tuple(_item(part, inner) for part in inner.get(definition.symbol.path, []))
     # Editors insist that a thing's extent holds its name and its parts.
     spans = [definition.extent, definition.span, *(part.extent for part in parts)]
     extent = Span(min(span.start for span in spans), max(span.end for span in spans))
     return Item(definition.symbol.name, str(definition.kind), definition.span, extent, parts)
-
-
-def _has_letters(text: str, letters: str) -> bool:
-    position = 0
-    for letter in letters:
-        position = text.find(letter, position) + 1
-        if position == 0:
-            return False
-    return True

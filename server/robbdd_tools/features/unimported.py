@@ -5,12 +5,11 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterable
 from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlsplit
 
 from robbdd_tools.base.document import Document
-from robbdd_tools.base.files import path_to_uri, read_text, uri_to_path
+from robbdd_tools.base.files import FileState, file_state, path_to_uri, read_text, uri_to_path
 from robbdd_tools.names.imports import IMPORTABLE
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 
@@ -66,17 +65,11 @@ def _beside(uri: str) -> list[str]:
 
 def file_on_disk(uri: str) -> FileIndex | None:
     """Return what a file on disk says, kept until it changes there; ``None`` when it cannot be read."""
-    path = uri_to_path(uri)
-    try:
-        status = path.stat() if path is not None else None
-    except OSError:
-        return None
-    return None if path is None or status is None else _read(uri, path, status.st_mtime_ns, status.st_size)
+    state = file_state(uri)
+    return None if state is None else _index_of(state)
 
 
 @lru_cache(maxsize=MOST_NEIGHBOURS)
-def _read(uri: str, path: Path, changed: int, size: int) -> FileIndex | None:
-    """Read a file; the time and size of its last change stand for its text in the cache."""
-    del changed, size
-    text = read_text(path)
-    return index_file(Document(uri, 0, text)) if isinstance(text, str) else None
+def _index_of(state: FileState) -> FileIndex | None:
+    text = read_text(state.path)
+    return index_file(Document(state.uri, 0, text)) if isinstance(text, str) else None

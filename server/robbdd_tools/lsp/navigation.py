@@ -6,9 +6,10 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
 from robbdd_tools.features.folding import folds
-from robbdd_tools.features.outline import Item, outline, project_names
+from robbdd_tools.features.outline import Item, outline
 from robbdd_tools.features.references import highlights, references
 from robbdd_tools.features.rename import RenameRefused, prepare_rename, rename
+from robbdd_tools.features.workspace_symbols import workspace_symbols
 from robbdd_tools.lsp.convert import document_of, symbol_kind
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
@@ -79,17 +80,20 @@ def _register_structure(server: RobbddServer) -> None:
 
     @server.feature(types.WORKSPACE_SYMBOL)
     async def names(ls: RobbddServer, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+        roots = list(ls.workspace.folders)
+
         def find(snapshot: Snapshot) -> list[types.WorkspaceSymbol]:
             return [
                 types.WorkspaceSymbol(
-                    name=found.symbol.path,
+                    name=found.path,
                     kind=symbol_kind(found.kind),
-                    location=ls.convert.location(snapshot, found.uri, found.span),
+                    location=types.Location(uri=found.document.uri, range=ls.convert.range(found.document, found.span)),
                 )
-                for found in project_names(snapshot, params.query)
+                for found in workspace_symbols(snapshot, roots, params.query)
             ]
 
-        return await ls.analyse(find)
+        # Reads what is not open: other requests go first.
+        return await ls.analyse(find, urgent=False)
 
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
     async def folding(ls: RobbddServer, params: types.FoldingRangeParams) -> list[types.FoldingRange]:
