@@ -28,7 +28,11 @@ ASKED = (
 
 
 async def begin_session(
-    client: LanguageClient, folder: Path, capabilities: types.ClientCapabilities, asked: list[str]
+    client: LanguageClient,
+    folder: Path,
+    capabilities: types.ClientCapabilities,
+    asked: list[str],
+    options: dict[str, bool] | None = None,
 ) -> types.InitializeResult:
     """Open a folder with a copy of the example; ``asked`` gets the methods that the server asks of the client."""
 
@@ -43,7 +47,9 @@ async def begin_session(
         listen(method)
     shutil.copytree(EXAMPLES / "pickplace", folder / "pickplace")
     folders = [types.WorkspaceFolder(uri=path_to_uri(folder), name="test")]
-    return await client.initialize_session(types.InitializeParams(capabilities=capabilities, workspace_folders=folders))
+    return await client.initialize_session(
+        types.InitializeParams(capabilities=capabilities, workspace_folders=folders, initialization_options=options)
+    )
 
 
 def plain(value: Any) -> Any:

@@ -108,11 +108,16 @@ def test_shapes_that_make_no_sense_are_reported_and_the_others_are_still_checked
     assert capfd.readouterr().err == ""
 
 
-def test_a_shape_that_would_ask_a_server_is_refused(project: Path) -> None:
-    asking = SAFETY + (
-        "lab:ask a sh:NodeShape ; sh:targetClass bdd:UserStory ; sh:sparql [ a sh:SPARQLConstraint ; "
-        'sh:select "SELECT $this WHERE { SERVICE <https://example.org/> { $this ?p ?o } }" ] .\n'
-    )
+@pytest.mark.parametrize(
+    "asks",
+    [
+        'sh:sparql [ a sh:SPARQLConstraint ; sh:select "SELECT $this WHERE { %s }" ]',
+        'sh:rule [ a sh:SPARQLRule ; sh:construct "CONSTRUCT { $this ?p ?o } WHERE { %s }" ]',
+    ],
+)
+def test_a_shape_that_would_ask_a_server_is_refused(project: Path, asks: str) -> None:
+    query = asks % "SERVICE <https://example.org/> { $this ?p ?o }"
+    asking = f"{SAFETY}lab:ask a sh:NodeShape ; sh:targetClass bdd:UserStory ; {query} .\n"
     (project / "shapes" / "safety.ttl").write_text(asking, encoding="utf-8")
     assert [code for _, code, _ in words(project)] == ["shapes-unchecked", "shapes-syntax"]
 

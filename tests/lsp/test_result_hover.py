@@ -18,9 +18,8 @@ import pytest_asyncio
 from lsprotocol import types
 from pytest_lsp import client_capabilities, make_test_lsp_client
 
-from kit import EXAMPLES
-from lsp_kit import Editor, plain
-from robbdd_tools.base.files import path_to_uri
+from lsp_kit import Editor, begin_session, plain
+from robbdd_tools.cli import main
 
 PICTURE = re.compile(r"!\[([^]]*)\]\(data:([^;]*);base64,([^)]*)\)")
 MOST = 100_000
@@ -30,25 +29,26 @@ SOON = ("<thing> is located at <goal>, after <evt-place-end>", "<thing> is locat
 
 
 @pytest_asyncio.fixture
-async def pictured(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncIterator[Editor]:
-    """One scenario of the example with a clause that is violated, in a client that shows pictures, or does not."""
-    shutil.copytree(EXAMPLES / "pickplace", tmp_path / "pickplace")
+async def unjudged(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncIterator[Editor]:
+    """The example in a client that shows pictures and replays, or does not; nothing was run."""
     client: Any = make_test_lsp_client()
     await client.start_io(sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
-    await client.initialize_session(
-        types.InitializeParams(
-            capabilities=client_capabilities("visual-studio-code"),
-            workspace_folders=[types.WorkspaceFolder(uri=path_to_uri(tmp_path), name="test")],
-            initialization_options=dict.fromkeys(("pictures", "replay"), cast(bool, getattr(request, "param", True))),
-        )
-    )
+    options = dict.fromkeys(("pictures", "replay"), cast(bool, getattr(request, "param", True)))
+    await begin_session(client, tmp_path, client_capabilities("visual-studio-code"), [], options)
     editor = Editor(client, tmp_path)
-    editor.open(editor.text.replace(*SOON))
-    params = types.ExecuteCommandParams("robbdd.run", [{"uri": editor.uri, "variation": 1}])
-    answer = await client.workspace_execute_command_async(params)
-    assert answer["violated"] == 1
+    editor.open()
     yield editor
     await client.shutdown_session()
+
+
+@pytest_asyncio.fixture
+async def pictured(unjudged: Editor) -> Editor:
+    """One scenario of the example with a clause that is violated."""
+    unjudged.change(*SOON)
+    params = types.ExecuteCommandParams("robbdd.run", [{"uri": unjudged.uri, "variation": 1}])
+    answer = await unjudged.client.workspace_execute_command_async(params)
+    assert plain(answer)["violated"] == 1
+    return unjudged
 
 
 async def hover(editor: Editor, text: str) -> str:
@@ -56,6 +56,16 @@ async def hover(editor: Editor, text: str) -> str:
     assert found is not None
     assert isinstance(found.contents, types.MarkupContent)
     return found.contents.value
+
+
+async def replay_lenses(editor: Editor) -> list[str]:
+    """The names of the variants with a lens that leads to the replay of this file's executions."""
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    lenses = await editor.client.text_document_code_lens_async(types.CodeLensParams(text_document=document))
+    commands = [lens.command for lens in lenses or () if lens.command is not None]
+    targets = [plain(command.arguments)[0] for command in commands if command.title == "Replay"]
+    assert {target["uri"] for target in targets} <= {editor.uri}
+    return [target["variant"].rpartition("/")[2] for target in targets]
 
 
 @pytest.mark.physics
@@ -81,21 +91,26 @@ async def test_a_result_leads_to_its_replay(pictured: Editor) -> None:
     (target,) = json.loads(unquote(link))
     assert target.pop("clause").endswith("/at-goal")
     assert target == {"uri": pictured.uri, "run": 1, "index": 0}
-    document = types.TextDocumentIdentifier(uri=pictured.uri)
-    lenses = await pictured.client.text_document_code_lens_async(types.CodeLensParams(text_document=document))
-    commands = {lens.command.title: lens.command for lens in lenses or () if lens.command is not None}
-    (target,) = plain(commands["Replay"].arguments)
-    assert target["uri"] == pictured.uri
-    assert target["variant"].endswith("/part-to-bin")
+    assert await replay_lenses(pictured) == ["part-to-bin"]
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("pictured", [False], indirect=True)
+async def test_a_run_of_the_command_line_is_replayed_from_a_lens_too(unjudged: Editor) -> None:
+    assert await replay_lenses(unjudged) == []
+    assert main(["run", str(unjudged.path), "--where", "thing = cube0"]) == 0
+    assert await replay_lenses(unjudged) == ["part-to-bin"]
+    shutil.rmtree(unjudged.path.parent / ".robbdd" / "runs")
+    assert await replay_lenses(unjudged) == []
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("unjudged", [False], indirect=True)
 async def test_a_client_without_pictures_gets_words(pictured: Editor) -> None:
     shown = await hover(pictured, "at-goal: holds")
     assert "✗ −" in shown
     assert "![" not in shown
     assert "command:" not in shown
+    assert await replay_lenses(pictured) == []
 
 
 @pytest.mark.physics

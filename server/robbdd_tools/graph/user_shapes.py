@@ -134,10 +134,10 @@ def _read(path: Path, _time: int, _size: int) -> ShapeFile:
 
 
 def _followed_services(path: Path, document: Document, graph: Graph) -> Iterator[Diagnostic]:
-    """Yield the SPARQL constraints that would ask a server: opening a project must not reach the network."""
+    """Yield the SPARQL of shapes and rules that would ask a server: opening a project must not reach the network."""
     from rdflib.namespace import SH
 
-    for term in (SH.select, SH.ask):
+    for term in (SH.select, SH.ask, SH.construct):
         if any(_SERVICE.search(str(text)) for text in graph.objects(None, term)):
             found = _SERVICE.search(document.text)
             message = "the SPARQL of a shape asks this model only: SERVICE is not followed"

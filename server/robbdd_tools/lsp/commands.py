@@ -39,12 +39,15 @@ def register_commands(server: RobbddServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
     async def code_lens(ls: RobbddServer, params: types.CodeLensParams) -> list[types.CodeLens]:
+        uri = params.text_document.uri
+        recorded = await asyncio.to_thread(ls.stores.replayable, uri) if ls.shows_replays else frozenset[str]()
+
         def find(snapshot: Snapshot) -> list[types.CodeLens]:
-            document = document_of(snapshot, params.text_document.uri)
+            document = document_of(snapshot, uri)
             return [
                 types.CodeLens(range=ls.convert.range(document, variant.definition.span), command=command)
                 for variant in variants_of(snapshot, document.uri)
-                for command in _lenses(ls, snapshot, variant)
+                for command in _lenses(ls, snapshot, variant, variant.iri in recorded)
             ]
 
         return await ls.analyse(find)
@@ -111,13 +114,13 @@ def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionPar
             )
 
 
-def _lenses(ls: RobbddServer, snapshot: Snapshot, variant: PlacedVariant) -> Iterator[types.Command]:
+def _lenses(ls: RobbddServer, snapshot: Snapshot, variant: PlacedVariant, recorded: bool) -> Iterator[types.Command]:
     yield _command(f"Run scenario {variant.definition.symbol.name}", RUN, variant)
     rate = pass_rate(snapshot, variant, ls.findings)
     if rate is not None and rate.passed < rate.run:
         yield _command(f"Rerun {rate.run - rate.passed} failed", RERUN, variant)
     yield _command("Record", RECORD, variant)
-    if ls.shows_replays and rate is not None:
+    if recorded:
         target = {"uri": variant.definition.uri, "variant": variant.iri}
         yield types.Command(title="Replay", command=REPLAY, arguments=[target])
     yield _command("Generate Gherkin", GHERKIN, variant)

@@ -16,6 +16,7 @@ from robbdd_tools import __version__
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.results import JudgedScenario, Judgement
 from robbdd_tools.lsp.kept_results import save_results
+from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.result_hover import picture_violations
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_plan import ModelError, RunOptions, RunPlan, plan_run
@@ -146,6 +147,8 @@ class _Follower:
         self._ls.show_results(self._plan.uris)
         await self._ls.show_changed()
         await asyncio.to_thread(self._keep, list(self._ls.results))
+        # From now on it can be replayed.
+        self._ls.refreshes.want(LENSES)
 
     async def _follow(self) -> None:
         scheduler = self._run.scheduler

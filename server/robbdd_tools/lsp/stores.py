@@ -8,7 +8,8 @@ from pathlib import Path
 from threading import Lock
 
 from robbdd_tools.base.files import uri_to_path
-from robbdd_tools.run.store import RunStore, StoredRun, project_root, store_beside
+from robbdd_tools.run.shown import traced_variants
+from robbdd_tools.run.store import RESULTS, RunStore, StoredRun, project_root, store_beside
 
 
 class Stores:
@@ -18,6 +19,7 @@ class Stores:
         self._own: dict[Path | None, RunStore] = {}
         self._folder: Path | None = None
         self._lock = Lock()
+        self._traced: dict[Path, tuple[int, frozenset[str]]] = {}
 
     def of(self, uri: str) -> RunStore:
         """Return the store of a document's project."""
@@ -26,6 +28,23 @@ class Stores:
         if own is not None:
             return own
         return self._made(None) if path is None else store_beside(path)
+
+    def replayable(self, uri: str) -> frozenset[str]:
+        """Return the IRIs of the variants whose executions a document's store can replay, whoever ran them.
+
+        A run is read again only when its results have changed.
+        """
+        return frozenset[str]().union(*map(self._traced_in, self.of(uri).runs()))
+
+    def _traced_in(self, run: StoredRun) -> frozenset[str]:
+        try:
+            time = (run.folder / RESULTS).stat().st_mtime_ns
+        except OSError:
+            return frozenset()
+        known = self._traced.get(run.folder)
+        if known is None or known[0] != time:
+            known = self._traced[run.folder] = (time, traced_variants(run))
+        return known[1]
 
     def begin(self, uri: str) -> tuple[StoredRun, str]:
         """Make the folder of a new run; returns it, and why it goes with the server where it does.

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
+from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.settings import read_settings
+from robbdd_tools.run.store import FOLDER, RESULTS
 from robbdd_tools.syntax.parse import LANGUAGES
 
 if TYPE_CHECKING:
@@ -16,6 +18,8 @@ if TYPE_CHECKING:
 
 WATCHED = f"**/{{{','.join((*(f'*.{name}' for name in LANGUAGES), '*.ttl', 'robbdd.toml', 'pyproject.toml'))}}}"
 """Models, and what may hold a project's own rules about them."""
+RUNS = f"**/{FOLDER.as_posix()}/*/{RESULTS}"
+"""What a run has when it is stored, be it one of the command line."""
 
 
 def register_watching(server: RobbddServer) -> None:
@@ -23,7 +27,12 @@ def register_watching(server: RobbddServer) -> None:
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     async def files(ls: RobbddServer, params: types.DidChangeWatchedFilesParams) -> None:
-        await ls.files_changed([change.uri for change in params.changes])
+        # Runs are looked up when a lens is asked for; nothing that is analysed depends on them.
+        changed = [change.uri for change in params.changes if not change.uri.endswith(f"/{RESULTS}")]
+        if len(changed) < len(params.changes):
+            ls.refreshes.want(LENSES)
+        if changed:
+            await ls.files_changed(changed)
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     async def folders(ls: RobbddServer, _: types.DidChangeWorkspaceFoldersParams) -> None:
@@ -39,7 +48,9 @@ async def watch_files(ls: RobbddServer) -> None:
     watched = workspace.did_change_watched_files if workspace is not None else None
     if watched is None or not watched.dynamic_registration:
         return
-    options = types.DidChangeWatchedFilesRegistrationOptions(watchers=[types.FileSystemWatcher(glob_pattern=WATCHED)])
+    options = types.DidChangeWatchedFilesRegistrationOptions(
+        watchers=[types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, RUNS)]
+    )
     entry = types.Registration(
         id="robbdd-files", method=types.WORKSPACE_DID_CHANGE_WATCHED_FILES, register_options=options
     )

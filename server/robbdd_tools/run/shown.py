@@ -40,6 +40,14 @@ def scenarios(run: StoredRun) -> Iterator[dict[str, Any]]:
         yield _scenario(run, index, spec, verdict)
 
 
+def traced_variants(run: StoredRun) -> frozenset[str]:
+    """Return the IRIs of the variants of which a run keeps a trace; of one that cannot be read there are none."""
+    try:
+        return frozenset(one["variant"] for one in scenarios(run) if one["trace"])
+    except NoSuchRun:
+        return frozenset()
+
+
 def find_trace(
     store: RunStore, word: str | None, variant: str | None, variation: int | None, repetition: int | None
 ) -> tuple[StoredRun, int]:
