@@ -33,7 +33,11 @@ export class Server implements vscode.Disposable {
 
   /** Look for the server and start it, unless that was done before: nothing runs until something needs it. */
   begin(): Promise<void> {
-    return this.begun ? this.pending : this.restart();
+    if (this.begun) {
+      return this.pending;
+    }
+    void this.setup.tidy();
+    return this.restart();
   }
 
   /** Stop the server if there is one, look for it again and start it. */

@@ -1,9 +1,10 @@
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
 import { chmodSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, utimesSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { afterEach, beforeEach, test } from "node:test";
-import { freshFolder, installedServer, recordInstalled } from "../src/setup/environments";
+import { discardAbandoned, freshFolder, installedServer, recordInstalled } from "../src/setup/environments";
 import { type Installation, InstallProblem, installServer } from "../src/setup/installer";
 import { failureOf, installation, packageProblem, progressOf, wantedPackage } from "../src/setup/steps";
 
@@ -144,4 +145,19 @@ test("an environment counts from its record on; the latest two are kept and the 
   assert.equal(installedServer(storage, "three")?.package, "two");
   record("three", 3);
   assert.deepEqual([existsSync(one), existsSync(two)], [false, true]);
+});
+
+test("what is left of an installation that was cut short is deleted, one that goes on is not, nor one that is complete", async () => {
+  const storage = join(folder, "storage");
+  const goesOn = freshFolder(storage);
+  const complete = freshFolder(storage);
+  recordInstalled(storage, complete, { command: join(complete, "robbdd-lsp"), package: "one" });
+  const { pid } = spawnSync(process.execPath, ["--version"]);
+  const left = [join(storage, `server-${pid}-abcdef`), join(storage, "server-abcdef")];
+  for (const one of left) {
+    mkdirSync(join(one, "lib"), { recursive: true });
+  }
+  await discardAbandoned(storage);
+  assert.deepEqual([goesOn, complete, ...left].map((one) => existsSync(one)), [true, true, false, false]);
+  await discardAbandoned(join(folder, "nowhere"));
 });

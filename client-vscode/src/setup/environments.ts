@@ -1,7 +1,8 @@
-// The private environments of the server: folders below the extension's own storage. One counts from the moment its
-// record is written, so an installation that was cut short is never taken for a server.
-import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+// The private environments of the server: folders below the extension's own storage, named after the process that makes
+// them. One counts from the moment its record is written, so an installation that was cut short is never taken for a server.
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { rm } from "node:fs/promises";
+import { basename, join } from "node:path";
 import { isRecord } from "../values";
 
 const PREFIX = "server-";
@@ -25,7 +26,7 @@ interface Installed extends PrivateServer {
 /** Make a new folder for an environment. */
 export function freshFolder(storage: string): string {
   mkdirSync(storage, { recursive: true });
-  return mkdtempSync(join(storage, PREFIX));
+  return mkdtempSync(join(storage, `${PREFIX}${process.pid}-`));
 }
 
 /** Record that the environment in a folder is complete, and delete those that nobody needs any more. */
@@ -56,17 +57,37 @@ export function discard(folder: string): void {
   }
 }
 
+/** Delete what is left of installations that were cut short: those without a record whose process is gone. */
+export async function discardAbandoned(storage: string): Promise<void> {
+  const abandoned = environmentsIn(storage).filter((folder) => !existsSync(join(folder, RECORD)) && !isBeingMade(folder));
+  for (const folder of abandoned) {
+    // What cannot be deleted now may be at the next start.
+    await rm(folder, { recursive: true, force: true, maxRetries: 3 }).catch(() => undefined);
+  }
+}
+
+/** Whether the process that makes an environment is there, of this window or of another one. */
+function isBeingMade(folder: string): boolean {
+  const maker = Number.parseInt(basename(folder).slice(PREFIX.length));
+  try {
+    return maker > 0 && process.kill(maker, 0);
+  } catch (error) {
+    return isRecord(error) && error["code"] === "EPERM";
+  }
+}
+
 /** The complete ones, the latest first. */
 function installedIn(storage: string): Installed[] {
-  return namesIn(storage)
-    .filter((name) => name.startsWith(PREFIX))
-    .flatMap((name) => read(join(storage, name)))
+  return environmentsIn(storage)
+    .flatMap(read)
     .sort((one, other) => other.time - one.time);
 }
 
-function namesIn(folder: string): string[] {
+function environmentsIn(storage: string): string[] {
   try {
-    return readdirSync(folder);
+    return readdirSync(storage)
+      .filter((name) => name.startsWith(PREFIX))
+      .map((name) => join(storage, name));
   } catch {
     return [];
   }

@@ -3,7 +3,7 @@ import * as vscode from "vscode";
 import { searchFolders } from "../lookup";
 import { openServerSetting } from "../settings";
 import { surroundings } from "../surroundings";
-import { type PrivateServer, installedServer } from "./environments";
+import { type PrivateServer, discardAbandoned, installedServer } from "./environments";
 import { InstallProblem, installServer } from "./installer";
 import { wantedPackage } from "./steps";
 
@@ -25,6 +25,11 @@ export class Setup {
   /** The server in a private environment, if there is one. */
   installed(): PrivateServer | undefined {
     return installedServer(this.storage, this.wanted());
+  }
+
+  /** Delete what earlier windows have left of installations that they did not finish. */
+  tidy(): Promise<void> {
+    return discardAbandoned(this.storage);
   }
 
   /** Install the server; false when that failed or was cancelled, of which the user has been told. */
