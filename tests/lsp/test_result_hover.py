@@ -33,8 +33,10 @@ async def unjudged(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncItera
     """The example in a client that shows pictures and replays, or does not; nothing was run."""
     client: Any = make_test_lsp_client()
     await client.start_io(sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
-    options = dict.fromkeys(("pictures", "replay"), cast(bool, getattr(request, "param", True)))
-    await begin_session(client, tmp_path, client_capabilities("visual-studio-code"), [], options)
+    able = cast(bool, getattr(request, "param", True))
+    await begin_session(
+        client, tmp_path, client_capabilities("visual-studio-code"), [], {"pictures": able, "replay": able}
+    )
     editor = Editor(client, tmp_path)
     editor.open()
     yield editor
