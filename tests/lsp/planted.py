@@ -1,7 +1,8 @@
 """The language server with faults planted in it, and with eyes: what tests of its manners start.
 
 Words in a text plant the faults: ``planted fault`` breaks hover and preview, all else keeps working; ``planted
-defect`` breaks the diagnostics; ``endless`` makes the semantic tokens of a text a work without end.
+defect`` breaks the diagnostics; ``endless`` makes the semantic tokens of a text a work without end. Between
+``test/hold`` and ``test/goOn`` no file is read that imports another.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from typing import Any
 from robbdd_tools.base.checkpoint import Abandoned, checkpoint
 from robbdd_tools.lsp import handlers, main, preview, reading, server, tokens
 from robbdd_tools.lsp.convert import document_of
+from robbdd_tools.lsp.importers import Importers
 from robbdd_tools.names.project import Snapshot
 
 BLOCKED = 0.05
@@ -33,6 +35,8 @@ class State:
         self.begun = 0
         self.left = 0
         self.blocked: list[str] = []
+        self.go_on = asyncio.Event()
+        self.go_on.set()
 
 
 STATE = State()
@@ -63,7 +67,15 @@ def endless(function: Callable[..., Any]) -> Callable[..., Any]:
     return never
 
 
-def plant(module: ModuleType, name: str, change: Callable[..., Any], *more: str) -> None:
+def holding(load: Callable[..., Any]) -> Callable[..., Any]:
+    async def held(self: Any, uris: Any) -> bool:
+        await STATE.go_on.wait()
+        return await load(self, uris)
+
+    return held
+
+
+def plant(module: ModuleType | type, name: str, change: Callable[..., Any], *more: str) -> None:
     """Change a function where the server has imported it."""
     setattr(module, name, change(getattr(module, name), *more))
 
@@ -88,6 +100,7 @@ def start() -> int:
     plant(preview, "preview", breaking, "planted fault")
     plant(server, "fast_diagnostics", breaking, "planted defect")
     plant(tokens, "coloured", endless)
+    plant(Importers, "load", holding)
     watch_the_loop()
     create = handlers.create_server
 
@@ -98,6 +111,14 @@ def start() -> int:
         def state(_: Any) -> dict[str, Any]:
             blocked, STATE.blocked = STATE.blocked, []
             return {"log": str(LOG), "begun": STATE.begun, "left": STATE.left, "blocked": blocked}
+
+        @made.feature("test/hold")
+        def hold(_: Any) -> None:
+            STATE.go_on.clear()
+
+        @made.feature("test/goOn")
+        def go_on(_: Any) -> None:
+            STATE.go_on.set()
 
         @made.feature("test/block")
         def block(_: Any) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 
 import pytest
 from lsprotocol import types
 from pytest_lsp import LanguageClient
 
-from lsp_kit import CLIENTS, Editor
+from lsp_kit import CLIENTS, PATIENCE, Editor
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 
 ELEMENT_USER = """ns acc = 'https://example.org/acc/'
@@ -54,6 +55,13 @@ async def users(editor: Editor, at: str) -> set[str]:
     params = types.ReferenceParams(context=context, **editor.at(at, after=True))
     found = await editor.client.text_document_references_async(params)
     return {location.uri.rsplit("/", 1)[-1] for location in found or ()}
+
+
+async def hovered(editor: Editor, at: str) -> str:
+    """What a hover says."""
+    found = await editor.client.text_document_hover_async(types.HoverParams(**editor.at(at, after=True)))
+    assert found is not None
+    return str(found.contents)
 
 
 def write(edit: types.WorkspaceEdit | None) -> set[str]:
@@ -108,9 +116,10 @@ async def test_variables_clauses_scenarios_and_events_are_renamed_in_closed_file
 
 
 async def test_hover_tells_of_uses_in_closed_files(scene: Editor) -> None:
-    found = await scene.client.text_document_hover_async(types.HoverParams(**scene.at("object bin_ri", after=True)))
-    assert found is not None
-    assert "used 2 times in 2 files" in str(found.contents)
+    async with asyncio.timeout(PATIENCE):
+        while "so far" in (told := await hovered(scene, "object bin_ri")):
+            pass
+    assert "used 2 times in 2 files" in told
 
 
 async def test_what_carries_out_a_clause_is_found_in_closed_files(editor: Editor) -> None:

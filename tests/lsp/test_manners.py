@@ -16,6 +16,7 @@ from pygls.exceptions import JsonRpcException
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
 from lsp_kit import CLIENTS, PATIENCE, Editor, begin_session
+from robbdd_tools.lsp.reading import STILL_READING
 
 PLANTED = Path(__file__).with_name("planted.py")
 INTERNAL_ERROR, REQUEST_CANCELLED, CONTENT_MODIFIED = -32603, -32800, -32801
@@ -160,6 +161,18 @@ async def test_a_text_that_moves_on_ends_what_the_client_asks_again(editor: Edit
     editor.change("// endless\n", "")
     assert (await refused(answer)).code == CONTENT_MODIFIED
     assert (await ask_tokens(editor, "fresh")).data
+
+
+async def test_hover_waits_for_importers_for_a_moment_only_and_says_so(editor: Editor) -> None:
+    await editor.client.protocol.send_request_async("test/hold", {})
+    editor.open()
+    found = await hover(editor)
+    assert found is not None
+    assert STILL_READING in str(found.contents)
+    await editor.client.protocol.send_request_async("test/goOn", {})
+    async with asyncio.timeout(PATIENCE):
+        while (found := await hover(editor)) is None or STILL_READING in str(found.contents):
+            pass
 
 
 async def test_the_watchdog_sees_a_blocked_loop(editor: Editor) -> None:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 LASTING = 2.0
 """Seconds after which the disk is looked at again, for clients that do not tell of changes there."""
+PATIENCE = 0.25
+"""Seconds for which what is nice to know is waited for."""
 
 
 class Importers:
@@ -58,12 +60,29 @@ class Importers:
             for uri in fresh:
                 checkpoint()
                 project.load(uri)
+            # Whoever asks for uses looks at all of them; what they mean can be found out before anybody waits.
+            loaded = project.snapshot()
+            for uri in fresh:
+                checkpoint()
+                loaded.file(uri)
             return bool(fresh)
 
         return bool(found) and await self._server.analyse(read, urgent=False)
 
     async def analyse(self, uri: str, position: types.Position, work: Callable[[Snapshot], Result]) -> Result:
         """Run ``work`` once all files are there that may use what the name at a position stands for."""
+        await self._load_users(uri, position)
+        return await self._server.analyse(work)
+
+    async def are_there(self, uri: str, position: types.Position) -> bool:
+        """Wait for the files that may use what the name at a position stands for, but no longer than ``PATIENCE``.
+
+        Tells whether they are all there; if not, they are read on.
+        """
+        finished, _ = await asyncio.wait([self._server.spawn(self._load_users(uri, position))], timeout=PATIENCE)
+        return bool(finished)
+
+    async def _load_users(self, uri: str, position: types.Position) -> None:
         convert = self._server.convert
 
         def declaring(snapshot: Snapshot) -> str:
@@ -71,7 +90,6 @@ class Importers:
             return uri if found is None else found[1].uri
 
         await self.load([await self._server.analyse(declaring)])
-        return await self._server.analyse(work)
 
     async def look_around(self) -> None:
         """Look on disk for the files that import open ones, and publish what these mean for them."""

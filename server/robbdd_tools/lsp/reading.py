@@ -18,6 +18,8 @@ from robbdd_tools.lsp.result_hover import pictures_of, replay_link
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.names.project import Snapshot
 
+STILL_READING = "*(so far: files that may use it are still being read)*"
+
 
 def register_reading(server: RobbddServer) -> None:
     """Add the methods to a server."""
@@ -69,11 +71,12 @@ def _register_hover(server: RobbddServer) -> None:
             found = hover(snapshot, document.uri, ls.convert.offset(document, params.position), ls.findings)
             return None if found is None else (found, ls.convert.range(document, found.span))
 
-        answer = await ls.importers.analyse(params.text_document.uri, params.position, find)
+        is_whole = await ls.importers.are_there(params.text_document.uri, params.position)
+        answer = await ls.analyse(find)
         if answer is None:
             return None
         found, place = answer
-        markdown = found.markdown
+        markdown = found.markdown if is_whole else f"{found.markdown}\n\n{STILL_READING}"
         if found.judged is not None:
             link = replay_link(found.judged) if ls.shows_replays else ""
             pictures = await asyncio.to_thread(pictures_of, ls.stores, found.judged) if ls.shows_pictures else ""
