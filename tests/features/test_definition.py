@@ -64,7 +64,7 @@ def test_hover_tells_kind_and_iri() -> None:
         "**object set** `parts`",
         "2 elements: `parts.bolt`, `parts.nut`",
         "`<https://example.org/env/parts>`",
-        "used 2 times in 2 files",
+        "used 2 times: lab.scene:9, main.bdd:31",
     ]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+
 import pytest
 
 from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE, fixture
@@ -24,7 +26,7 @@ def at(word: str, text: str = MODEL) -> str:
 
 def test_a_clause_tells_its_sentence_its_meaning_and_when_it_is_judged() -> None:
     found = at("in-$0tray: holds")
-    assert "> <part> is located at <goal> 0.5 seconds after place-end" in found
+    assert "> `<part>` is located at `<goal>` 0.5 seconds after place-end" in found
     assert load_catalog().predicates["located-at"].doc in found
     assert "a margin in m" in found
     assert "Judged throughout the 0.5 s that begin at `place-end`." in found
@@ -32,7 +34,7 @@ def test_a_clause_tells_its_sentence_its_meaning_and_when_it_is_judged() -> None
 
 def test_a_behaviour_tells_its_sentence_and_its_events() -> None:
     found = at("Behaviour (ns=t) car$0ry")
-    assert "> <robot> picks <part> and places" in found
+    assert "> `<robot>` picks `<part>` and places" in found
     assert "Events: " in found
 
 
@@ -47,13 +49,34 @@ def test_a_variant_and_its_template_tell_how_many_scenarios_there_are() -> None:
 
 def test_a_variable_tells_its_type_and_where_it_is_used() -> None:
     assert at("var pa$0rt").split("\n\n")[0] == "**variable** `fetch.part`: object"
-    assert at("var pa$0rt").endswith("used 4 times")
+    assert at("var pa$0rt").endswith("used 4 times: main.bdd:15, main.bdd:19, main.bdd:22, main.bdd:31")
 
 
 def test_the_comment_above_a_declaration_is_shown() -> None:
     text = MODEL.replace("Event (ns=t) start", "// When the operator\n// lets go.\nEvent (ns=t) start")
     assert "When the operator\nlets go." in at("duration: from <st$0art>", text)
     assert "not used" in at("Event (ns=t) spa$0re", MODEL + "Event (ns=t) spare\n")
+
+
+def test_what_looks_like_a_tag_in_a_comment_is_shown() -> None:
+    text = MODEL.replace(
+        "Event (ns=t) start", "// As <inertial> says, see `<mass>` and <https://example.org>.\nEvent (ns=t) start"
+    )
+    assert "As `<inertial>` says, see `<mass>` and <https://example.org>." in at("duration: from <st$0art>", text)
+
+
+def test_a_part_of_a_scene_instance_is_quoted() -> None:
+    joint = "fixed lies-on {\n    parent: <floor.ground>\n    child: <floor.ground>\n}"
+    inside = textwrap.indent(joint.replace("lies", "li$0es"), " " * 8)
+    text = f"ktree cell {{\n    body floor {{ frame ground {{ }} }}\n    joints {{\n{inside}\n    }}\n}}\n"
+    assert f"```robbdd-ktree\n{joint}\n```" in shown(f"//- main.ktree\n{text}")
+
+
+def test_an_import_tells_what_the_file_declares() -> None:
+    found = at('"lab.sc$0ene"').split("\n\n")
+    assert found[0] == "**file** `lab.scene`"
+    assert found[1].startswith("declares object set `parts`, object set `washers`, ")
+    assert at('"gone.sc$0ene"', MODEL.replace("lab.scene", "gone.scene")) == ""
 
 
 def test_elements_tell_what_simulates_them() -> None:
@@ -126,5 +149,5 @@ def test_a_node_of_a_behaviour_tree_tells_what_it_does_and_what_is_linked_to_it(
     assert shown(text).splitlines()[2:5] == [
         "Executes `pick`, `place`, one after the other, until one fails.",
         "",
-        "`carry`: <robot> picks <part> and places it at <goal>",
+        "`carry`: `<robot>` picks `<part>` and places it at `<goal>`",
     ]

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
+from urllib.parse import unquote
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.features.clause_results import clause_hints, pass_rate
+from robbdd_tools.features.markdown import code_block, literal
 from robbdd_tools.features.references import uses
 from robbdd_tools.features.results import NOTHING
 from robbdd_tools.features.sentences import clause_sentence, time_meaning, word_meaning, word_of
 from robbdd_tools.names.elements import elements_of, scene_members, site_of
+from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.types import variable_type
 from robbdd_tools.names.variants import variants_of as placed_variants
@@ -32,7 +35,42 @@ if TYPE_CHECKING:
 _ENDS = {"sequence": "fails", "selector": "succeeds"}
 """Kind of a behaviour tree's composite → what its parts must do for it to be over."""
 MOST_LISTED = 8
-"""Members or results that are listed one by one."""
+"""Members, results or places that are listed one by one."""
+_QUOTED = {
+    SymbolKind.COMPOSITION,
+    SymbolKind.DISTRIBUTION,
+    SymbolKind.TREE_TEMPLATE,
+    SymbolKind.TREE,
+    SymbolKind.TREE_INSTANCE,
+    SymbolKind.GRAPH,
+    SymbolKind.BODY,
+    SymbolKind.FRAME,
+    SymbolKind.POSE,
+    SymbolKind.JOINT,
+    SymbolKind.SCENE_INSTANCE,
+    SymbolKind.MODEL,
+    SymbolKind.SENSOR,
+    SymbolKind.IMPLEMENTATION,
+    SymbolKind.PROVIDER,
+    SymbolKind.OBSERVATION,
+    SymbolKind.POLICY,
+    SymbolKind.EXECUTION,
+}
+"""What is best described by its own text."""
+_COMPLETE = {
+    SymbolKind.FLUENT,
+    SymbolKind.BEHAVIOUR,
+    SymbolKind.STORY,
+    SymbolKind.VARIANT,
+    SymbolKind.GRAPH,
+    SymbolKind.POSE,
+    SymbolKind.JOINT,
+    SymbolKind.SCENE_INSTANCE,
+    SymbolKind.MODEL,
+    SymbolKind.SENSOR,
+    SymbolKind.EXECUTION,
+}
+"""What does its work without being used by anything."""
 
 
 def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NOTHING) -> str:
@@ -44,7 +82,7 @@ def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NO
     parts += _results(snapshot, definition, findings)
     if definition.iri is not None and definition.kind is not SymbolKind.NAMESPACE:
         parts.append(f"`<{definition.iri}>`")
-    parts.append(_used(snapshot, definition))
+    parts += _used(snapshot, definition)
     return "\n\n".join(parts)
 
 
@@ -53,6 +91,16 @@ def describe_path(snapshot: Snapshot, uri: str, path: str) -> str | None:
     analysis = snapshot.file(uri)
     definition = None if analysis is None else analysis.definitions.get(path)
     return None if definition is None else describe(snapshot, definition)
+
+
+def describe_import(snapshot: Snapshot, uri: str) -> str:
+    """Describe a file that is imported: what it declares."""
+    file = snapshot.file(uri)
+    first = (
+        [placed.declaration.symbols[0] for placed in file.declarations if placed.declaration.symbols] if file else []
+    )
+    names = [f"{symbol.kind} `{symbol.path}`" for symbol in first if symbol.kind is not SymbolKind.NAMESPACE]
+    return "\n\n".join((f"**file** `{_name(uri)}`", *[f"declares {_listed(names)}"] * bool(names)))
 
 
 def describe_words(words: str) -> str | None:
@@ -96,11 +144,14 @@ def _comment(site: Site | None, definition: Definition) -> Iterator[str]:
         found.insert(0, document.line_text(line).lstrip().removeprefix("//").strip())
         line -= 1
     if found:
-        yield "\n".join(found)
+        yield literal("\n".join(found))
 
 
 def _contents(site: Site, definition: Definition) -> Iterator[str]:
     match definition.kind:
+        case kind if kind in _QUOTED:
+            text = site.file.document.text[definition.extent.start : definition.extent.end]
+            yield code_block(text, language_of(site.uri))
         case SymbolKind.FLUENT | SymbolKind.BEHAVIOUR:
             yield from _clause(site, definition)
         case SymbolKind.VARIANT:
@@ -129,7 +180,7 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
 def _clause(site: Site, definition: Definition) -> Iterator[str]:
     for node in walk(site.tree) if site.tree is not None else ():
         if isinstance(node, tree.Fluent | tree.BehaviourUse) and site.span(node.name) == definition.span:
-            yield f"> {clause_sentence(node)}"
+            yield f"> {literal(clause_sentence(node))}"
             phrase = node.predicate if isinstance(node, tree.Fluent) else node.action
             if isinstance(phrase, tree.PhraseUse):
                 yield word_meaning(word_of(phrase))
@@ -146,7 +197,7 @@ def _tree_node(site: Site, definition: Definition) -> Iterator[str]:
             yield f"Executes {parts}, one after the other, until one {_ENDS[node.kind]}."
     for link in links_to(site.snapshot, site.file):
         if link.node == (definition.uri, definition.symbol.path):
-            yield f"`{link.behaviour.name.text}`: {clause_sentence(link.behaviour)}"
+            yield f"`{link.behaviour.name.text}`: {literal(clause_sentence(link.behaviour))}"
 
 
 def _count(scenario: Scenario) -> str:
@@ -159,9 +210,8 @@ def _count(scenario: Scenario) -> str:
 
 def _members(members: tuple[Element, ...] | None) -> Iterator[str]:
     if members:
-        names = [f"`{member.name}`" for member in members[:MOST_LISTED]]
-        more = f" and {len(members) - MOST_LISTED} more" if len(members) > MOST_LISTED else ""
-        yield f"{len(members)} element{'' if len(members) == 1 else 's'}: {', '.join(names)}{more}"
+        names = _listed([f"`{member.name}`" for member in members])
+        yield f"{len(members)} element{'' if len(members) == 1 else 's'}: {names}"
 
 
 def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> Iterator[str]:
@@ -186,7 +236,7 @@ def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> 
 def result_words(hint: ResultHint) -> str:
     """Return the last results of a clause as a list in Markdown."""
     age = "Last results, of the text before it was edited" if hint.stale else "Last results"
-    lines = [f"- {line}" for line in hint.lines[:MOST_LISTED]]
+    lines = [f"- {literal(line)}" for line in hint.lines[:MOST_LISTED]]
     vacuous = [f"- it could not have failed: {hint.vacuous}"] if hint.vacuous else []
     return f"{age}:\n\n" + "\n".join((*lines, *vacuous))
 
@@ -201,15 +251,26 @@ def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Ite
     for scenario in failed[:MOST_LISTED]:
         judged = sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)
         words = ", ".join(f"{one.name} {one.said}" for one in judged if one.outcome != "holds")
-        yield f"  - {scenario.values}: {words}"
+        yield f"  - {literal(f'{scenario.values}: {words}')}"
     if len(failed) > MOST_LISTED:
         yield f"  - … and {len(failed) - MOST_LISTED} more"
 
 
-def _used(snapshot: Snapshot, definition: Definition) -> str:
-    places = set(uses(snapshot, definition))
-    files = {uri for uri, _ in places}
+def _used(snapshot: Snapshot, definition: Definition) -> Iterator[str]:
+    places = sorted(set(uses(snapshot, definition)))
     if not places:
-        return "not used"
+        yield from () if definition.kind in _COMPLETE else ("not used",)
+        return
     times = "once" if len(places) == 1 else f"{len(places)} times"
-    return f"used {times}" + (f" in {len(files)} files" if len(files) > 1 else "")
+    documents = {uri: snapshot.document(uri) for uri, _ in places}
+    lines = dict.fromkeys(f"{_name(uri)}:{documents[uri].position(span.start).line + 1}" for uri, span in places)
+    yield f"used {times}: {_listed(list(lines))}"
+
+
+def _listed(names: list[str]) -> str:
+    more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
+    return f"{', '.join(names[:MOST_LISTED])}{more}"
+
+
+def _name(uri: str) -> str:
+    return unquote(uri.rsplit("/", 1)[-1])

@@ -1,4 +1,4 @@
-"""Hover: what stands under the cursor, be it a name, a phrase of the catalog or a time constraint."""
+"""Hover: what stands under the cursor: a name, a phrase of the catalog, a time constraint, an import."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.definition import symbol_at
-from robbdd_tools.features.describe import describe, result_words
+from robbdd_tools.features.describe import describe, describe_import, result_words
 from robbdd_tools.features.results import NOTHING
 from robbdd_tools.features.sentences import time_meaning, word_meaning, word_of
 from robbdd_tools.syntax import tree
@@ -35,7 +35,7 @@ class Hover:
 
 
 def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHING) -> Hover | None:
-    """Describe the name under a cursor, else the phrase or time constraint around it.
+    """Describe the name or import under a cursor, else the phrase or time constraint around it.
 
     ``findings`` are the last results of clauses.
     """
@@ -47,7 +47,7 @@ def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHIN
         if hint is not None and definition.extent == hint.span and definition.uri == uri:
             judged = hint.worst
         return Hover(describe(snapshot, definition, findings), found[0], judged)
-    words = _words(snapshot, uri, offset)
+    words = _words(snapshot, uri, offset) or _import(snapshot, uri, offset)
     if words is None or hint is None:
         return words
     return Hover(f"{words.markdown}\n\n{result_words(hint)}", words.span, hint.worst)
@@ -67,6 +67,14 @@ def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
                 return Hover(word_meaning(word_of(node)), span)
             if isinstance(node, tree.During | tree.Before | tree.After):
                 return Hover(time_meaning(node), span)
+    return None
+
+
+def _import(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
+    analysis = snapshot.file(uri)
+    for link in analysis.imports if analysis is not None else ():
+        if link.span.contains(offset) and link.problem is None:
+            return Hover(describe_import(snapshot, link.uri), link.span)
     return None
 
 

@@ -207,5 +207,5 @@ def markup(markdown: str, formats: Sequence[types.MarkupKind] | None) -> types.M
     """Return a text in the format that a client prefers; its marks are left out where it knows no Markdown."""
     if formats and types.MarkupKind.Markdown in formats:
         return types.MarkupContent(kind=types.MarkupKind.Markdown, value=markdown)
-    plain = re.sub(r"\*\*|`|^> ", "", markdown, flags=re.MULTILINE)
+    plain = re.sub(r"^```.*\n?|\*\*|`|^> ", "", markdown, flags=re.MULTILINE)
     return types.MarkupContent(kind=types.MarkupKind.PlainText, value=plain)
