@@ -23,7 +23,8 @@ from robbdd_tools.features.hover import hover
 from robbdd_tools.features.implementation import implementation
 from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.outline import outline
-from robbdd_tools.features.refactor_declarations import extracted_clauses, modernised, split_scene
+from robbdd_tools.features.refactor_clauses import extracted_clauses
+from robbdd_tools.features.refactor_declarations import modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.references import highlights, references
 from robbdd_tools.features.rename import RenameRefused, linked_places, prepare_rename, rename
@@ -67,7 +68,7 @@ AT_A_CURSOR: list[Callable[[Snapshot, str, int], object]] = [
     linked_places,
     called,
     selections,
-    extracted_clauses,
+    lambda snapshot, uri, offset: extracted_clauses(snapshot, uri, Span(offset, offset)),
     split_scene,
     lambda snapshot, uri, offset: list(variation_refactorings(snapshot, uri, Span(offset, offset))),
 ]

@@ -9,12 +9,13 @@ from typing import Any
 import pytest
 
 from gherkin_kit import feature, read_officially
-from kit import EXAMPLES, MODEL, SCENE, Fixture, fixture
+from kit import EVENTS, EXAMPLES, MODEL, SCENE, TEMPLATE, Fixture, fixture
 from robbdd_tools.base.diagnostic import Fix, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.features.refactor_declarations import extracted_clauses, modernised, split_scene
+from robbdd_tools.features.refactor_clauses import extracted_clauses
+from robbdd_tools.features.refactor_declarations import modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.rename import rename
 from robbdd_tools.graph.build import build_graph
@@ -103,25 +104,174 @@ def test_a_scene_moves_to_a_file_of_its_own_and_the_graph_stays() -> None:
     assert isomorphic(build_graph(snapshot, case.uri).graph, before)
 
 
-def test_the_clauses_of_a_lone_variant_move_to_its_template() -> None:
-    clause = "            Then:\n                extra: holds(<fetch.part> is located at <fetch.goal>, before <end>)\n"
-    text = MODEL.replace("            variation:", f"{clause}            variation:")
-    case = fixture(text.replace("Scenario bench", "Scenario be$0nch"))
-    fix = extracted_clauses(case.snapshot, case.uri, case.cursor)
+def extracted(text: str) -> tuple[Fixture, dict[str, str], str]:
+    """A project with ``$0`` in a variant of its first file, or ``$0`` and ``$1`` around clauses; its texts after, how.
+
+    The change must leave no more findings than there were.
+    """
+    case = fixture(text.replace("$1", ""))
+    first = re.split(r"^//- \S+\n", text, flags=re.MULTILINE)[1 if text.startswith("//-") else 0].replace("$0", "")
+    end = first.index("$1") if "$1" in first else case.cursor
+    fix = extracted_clauses(case.snapshot, case.uri, Span(case.cursor, end))
     assert fix is not None
-    after = applied(case, fix)[case.uri]
+    texts = applied(case, fix)
+    project = Project()
+    for uri, changed in texts.items():
+        project.open(uri, 1, changed)
+    for uri in texts:
+        before = sorted(found.code for found in fast_diagnostics(case.snapshot, uri))
+        assert sorted(found.code for found in fast_diagnostics(project.snapshot(), uri)) == before
+    return case, texts, fix.title
+
+
+EXTRA = "extra: holds(<fetch.part> is located at <fetch.goal>, before <end>)"
+MORE = "more: holds(<fetch.robot> does not collide <fetch.goal>, from <start> until <end>)"
+GIVEN = "free: holds(<fetch.robot> can reach <fetch.part>, before <start>)"
+
+
+def with_clauses(then: str, given: str = "") -> str:
+    """The model with clauses in its variant."""
+    parts = f"            Given: {given}\n" if given else ""
+    return MODEL.replace("            variation:", f"{parts}            Then: {then}\n            variation:")
+
+
+def with_other_variant(text: str) -> str:
+    """A model with a second variant of the same template, which says nothing of its own."""
+    variant = MODEL[MODEL.index("        Scenario bench-to-tray") : MODEL.rindex("}")].replace("bench-to-tray", "other")
+    end = text.rindex("}")
+    return text[:end] + variant + text[end:]
+
+
+@pytest.mark.parametrize(
+    ("then", "given"), [(EXTRA, ""), (f"({EXTRA} and {MORE})", ""), (f"( {EXTRA} and ( not {MORE} ) )", GIVEN)]
+)
+def test_the_clauses_of_a_lone_variant_move_to_its_template(then: str, given: str) -> None:
+    text = with_clauses(then, given)
+    case, texts, title = extracted(text.replace("Scenario bench", "Scenario be$0nch"))
+    after = texts[case.uri]
+    assert title == "Move the clauses to the template 'fetch'"
     assert after.index("extra") < after.index("User Story")
-    assert after.count("Then:") == 1
+    assert (after.count("Then:"), after.count("Given:")) == (1, 1)
     assert scenarios(after) == scenarios(text)
 
 
-def test_the_clauses_of_one_variant_of_several_stay_where_they_are() -> None:
-    clause = "            Then: extra: holds(<fetch.part> is located at <fetch.goal>, before <end>)\n"
-    text = MODEL.replace("            variation:", f"{clause}            variation:")
-    variant = text[text.index("        Scenario bench-to-tray") : text.rindex("}")]
-    text = text.replace(variant, variant + variant.replace("bench-to-tray", "other").replace("extra", "extra2"))
-    case = fixture(text.replace("Scenario bench", "Scenario be$0nch"))
-    assert extracted_clauses(case.snapshot, case.uri, case.cursor) is None
+def test_only_the_selected_clauses_move() -> None:
+    text = with_clauses(f"({EXTRA}\n  and $0{MORE[:9]}$1{MORE[9:]} and {GIVEN})")
+    case, texts, _ = extracted(text)
+    template, story = texts[case.uri].split("User Story")
+    assert ("more: " in template, "extra: " in template, "free: " in template) == (True, False, False)
+    assert ("more: " in story, "extra: " in story, "free: " in story) == (False, True, True)
+
+
+def test_a_template_without_that_part_gets_one() -> None:
+    then = TEMPLATE[TEMPLATE.index("    Then:") : TEMPLATE.rindex("}")]
+    text = with_clauses(f"({EXTRA} and {MORE})").replace(then, "")
+    case, texts, _ = extracted(text.replace("Scenario bench", "Scenario be$0nch"))
+    assert "    Then:\n        (\n            extra" in texts[case.uri].split("User Story")[0]
+    assert scenarios(texts[case.uri]) == scenarios(text)
+
+
+def test_a_comment_among_the_clauses_keeps_them_where_they_are() -> None:
+    case = fixture(with_clauses(f"// why\n$0{EXTRA}"))
+    assert extracted_clauses(case.snapshot, case.uri, Span(case.cursor, case.cursor)) is None
+
+
+def test_policies_for_a_clause_follow_it_to_the_template() -> None:
+    policy = """import "main.bdd"
+ns x = 'https://example.org/x/'
+obs policy (ns=x) seen for <bench-to-tray.extra> { trinary topic: "/seen" }
+"""
+    main = with_clauses(EXTRA).replace("Scenario bench", "Scenario be$0nch")
+    _, texts, _ = extracted(f"//- main.bdd\n{main}//- exec.bddx\n{policy}")
+    assert "for <fetch.extra>" in texts["file:///fixture/exec.bddx"]
+
+
+@pytest.mark.parametrize("given", ["", GIVEN])
+def test_the_clauses_of_one_variant_of_several_move_to_a_copy_of_the_template(given: str) -> None:
+    text = with_other_variant(with_clauses(f"({EXTRA} and {MORE})", given))
+    case, texts, title = extracted(text.replace("Scenario bench", "Scenario be$0nch"))
+    after = texts[case.uri]
+    assert title == "Extract the clauses to a new template 'fetch-2'"
+    assert scenarios(after) == scenarios(text)
+    assert TEMPLATE in after
+    # What the other variant is made of has not changed.
+    old, new = template_of(after, "fetch"), template_of(after, "fetch-2")
+    others = without(after.replace(new, ""), "bench-to-tray")
+    assert isomorphic(graph_of(others), graph_of(without(text, "bench-to-tray")))
+    # With the names of the copy taken back, only the owner of the variant's clauses has changed.
+    alone = without(after.replace(old, ""), "other").replace("-2", "")
+    before = graph_of(without(text, "other"))
+    clauses = ["on-bench", *(["free"] if given else []), "when-bhv-fetch.when", "in-tray", "extra", "more"]
+    expected = with_clauses_of(with_clauses_of(before, "bench-to-tray", []), "fetch", clauses)
+    assert isomorphic(graph_of(alone), expected)
+    assert not isomorphic(graph_of(alone), before)
+
+
+def test_some_clauses_move_to_a_copy_and_the_rest_names_its_variables() -> None:
+    text = with_other_variant(with_clauses(f"($0{EXTRA}$1 and {MORE})"))
+    case, texts, _ = extracted(text)
+    story = texts[case.uri].split("User Story")[1]
+    assert "more: holds(<fetch-2.robot> does not collide <fetch-2.goal>" in story
+    assert "var <fetch-2.part>: obj set <parts>" in story
+    assert "var <fetch.part>: obj set <parts>" in story
+    assert "extra" not in story
+
+
+def test_a_template_of_another_file_is_copied_into_that_of_the_story() -> None:
+    story = with_clauses(EXTRA)[len(EVENTS + TEMPLATE) :].replace("Scenario bench", "Scenario be$0nch")
+    head = "import \"library.bdd\"\nns own = 'https://example.org/own/'\n"
+    main = head + story.replace("(ns=t)", "(ns=own)")
+    _, texts, title = extracted(f"//- main.bdd\n{main}//- library.bdd\n{EVENTS}{TEMPLATE}")
+    assert title == "Extract the clauses to a new template 'fetch-2'"
+    assert texts["file:///fixture/library.bdd"] == EVENTS + TEMPLATE
+    assert "Scenario Template (ns=own) fetch-2 {" in texts["file:///fixture/main.bdd"]
+
+
+def test_a_variant_that_is_observed_by_policies_keeps_its_template() -> None:
+    execution = """import "main.bdd"
+ns x = 'https://example.org/x/'
+obs policy (ns=x) seen for <fetch.in-tray> { trinary topic: "/seen" }
+Scenario Exec (ns=x) run { variant: <fetching.NAME> scene inst: <bench> bhv: <built-in> policies: { <seen> } }
+"""
+    main = with_other_variant(with_clauses(EXTRA)).replace("Scenario bench", "Scenario be$0nch")
+    for name, is_offered in (("bench-to-tray", False), ("other", True)):
+        case = fixture(f"//- main.bdd\n{main}//- exec.bddx\n{execution.replace('NAME', name)}")
+        fix = extracted_clauses(case.snapshot, case.uri, Span(case.cursor, case.cursor))
+        assert (fix is not None) == is_offered
+
+
+def graph_of(text: str) -> Any:
+    case = fixture(text)
+    return build_graph(case.snapshot, case.uri).graph
+
+
+def template_of(text: str, name: str) -> str:
+    """The text of a template."""
+    start = text.index(f"Scenario Template (ns=t) {name} {{")
+    return text[start : text.index("\n}\n", start) + 3]
+
+
+def without(text: str, variant: str) -> str:
+    """A model without one of its variants."""
+    start = text.index(f"        Scenario {variant} {{")
+    end = text.index("\n        }\n", start) + len("\n        }\n")
+    return text[:start] + text[end:]
+
+
+def with_clauses_of(graph: Any, owner: str, clauses: list[str]) -> Any:
+    """A graph in which a template or variant has just these clauses."""
+    rdflib: Any = import_module("rdflib")
+    collection: Any = import_module("rdflib.collection")
+    names = rdflib.Namespace("https://example.org/t/")
+    has_clause = rdflib.URIRef("https://secorolab.github.io/metamodels/acceptance-criteria/bdd#has-clause")
+    changed = rdflib.Graph() + graph
+    old = changed.value(names[owner], has_clause)
+    collection.Collection(changed, old).clear()
+    changed.remove((names[owner], has_clause, old))
+    start = rdflib.BNode() if clauses else rdflib.RDF.nil
+    collection.Collection(changed, start, [names[clause] for clause in clauses])
+    changed.add((names[owner], has_clause, start))
+    return changed
 
 
 def test_the_published_form_becomes_the_current_one_and_the_graph_stays() -> None:

@@ -30,6 +30,24 @@ async def test_refactorings_are_offered_by_their_kind(editor: Editor) -> None:
     assert await actions(editor, "variation:", ["quickfix"]) == {}
 
 
+@CLIENTS
+async def test_clauses_are_extracted_to_a_copy_of_a_shared_template(editor: Editor) -> None:
+    start, end = editor.text.index("        Scenario part-to-bin"), editor.text.rindex("}")
+    variant = editor.text[start:end]
+    clause = (
+        "Then: idle: holds(<pick-place.robot> can reach <pick-place.thing>, before <evt-start>)\n            variation:"
+    )
+    other = variant.replace("part-to-bin", "other").replace("variation:", clause)
+    editor.open(editor.text[:end] + other + editor.text[end:])
+    found = await actions(editor, "idle", ["refactor.extract"])
+    edit = found["Extract the clauses to a new template 'pick-place-2'"].edit
+    assert edit is not None
+    assert edit.changes is not None
+    texts = [change.new_text for change in edit.changes[editor.uri]]
+    assert sum("Scenario Template (ns=crit) pick-place-2 {" in text for text in texts) == 1
+    assert texts.count("pick-place-2.goal") == 1
+
+
 async def test_a_scene_is_split_off_into_a_new_file(editor: Editor) -> None:
     editor.open()
     editor.path = editor.path.with_name("bench.scene")

@@ -11,7 +11,8 @@ from robbdd_tools.base.diagnostic import Edit, Fix
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.features.format_range import format_on_type, format_range
 from robbdd_tools.features.layout import lay_out
-from robbdd_tools.features.refactor_declarations import NewFile, extracted_clauses, modernised, split_scene
+from robbdd_tools.features.refactor_clauses import extracted_clauses
+from robbdd_tools.features.refactor_declarations import NewFile, modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.rename import linked_places
 from robbdd_tools.features.rename_files import ImportLines, concerned, import_edits
@@ -36,7 +37,7 @@ def refactorings(ls: RobbddServer, snapshot: Snapshot, uri: str, span: Span) -> 
         inline = fix.title.startswith("Write the values")
         kind = types.CodeActionKind.RefactorInline if inline else types.CodeActionKind.RefactorRewrite
         yield _action(ls, snapshot, fix, kind)
-    extracted = extracted_clauses(snapshot, uri, span.start)
+    extracted = extracted_clauses(snapshot, uri, span)
     if extracted is not None:
         yield _action(ls, snapshot, extracted, types.CodeActionKind.RefactorExtract)
     current = modernised(snapshot, uri)
