@@ -6,12 +6,15 @@ import asyncio
 import json
 import socket
 import sys
+from collections.abc import AsyncIterator
 from typing import Any
 
 import pytest
 
 from robbdd_tools import __version__
 from robbdd_tools.lsp.main import address, main
+
+INVALID_PARAMS = -32602
 
 
 @pytest.mark.parametrize(
@@ -45,7 +48,23 @@ async def connected(port: int) -> tuple[asyncio.StreamReader, asyncio.StreamWrit
             await asyncio.sleep(0.02)
 
 
-async def test_a_client_is_served_over_tcp() -> None:
+class Wire:
+    """A client that sends what it is told to."""
+
+    def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        self._reader, self._writer = reader, writer
+
+    async def answer(self, method: str, params: object) -> dict[str, Any]:
+        body = json.dumps({"jsonrpc": "2.0", "id": 1, "method": method, "params": params})
+        self._writer.write(f"Content-Length: {len(body)}\r\n\r\n{body}".encode())
+        header = await self._reader.readuntil(b"\r\n\r\n")
+        length = int(header.split(b"Content-Length: ")[1].split(b"\r\n")[0])
+        return json.loads(await self._reader.readexactly(length))
+
+
+@pytest.fixture
+async def wire() -> AsyncIterator[Wire]:
+    """A client of a server at a TCP address."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -53,13 +72,30 @@ async def test_a_client_is_served_over_tcp() -> None:
     try:
         async with asyncio.timeout(60):
             reader, writer = await connected(port)
-            body = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": {"capabilities": {}}})
-            writer.write(f"Content-Length: {len(body)}\r\n\r\n{body}".encode())
-            header = await reader.readuntil(b"\r\n\r\n")
-            length = int(header.split(b"Content-Length: ")[1].split(b"\r\n")[0])
-            answer: dict[str, Any] = json.loads(await reader.readexactly(length))
-        assert answer["result"]["serverInfo"]["name"] == "robbdd-lsp"
-        writer.close()
+            yield Wire(reader, writer)
+            writer.close()
     finally:
         server.kill()
         await server.wait()
+
+
+async def test_a_client_is_served_over_tcp(wire: Wire) -> None:
+    answer = await wire.answer("initialize", {"capabilities": {}})
+    assert answer["result"]["serverInfo"]["name"] == "robbdd-lsp"
+
+
+async def test_a_session_that_begins_with_nonsense_is_told_so_and_may_begin_again(wire: Wire) -> None:
+    unreadable: tuple[object, ...] = (
+        None,
+        [],
+        {},
+        {"capabilities": 5},
+        {"capabilities": {}, "workspaceFolders": "all"},
+    )
+    for params in unreadable:
+        error = (await wire.answer("initialize", params))["error"]
+        assert (error["code"], error["message"]) == (
+            INVALID_PARAMS,
+            "the parameters of initialize are not as the protocol has them",
+        )
+    assert "result" in await wire.answer("initialize", {"capabilities": {}})

@@ -5,12 +5,8 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections import Counter
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
-
-from lsprotocol import types
-from pygls.exceptions import JsonRpcException
 
 from robbdd_tools import __version__
 from robbdd_tools.base.files import path_to_uri, uri_to_path
@@ -20,6 +16,7 @@ from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.result_hover import picture_violations
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_plan import ModelError, RunOptions, RunPlan, plan_run
+from robbdd_tools.lsp.run_progress import RunProgress
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.pictures import NoPictures, render_moments
 from robbdd_tools.run.prepare import prepare_all
@@ -128,6 +125,7 @@ class _Follower:
         self._place = place
         self._simulator = ""
         self._run = run
+        self._progress = RunProgress(ls, run.progress)
         self._plan = plan
         self._results = results
         self._loop = asyncio.get_running_loop()
@@ -139,11 +137,11 @@ class _Follower:
 
     async def follow(self) -> None:
         """Follow the run to its end."""
-        await self._begin_progress()
+        await self._progress.begin()
         try:
             await self._follow()
         finally:
-            self._end_progress()
+            self._progress.end(self._told())
         self._ls.show_results(self._plan.uris)
         await self._ls.show_changed()
         await asyncio.to_thread(self._keep, list(self._ls.results))
@@ -251,29 +249,10 @@ class _Follower:
         self._scenario(message.index).judge(clause.iri, judgement)
         self._ls.show_results(self._plan.uris)
 
-    async def _begin_progress(self) -> None:
-        window = self._ls.client_capabilities.window
-        if window is not None and window.work_done_progress:
-            # A client that refuses is told all the same, as one that cannot be asked.
-            with suppress(JsonRpcException):
-                # pygls leaves the type of the client's (empty) answer open.
-                await self._ls.work_done_progress.create_async(self._run.progress)  # pyright: ignore[reportUnknownMemberType]
-        begin = types.WorkDoneProgressBegin(title="RobBDD run", cancellable=True, percentage=0)
-        self._ls.work_done_progress.begin(self._run.progress, begin)
-
-    def _end_progress(self) -> None:
-        progress = self._ls.work_done_progress
-        progress.end(self._run.progress, types.WorkDoneProgressEnd(message=self._told()))
-        # pygls keeps the tokens for ever, and leaves the type of what belongs to them open.
-        progress.tokens.pop(self._run.progress, None)  # pyright: ignore[reportUnknownMemberType]
-
     def _report_progress(self) -> None:
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
         failed = sum(scenario.verdict is not Outcome.HOLDS for scenario in finished)
-        done, total = len(finished), len(self._results.scenarios)
-        told = f"{done}/{total} scenarios" + (f", {failed} not passed" if failed else "")
-        report = types.WorkDoneProgressReport(message=told, percentage=100 * done // total)
-        self._ls.work_done_progress.report(self._run.progress, report)
+        self._progress.report(len(finished), failed, len(self._results.scenarios))
 
     def _told(self) -> str:
         return f"{self._results.count(Outcome.HOLDS)} of {len(self._results.scenarios)} scenarios hold"

@@ -1,0 +1,49 @@
+"""How far a run is, in the window of a client that shows such things."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.server import RobbddServer
+
+
+class RunProgress:
+    """Work-done progress under a ``token``; nothing is sent to a client that did not announce it or refuses it."""
+
+    def __init__(self, server: RobbddServer, token: str) -> None:
+        self._progress = server.work_done_progress
+        self._token = token
+        window = server.client_capabilities.window
+        self._is_shown = bool(window is not None and window.work_done_progress)
+
+    async def begin(self) -> None:
+        """Ask the client to show the run's progress."""
+        if not self._is_shown:
+            return
+        try:
+            # pygls leaves the type of the client's (empty) answer open.
+            await self._progress.create_async(self._token)  # pyright: ignore[reportUnknownMemberType]
+        except JsonRpcException:
+            self._is_shown = False
+            return
+        begin = types.WorkDoneProgressBegin(title="RobBDD run", cancellable=True, percentage=0)
+        self._progress.begin(self._token, begin)
+
+    def report(self, done: int, failed: int, total: int) -> None:
+        """Tell how many scenarios are finished, and how many of these did not hold."""
+        if self._is_shown:
+            told = f"{done}/{total} scenarios" + (f", {failed} not passed" if failed else "")
+            self._progress.report(
+                self._token, types.WorkDoneProgressReport(message=told, percentage=100 * done // total)
+            )
+
+    def end(self, told: str) -> None:
+        """Take the progress from the client's window, with a last word."""
+        if self._is_shown:
+            self._progress.end(self._token, types.WorkDoneProgressEnd(message=told))
+        # pygls keeps the tokens for ever, and leaves the type of what belongs to them open.
+        self._progress.tokens.pop(self._token, None)  # pyright: ignore[reportUnknownMemberType]

@@ -1,0 +1,75 @@
+"""Progress of runs in the client's window: only where the client announced it, and did not refuse it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import pytest_lsp
+from lsprotocol import types
+from pygls.exceptions import JsonRpcInternalError
+from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
+
+from lsp_kit import Editor, begin_session
+
+Told = list[tuple[str, Any]]
+SHOWN, REFUSED, UNKNOWN = "shown", "refused", "unknown"
+
+
+@pytest.fixture
+def told() -> Told:
+    """What the client was told of progress, as kind and value."""
+    return []
+
+
+# pytest-lsp leaves the types of its decorator open.
+@pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
+    config=ClientServerConfig(server_command=[sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio"]),
+)
+async def client(
+    request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path, told: Told
+) -> AsyncIterator[None]:
+    capabilities = client_capabilities("neovim")
+    capabilities.window = types.WindowClientCapabilities(work_done_progress=request.param != UNKNOWN)
+
+    def create(_: types.WorkDoneProgressCreateParams) -> None:
+        told.append(("create", None))
+        if request.param == REFUSED:
+            raise JsonRpcInternalError("no progress here")
+
+    def hear(params: Any) -> None:
+        told.append((params.value["kind"], params.value))
+
+    def ignore(*_: object, **__: object) -> None:
+        pass
+
+    # In place of what pytest-lsp does by itself, which also takes a refusal for a failure of the client's.
+    lsp_client.report_server_error = ignore
+    for method, handler in {types.WINDOW_WORK_DONE_PROGRESS_CREATE: create, types.PROGRESS: hear}.items():
+        # pygls leaves the type of its table open.
+        lsp_client.protocol.fm.features[method] = handler  # pyright: ignore[reportUnknownMemberType]
+    await begin_session(lsp_client, tmp_path, capabilities, [])
+    yield
+    await lsp_client.shutdown_session()
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize(
+    ("client", "kinds"),
+    [(SHOWN, ["create", "begin", *["report"] * 4, "end"]), (REFUSED, ["create"]), (UNKNOWN, [])],
+    indirect=["client"],
+)
+async def test_a_run_shows_its_progress_where_the_client_shows_such_things(
+    client: LanguageClient, tmp_path: Path, told: Told, kinds: list[str]
+) -> None:
+    editor = Editor(client, tmp_path)
+    editor.open()
+    params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
+    answer: Any = await client.workspace_execute_command_async(params)
+    assert answer["total"] == 4
+    assert [kind for kind, _ in told] == kinds
+    messages = [value["message"] for kind, value in told if kind == "report"]
+    assert messages == [f"{done}/4 scenarios" for done in range(1, 5)][: len(messages)]
