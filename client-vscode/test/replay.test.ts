@@ -8,6 +8,7 @@ import { Clock } from "../webviews/replay/clock";
 import { extent, points } from "../webviews/replay/margins";
 import { Motion } from "../webviews/replay/motion";
 import { lanes, scale, ticks } from "../webviews/replay/scale";
+import { apart } from "../webviews/replay/tags";
 
 const packed = (values: number[], ...shape: number[]): PackedArray => ({
   type: "float32",
@@ -81,6 +82,13 @@ test("ticks are round numbers within their range", () => {
 test("labels that would cover one another get lanes of their own", () => {
   const widths = [0, 10, 25, 70].map((start) => ({ start, width: 30 }));
   assert.deepEqual(lanes(widths), [0, 1, 2, 0]);
+});
+
+test("names in the scene that would cover one another stand above one another", () => {
+  const tag = (x: number, y: number) => ({ x, y, width: 40, height: 10 });
+  assert.deepEqual(apart([tag(0, 50), tag(30, 52), tag(90, 52)]), [42, 52, 52]);
+  assert.deepEqual(apart([tag(0, 38), tag(0, 50), tag(0, 45)]), [30, 50, 40]);
+  assert.deepEqual(apart([tag(0, 30), tag(0, 20)]), [30, 20]);
 });
 
 test("a margin is drawn in the sense of its clause", () => {

@@ -203,7 +203,7 @@ const KEYS: Readonly<Record<string, (event: KeyboardEvent) => void>> = {
 };
 
 document.addEventListener("keydown", (event) => {
-  const own = event.target instanceof HTMLSelectElement || event.target instanceof HTMLInputElement;
+  const own = event.target instanceof HTMLSelectElement;
   const pressed = event.target instanceof HTMLButtonElement && event.key === " ";
   const action = own || pressed || event.ctrlKey || event.metaKey || event.altKey ? undefined : KEYS[event.key];
   if (action !== undefined) {

@@ -21,15 +21,14 @@ export function marginPlot(clause: Clause | undefined, along: Scale, { top, heig
   const [low, high] = extent(parts.flatMap((part) => points(part).map(([, value]) => value)));
   const up = scale(low, high, top + height, top);
   const zero = up(0);
+  const values = ticks(low, high, 3);
   const unit = parts[0]?.unit ?? "";
   return [
     drawn("rect", { class: "below", x: 0, y: zero, width, height: top + height - zero }),
     ...parts.flatMap((part) => judged(part, along, top, height)),
-    ...ticks(low, high, 3).flatMap((value) => [
-      drawn("line", { class: value === 0 ? "zero" : "grid", x1: 0, x2: width, y1: up(value), y2: up(value) }),
-      drawn("text", { class: "value", x: 2, y: up(value) - 2 }, value === 0 ? "0" : signed(value, unit)),
-    ]),
+    ...values.map((value) => drawn("line", { class: value === 0 ? "zero" : "grid", x1: 0, x2: width, y1: up(value), y2: up(value) })),
     ...parts.map((part) => drawn("path", { class: "margin", d: curve(part, along, up) })),
+    ...values.map((value) => drawn("text", { class: "value", x: 2, y: up(value) - 2 }, value === 0 ? "0" : signed(value, unit))),
   ];
 }
 

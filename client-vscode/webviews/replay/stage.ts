@@ -27,6 +27,7 @@ import { type Shape, type Trace, type Triple, type Turn, local } from "../../src
 import { element } from "../shared/elements";
 import { floats, integers } from "./arrays";
 import { Motion } from "./motion";
+import { apart } from "./tags";
 
 /** Half an edge of a plane without end, m. */
 const ENDLESS = 4;
@@ -190,11 +191,16 @@ export class Stage {
     this.requested = false;
     this.renderer.render(this.scene, this.camera);
     const { clientWidth, clientHeight } = this.root;
-    for (const { text, on, at } of this.labels) {
+    const seen = this.labels.flatMap(({ text, on, at }) => {
       const place = on.localToWorld(at.clone()).project(this.camera);
       text.hidden = place.z > 1;
-      text.style.left = `${((place.x + 1) / 2) * clientWidth}px`;
-      text.style.top = `${((1 - place.y) / 2) * clientHeight}px`;
+      const [x, y] = [((place.x + 1) / 2) * clientWidth, ((1 - place.y) / 2) * clientHeight];
+      return text.hidden ? [] : [{ text, x, y, width: text.offsetWidth, height: text.offsetHeight }];
+    });
+    const edges = apart(seen);
+    for (const [index, { text, x }] of seen.entries()) {
+      text.style.left = `${x}px`;
+      text.style.top = `${edges[index]}px`;
     }
   }
 

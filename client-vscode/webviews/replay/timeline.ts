@@ -11,7 +11,7 @@ const AXIS = 20;
 const PLOT = 120;
 const EDGE = 14;
 /** Mean width of a letter of a label, px. */
-const LETTER = 6.6;
+const LETTER = 6.2;
 const EDITED = "This is what was judged; the model reads otherwise by now.";
 const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
 
@@ -49,17 +49,22 @@ export function timeline({ duration, events, clauses }: Trace, actions: Actions)
     const head = AXIS + LANE * (Math.max(0, ...lane) + 1);
     const high = head + clauses.length * ROW + PLOT + EDGE;
     tracks.setAttribute("height", String(high));
-    playhead.setAttribute("y1", "0");
+    playhead.setAttribute("y1", String(AXIS - 5));
     playhead.setAttribute("y2", String(high));
     tracks.replaceChildren(
       ...axis(along, duration, width),
-      ...named.flatMap(({ name, time }, index) => event(name, along(time), placed[index]?.start ?? 0, AXIS + LANE * (lane[index] ?? 0), high)),
+      ...named.map(({ time }, index) => drawn("line", { class: "event", x1: along(time), x2: along(time), y1: AXIS + LANE * (lane[index] ?? 0), y2: high })),
+      // Behind all lines, which would strike through the names of other events.
+      ...named.map(({ name }, index) => drawn("text", { class: "event", x: placed[index]?.start ?? 0, y: AXIS + LANE * ((lane[index] ?? 0) + 1) - 4 }, name)),
       ...clauses.map((clause, index) => windows(clause, along, head + index * ROW, index === chosen, width)),
       ...marginPlot(clauses[chosen], along, { top: head + clauses.length * ROW + 6, height: PLOT, width }),
       playhead,
     );
     const rows = clauses.map((clause, index) => row(clause, index, index === chosen, actions));
+    const held = buttonsOf(labels).findIndex((one) => one === document.activeElement);
     labels.replaceChildren(element("div", { class: "space" }, ""), ...rows, caption(clauses[chosen]));
+    // What had the keyboard keeps it.
+    buttonsOf(labels)[held]?.focus({ preventScroll: true });
     labels.style.setProperty("--head", `${head}px`);
   };
 
@@ -76,18 +81,15 @@ export function timeline({ duration, events, clauses }: Trace, actions: Actions)
   };
 }
 
+function buttonsOf(list: HTMLElement): HTMLButtonElement[] {
+  return [...list.querySelectorAll("button")];
+}
+
 function axis(along: Scale, duration: number, width: number): SVGElement[] {
   return ticks(0, duration, width / 80).flatMap((time) => [
     drawn("line", { class: "tick", x1: along(time), x2: along(time), y1: AXIS - 5, y2: AXIS }),
     drawn("text", { class: "time", x: along(time), y: AXIS - 8, "text-anchor": "middle" }, `${time} s`),
   ]);
-}
-
-function event(name: string, x: number, start: number, y: number, high: number): SVGElement[] {
-  return [
-    drawn("line", { class: "event", x1: x, x2: x, y1: y, y2: high }),
-    drawn("text", { class: "event", x: start, y: y + LANE - 4 }, name),
-  ];
 }
 
 /** The windows of a clause: a bar, or a diamond where one instant is judged; a cross marks the violation. */

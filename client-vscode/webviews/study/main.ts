@@ -8,8 +8,8 @@ import { connect } from "../shared/host";
 import { type Bin, type Cell, type Dimension, cell, clauses, dimensions, histogram } from "./tables";
 
 const BINS = 40;
-const WIDTH = 400;
-const HEIGHT = 48;
+const WIDTH = 300;
+const HEIGHT = 40;
 const NOTHING = "";
 
 const host = connect<FromStudy, StudyState>((message) => {
@@ -158,7 +158,7 @@ function bars(bins: readonly Bin[], clause: JudgedClause): Element {
     }
   }
   picture.append(drawn("line", { class: "zero", x1: x(0), x2: x(0), y1: 0, y2: HEIGHT }), label(low, "start"), label(high, "end"));
-  if (x(0) > 70 && x(0) < WIDTH - 70) {
+  if (x(0) > 60 && x(0) < WIDTH - 60) {
     picture.append(label(0, "middle"));
   }
   return picture;

@@ -1,5 +1,6 @@
 // The graph of a model beside its text: it follows edits and the cursor, leads to the text, and comes back.
 import assert from "node:assert/strict";
+import { contrast } from "./harness/contrast.mjs";
 import { story } from "./harness/story.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
@@ -134,17 +135,4 @@ async function cursorAt(text, behind = 1) {
   assert.ok(line >= 0, text);
   await workbench.command("View: Focus First Editor Group");
   await workbench.goTo(line + 1, lines[line].indexOf(text) + 1 + behind);
-}
-
-/** Contrast of two colours as WCAG 2 defines it. */
-function contrast(one, other) {
-  const light = (colour) => {
-    const [red, green, blue] = colour.match(/[\d.]+/g).map((part) => {
-      const value = Number(part) / 255;
-      return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
-    });
-    return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-  };
-  const [darker, lighter] = [light(one), light(other)].sort((a, b) => a - b);
-  return (lighter + 0.05) / (darker + 0.05);
 }

@@ -8,6 +8,15 @@ export const PATIENCE = 60_000;
 /** Colour schemes and the class that the window wears in each. */
 export const SCHEMES = { dark: "vs-dark", light: "vs" };
 
+/** Settings under which the window wears a theme of high contrast in each scheme, and the classes that it has then. */
+export const HIGH_CONTRAST = {
+  settings: {
+    "workbench.preferredDarkColorTheme": "Default High Contrast",
+    "workbench.preferredLightColorTheme": "Default High Contrast Light",
+  },
+  schemes: { dark: "hc-black", light: "hc-light" },
+};
+
 const GROUP = ".editor-group-container.active";
 const EDITOR = `${GROUP} .editor-instance .monaco-editor`;
 
@@ -48,9 +57,9 @@ export class Workbench {
   }
 
   /** Change the system's colour scheme, which the theme follows, and wait until the window has changed. */
-  async changeScheme(scheme) {
+  async changeScheme(scheme, schemes = SCHEMES) {
     await this.page.emulateMedia({ colorScheme: scheme });
-    await this.page.locator(`.monaco-workbench.${SCHEMES[scheme]}`).waitFor();
+    await this.page.locator(`.monaco-workbench.${schemes[scheme]}`).waitFor();
   }
 
   /** Put the cursor before a character; lines and columns count from 1. */
