@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -88,6 +89,35 @@ def test_laying_out_all_lines_is_laying_out_the_text(path: Path) -> None:
     text = path.read_text(encoding="utf-8").replace("    ", " ").replace(" {", "   {")
     document = Document("file:///x.bdd", 0, text)
     assert edited(text, format_range(document, Span(0, len(text)))) == lay_out(text)
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "\n\n  Event  (ns=t)  a\n\n\n\nEvent (ns=t) b   // c\n  \n\n",
+        "Event  (ns=t) a",
+        "// a\x0bb\u2028c\n  // d\x0ce\nns  t = 'x'\n",
+        "User Story (ns=t) s {\nAs A  'one\n  two'\n}\n\n\n",
+        "{\n| <a> |\n|---|\n| 1\n 2 |\n\n\n}\n",
+        "\ufeffns  t = 'x'\n",
+        "  \n",
+    ],
+)
+def test_every_line_keeps_its_own_ending_when_it_is_laid_out(text: str, ending: str) -> None:
+    document = Document("x", 0, text.replace("\n", ending))
+    found = edited(document.text, format_range(document, Span(0, len(document.text))))
+    assert found.replace("\r\n", "\n").replace("\r", "\n") == lay_out(text)
+    assert set(re.findall(r"\r\n|\r|\n", found)) <= {ending if "\n" in text else "\n"}
+
+
+def test_sound_lines_are_left_alone() -> None:
+    text = MODEL.replace("    var part\n", "  var   part\n\n\n\n").replace("\n", "\r\n")
+    found = format_range(Document("x", 0, text), Span(0, len(text)))
+    assert [(text[edit.span.start : edit.span.end], edit.text) for edit in found] == [
+        ("  var   part", "    var part"),
+        ("\r\n\r\n", ""),
+    ]
 
 
 def test_only_the_selected_lines_are_laid_out() -> None:

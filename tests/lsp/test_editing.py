@@ -84,11 +84,11 @@ async def test_parts_are_laid_out_and_names_linked(editor: Editor) -> None:
             text_document=document, range=types.Range(start=place, end=place), options=options
         )
     )
-    assert [edit.new_text for edit in edits or ()] == ["    var thing\n"]
+    assert [edit.new_text for edit in edits or ()] == ["    var thing"]
     typed = await editor.client.text_document_on_type_formatting_async(
         types.DocumentOnTypeFormattingParams(text_document=document, position=place, ch="}", options=options)
     )
-    assert [edit.new_text for edit in typed or ()] == ["    var thing\n"]
+    assert [edit.new_text for edit in typed or ()] == ["    var thing"]
     linked = await editor.client.text_document_linked_editing_range_async(
         types.LinkedEditingRangeParams(**editor.at("var rob", after=True))
     )

@@ -84,13 +84,12 @@ async def test_the_outline_and_folds_of_a_document(editor: Editor) -> None:
 
 
 async def test_a_document_is_laid_out(editor: Editor) -> None:
-    tidy = editor.text
-    editor.open(tidy.replace("    var thing", "  var   thing"))
+    editor.open(editor.text.replace("    var thing", "  var   thing"))
     document = types.TextDocumentIdentifier(uri=editor.uri)
     options = types.FormattingOptions(tab_size=4, insert_spaces=True)
     params = types.DocumentFormattingParams(text_document=document, options=options)
     edits = await editor.client.text_document_formatting_async(params) or []
-    assert [edit.new_text for edit in edits] == [tidy]
+    assert [edit.new_text for edit in edits] == ["    var thing"]
 
 
 async def test_the_quick_fix_mends_a_misspelt_name(editor: Editor) -> None:

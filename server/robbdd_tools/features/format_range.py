@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
-from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit
 from robbdd_tools.base.document import Span
-from robbdd_tools.features.layout import lay_out
+from robbdd_tools.features.layout import laid_out
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
+    from robbdd_tools.features.layout import LaidOut
 
 _HERE = "here_it_goes_on"
+_ENDING = re.compile(r"\r\n|\r|\n")
 
 
 def format_range(document: Document, within: Span) -> list[Edit]:
@@ -36,7 +38,7 @@ def format_on_type(document: Document, offset: int, typed: str) -> list[Edit]:
     start = document.line_starts[line]
     blank = len(text) - len(text.lstrip())
     marked = document.text[: start + blank] + _HERE + document.text[start + blank :]
-    found = next((entry for entry in lay_out(marked).split("\n") if _HERE in entry), "")
+    found = next((entry.text for entry in laid_out(marked) if _HERE in entry.text), "")
     indent = found[: found.index(_HERE)] if _HERE in found else ""
     if indent.strip() or text[:blank] == indent:
         return []
@@ -44,16 +46,34 @@ def format_on_type(document: Document, offset: int, typed: str) -> list[Edit]:
 
 
 def _changes(document: Document, first: int, last: int) -> Iterator[Edit]:
-    """Yield the differences to the whole text laid out that lie within some lines."""
-    before = document.text.splitlines(keepends=True)
-    after = lay_out(document.text).splitlines(keepends=True)
-    starts = [*document.line_starts, len(document.text)]
-    for kind, low, high, new, end in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
-        if kind == "equal":
-            continue
-        if high - low == end - new:
-            for line in range(max(low, first), min(high, last + 1)):
-                if before[line] != after[new + line - low]:
-                    yield Edit(document.uri, Span(starts[line], starts[line + 1]), after[new + line - low])
-        elif first <= low and high <= last + 1:
-            yield Edit(document.uri, Span(starts[low], starts[high]), "".join(after[new:end]))
+    """Yield the differences to the whole text laid out that lie within some lines; lines keep their own endings."""
+    end = 0
+    for line in laid_out(document.text):
+        yield from _without(document, max(end, first), min(line.first, last + 1))
+        if line.first > last:
+            return
+        if first <= line.first and line.end <= last + 1:
+            yield from _replaced(document, line)
+        end = line.end
+    yield from _without(document, max(end, first), last + 1)
+
+
+def _without(document: Document, first: int, end: int) -> Iterator[Edit]:
+    """Yield the edit that leaves out some lines."""
+    span = Span(_start(document, first), _start(document, end))
+    if span.start < span.end:
+        yield Edit(document.uri, span, "")
+
+
+def _replaced(document: Document, line: LaidOut) -> Iterator[Edit]:
+    start = _start(document, line.first)
+    written = document.text[start : _start(document, line.end)]
+    content = written.rstrip("\r\n")
+    text = line.text if content != written else f"{line.text}\n"
+    if _ENDING.sub("\n", content) != text:
+        ending = _ENDING.search(document.text)
+        yield Edit(document.uri, Span(start, start + len(content)), text.replace("\n", ending[0] if ending else "\n"))
+
+
+def _start(document: Document, line: int) -> int:
+    return document.line_starts[line] if line < len(document.line_starts) else len(document.text)

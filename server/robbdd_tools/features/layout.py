@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import chain
 
 INDENT = "    "
 _STRING = r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'"
@@ -26,16 +27,30 @@ _NAMESPACE = re.compile(r"\(\s*ns\s*=\s*([^\W\d][\w\-]*)\s*\)")
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One line of tokens as it will be written, its comment apart; a row of a table has its cells apart too."""
+    """One line of tokens as it will be written, its comment apart; a row of a table has its cells apart too.
+
+    It comes from the lines ``first`` up to ``end`` (without it) of the text.
+    """
 
     text: str
     comment: str
+    first: int
+    end: int
     cells: tuple[str, ...] = ()
 
     @property
     def written(self) -> str:
         """The line with its comment."""
         return f"{self.text}  {self.comment}" if self.text and self.comment else self.text or self.comment
+
+
+@dataclass(frozen=True, slots=True)
+class LaidOut:
+    """A line as it is written in canonical layout, for the lines ``first`` up to ``end`` (without it) of the text."""
+
+    text: str
+    first: int
+    end: int
 
 
 @dataclass(slots=True)
@@ -69,39 +84,51 @@ class _Levels:
 
 def lay_out(text: str) -> str:
     """Return a text in canonical layout; laying out twice changes nothing more."""
+    return "".join(f"{line.text}\n" for line in laid_out(text))
+
+
+def laid_out(text: str) -> Iterator[LaidOut]:
+    """Yield the lines of a text in canonical layout; of several blank lines the first stays, at the ends none."""
+    begun = False
+    blank: LaidOut | None = None
+    for line in _indented(text):
+        if not line.text:
+            blank = blank or line
+            continue
+        if begun and blank is not None:
+            yield blank
+        yield line
+        begun, blank = True, None
+
+
+def _indented(text: str) -> Iterator[LaidOut]:
     levels = _Levels()
-    written: list[str] = []
     block: list[Line] = []
-    for line in [*_rows(_lines(text)), None]:
+    for line in chain(_rows(_lines(text)), (None,)):
         if line is not None and line.cells:
             block.append(line)
             continue
-        if block:
-            written += [f"{levels.indentation('|')}{row}" for row in _aligned(block)]
-            block = []
-        if line is None:
-            break
-        if not line.written:
-            if written and written[-1]:
-                written.append("")
-            continue
-        written.append(levels.indentation(line.text) + line.written)
-        levels.pass_over(line.text)
-    while written and not written[-1]:
-        written.pop()
-    return "\n".join(written) + "\n" if written else ""
+        for row, aligned in zip(block, _aligned(block) if block else (), strict=True):
+            yield LaidOut(levels.indentation("|") + aligned, row.first, row.end)
+        block = []
+        if line is not None:
+            indentation = levels.indentation(line.text) if line.written else ""
+            yield LaidOut(indentation + line.written, line.first, line.end)
+            levels.pass_over(line.text)
 
 
 def _lines(text: str) -> Iterator[Line]:
     """Yield the lines of a text with single spaces; a string keeps its own line breaks."""
     pieces: list[str] = []
     comment = ""
+    first = number = 0
     end = 0
     for match in _TOKEN.finditer(text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")):
         gap = match.string[end : match.start()]
         for _ in range(gap.count("\n")):
-            yield _line(pieces, comment)
+            yield _line(pieces, comment, first, number + 1)
             pieces, comment = [], ""
+            first = number = number + 1
         if pieces and gap:
             pieces.append(" ")
         if match["comment"] is not None:
@@ -110,11 +137,12 @@ def _lines(text: str) -> Iterator[Line]:
             pieces.append("<" + match["reference"][1:-1].strip() + ">")
         else:
             pieces.append(match[0])
+        number += match[0].count("\n")
         end = match.end()
-    yield _line(pieces, comment)
+    yield _line(pieces, comment, first, number + 1)
 
 
-def _line(pieces: list[str], comment: str) -> Line:
+def _line(pieces: list[str], comment: str, first: int, end: int) -> Line:
     spaced: list[str] = []
     for index, piece in enumerate(pieces):
         following = pieces[index + 1] if index + 1 < len(pieces) else ""
@@ -124,7 +152,7 @@ def _line(pieces: list[str], comment: str) -> Line:
         if piece == "," and following not in ("", " ", ",", ":"):
             spaced.append(" ")
     text = _NAMESPACE.sub(r"(ns=\1)", "".join(spaced).strip())
-    return Line(text, comment)
+    return Line(text, comment, first, end)
 
 
 def _rows(lines: Iterator[Line]) -> Iterator[Line]:
@@ -132,7 +160,7 @@ def _rows(lines: Iterator[Line]) -> Iterator[Line]:
     row: Line | None = None
     for line in lines:
         if row is not None and not row.comment and line.text.endswith("|") and not line.text.startswith("|"):
-            row = Line(f"{row.text} {line.text}", line.comment)
+            row = Line(f"{row.text} {line.text}", line.comment, row.first, line.end)
             continue
         if row is not None:
             yield _with_cells(row)
@@ -152,7 +180,8 @@ def _with_cells(row: Line) -> Line:
             cells.append("")
         else:
             cells[-1] += match[0]
-    return Line(row.text, row.comment, tuple(cell.strip() for cell in cells[1:-1]) if row.text.endswith("|") else ())
+    inner = tuple(cell.strip() for cell in cells[1:-1]) if row.text.endswith("|") else ()
+    return replace(row, cells=inner)
 
 
 def _aligned(block: list[Line]) -> Iterator[str]:

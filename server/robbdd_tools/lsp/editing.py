@@ -10,7 +10,6 @@ from lsprotocol import types
 from robbdd_tools.base.diagnostic import Edit, Fix
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.features.format_range import format_on_type, format_range
-from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.refactor_clauses import extracted_clauses
 from robbdd_tools.features.refactor_declarations import NewFile, modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
@@ -55,11 +54,7 @@ def _register_formatting(server: RobbddServer) -> None:
     async def formatting(ls: RobbddServer, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
         def find(snapshot: Snapshot) -> list[types.TextEdit]:
             document = document_of(snapshot, params.text_document.uri)
-            laid_out = lay_out(document.text)
-            if laid_out == document.text:
-                return []
-            whole = ls.convert.range(document, Span(0, len(document.text)))
-            return [types.TextEdit(range=whole, new_text=laid_out)]
+            return _edits(ls, document, format_range(document, Span(0, len(document.text))))
 
         return await ls.analyse(find)
 
