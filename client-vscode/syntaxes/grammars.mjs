@@ -98,6 +98,7 @@ const bdd = grammar("RobBDD", "source.robbdd", [
       3: { name: "keyword.other.holds.robbdd" },
     },
   },
+  { match: String.raw`(?<![\p{L}\p{N}_-])holds(?=\s*\()`, name: "keyword.other.holds.robbdd" },
   predicates,
   {
     match: String.raw`(?<![\p{L}\p{N}_-])(has\s+config)\s+(${NAME})`,

@@ -286,7 +286,7 @@ function expand(body: string): string {
     .replaceAll(/\$\{\d+\|([^,|]*)[^}]*\}/g, "$1")
     .replaceAll(/\$\{\d+:([^{}]*)\}/g, "$1")
     .replaceAll("$0", "")
-    .replaceAll(/\$\{\d+\}/g, "name");
+    .replaceAll(/\$\{\d+\}|\$[1-9]/g, "name");
 }
 
 /** Phrases such as `<object> is located at <workspace>` of one folder of the catalog. */
