@@ -41,7 +41,7 @@ def written(editor: Editor, place: Any) -> str:
 @CLIENTS
 async def test_each_level_is_told_with_its_places(editor: Editor) -> None:
     files = await tests(editor)
-    assert files["files"] == [editor.uri]
+    assert files["files"] == [editor.uri, f"{editor.uri}x"]
     editor.open("// 😀\n" + with_table(editor))
     answer = await tests(editor, uri=editor.uri)
     assert [uri.rsplit("/", 1)[-1] for uri in answer["files"]] == ["pickplace.bdd", "bench.scene"]

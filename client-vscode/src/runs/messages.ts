@@ -20,6 +20,8 @@ export interface ScenarioStarted {
   readonly variant?: string;
   /** Counts the scenarios of the variant, from 1. */
   readonly variation?: number;
+  /** IRI of the execution that runs it, where there is one. */
+  readonly execution?: string | null;
   /** The name of the variant in the text. */
   readonly source?: Place | null;
 }

@@ -3,8 +3,9 @@ import type { ClauseJudged, ClauseStarted, RunNotification, ScenarioStarted } fr
 import { RunReport } from "../runs/report";
 import type { Item } from "./items";
 import type { ListedTest, Place } from "./listing";
-import { type Failure, outcomeOf } from "./outcomes";
+import { type Failure, type Outcome, outcomeOf } from "./outcomes";
 import type { TestTree } from "./tree";
+import { Worst } from "./worst";
 
 /** A run as the editor shows it; it ignores what is said after its end. */
 export interface Sink<I> {
@@ -26,6 +27,7 @@ interface Begun<I> {
 /** Follows one run of the server. Messages are taken in their order, though a file may have to be read for one. */
 export class RunFollower<I extends Item<I>> {
   private readonly scenarios = new Map<number, Begun<I>>();
+  private readonly worst = new Worst<I>();
   private readonly report: RunReport;
   private pending: Promise<void> = Promise.resolve();
 
@@ -83,11 +85,14 @@ export class RunFollower<I extends Item<I>> {
     if (iri === undefined || variation === undefined) {
       return;
     }
-    const uri = message.source?.uri ?? model;
-    if (this.tree.variant(uri, iri) === undefined) {
+    const execution = message.execution ?? undefined;
+    // An execution stands in the model that is run, a variant maybe in one that it imports.
+    const uri = execution === undefined ? (message.source?.uri ?? model) : model;
+    const source = { variant: iri, execution };
+    if (this.tree.source(uri, source) === undefined) {
       await this.tree.load(uri);
     }
-    const variant = this.tree.variant(uri, iri);
+    const variant = this.tree.source(uri, source);
     if (variant !== undefined) {
       const item = this.tree.scenario(variant, variation, message.values);
       this.scenarios.set(message.index, { item, values: message.values, since: instant });
@@ -99,7 +104,10 @@ export class RunFollower<I extends Item<I>> {
     const item = scenario && this.clause(scenario, message, message.sentence ?? "");
     if (scenario !== undefined && item !== undefined) {
       scenario.since = instant;
-      this.sink.started(item);
+      // A repetition leaves the verdict of the one before where it is.
+      if (!this.worst.has(item)) {
+        this.sink.started(item);
+      }
     }
   }
 
@@ -109,18 +117,10 @@ export class RunFollower<I extends Item<I>> {
     if (scenario === undefined || item === undefined || message.cancelled === true) {
       return;
     }
-    const outcome = outcomeOf(message, scenario.values);
+    const outcome = this.worst.add(item, outcomeOf(message, scenario.values), message.robustness);
     this.tree.note(item, outcome.note);
-    const place = message.source ?? null;
-    const duration = instant - scenario.since;
+    showOutcome(this.sink, item, outcome, message.source ?? null, instant - scenario.since);
     scenario.since = instant;
-    if (outcome.failure === undefined) {
-      this.sink.passed(item, duration);
-    } else if (outcome.state === "failed") {
-      this.sink.failed(item, outcome.failure, place, duration);
-    } else {
-      this.sink.errored(item, outcome.failure, place, duration);
-    }
   }
 
   private clause(scenario: Begun<I>, message: ClauseStarted | ClauseJudged, sentence: string): I | undefined {
@@ -137,5 +137,21 @@ export class RunFollower<I extends Item<I>> {
       tests: [],
     };
     return this.tree.clause(scenario.item, message.position, listed);
+  }
+}
+
+export function showOutcome<I>(
+  sink: Sink<I>,
+  item: I,
+  { state, failure }: Outcome,
+  place: Place | null,
+  duration: number | undefined,
+): void {
+  if (failure === undefined) {
+    sink.passed(item, duration);
+  } else if (state === "failed") {
+    sink.failed(item, failure, place, duration);
+  } else {
+    sink.errored(item, failure, place, duration);
   }
 }

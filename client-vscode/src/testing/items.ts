@@ -27,17 +27,21 @@ export interface Factory<I> {
   setProblem(item: I, problem: string | undefined): void;
 }
 
+/** What makes scenarios: a variant as it is, or as an execution of it says; both by IRI. */
+export interface Source {
+  readonly variant: string;
+  readonly execution?: string | undefined;
+}
+
 /** What an item stands for; `uri` is the model that is run. */
-export interface Facts {
+export interface Facts extends Partial<Source> {
   readonly kind: Kind;
   readonly uri: string;
   readonly place: Place | null;
-  /** IRI of the variant, but of stories. */
-  readonly variant?: string;
-  /** Of a variant: how many scenarios it makes, where known. */
+  /** Of a variant or an execution: how many scenarios it makes, where known. */
   readonly count?: number | undefined;
   readonly digest?: string | undefined;
-  /** Of a variant: its values can be told without asking long, and are shown beside the text. */
+  /** Of these: its values can be told without asking long, and are shown beside the text. */
   readonly small?: boolean;
   readonly variation?: Place | null;
   /** Of a scenario and its clauses. */

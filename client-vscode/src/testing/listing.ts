@@ -10,21 +10,23 @@ export interface Place {
   };
 }
 
-export type Kind = "story" | "variant" | "scenario" | "clause";
+export type Kind = "file" | "story" | "variant" | "execution" | "scenario" | "clause";
 
 export interface ListedTest {
   readonly kind: Kind;
-  /** IRI; of a scenario its number. */
+  /** IRI; of a scenario its number, of a file its address. */
   readonly id: string;
   readonly name: string;
   readonly detail: string;
   readonly place: Place | null;
   readonly tests: readonly ListedTest[];
-  /** Of a variant: how many scenarios it makes, where that is known. */
+  /** Of an execution: IRI of the variant that it executes. */
+  readonly variant?: string;
+  /** Of a variant or an execution: how many scenarios it makes, where that is known. */
   readonly count?: number | null;
-  /** Of a variant: what lists its values. */
+  /** Of a variant or an execution: what lists its values. */
   readonly variation?: Place | null;
-  /** Of a variant: tells whether its text or that of its template has changed. */
+  /** Of a variant or an execution: tells whether its text, or that of what it names, has changed. */
   readonly digest?: string;
   /** Of a scenario. */
   readonly number?: number;
@@ -50,7 +52,7 @@ export interface Question {
 
 export type Ask = (question: Question) => Promise<Listing | undefined>;
 
-const KINDS: ReadonlySet<unknown> = new Set<Kind>(["story", "variant", "scenario", "clause"]);
+const KINDS: ReadonlySet<unknown> = new Set<Kind>(["file", "story", "variant", "execution", "scenario", "clause"]);
 
 /** Whether an answer is one that this extension understands. */
 export function isListing(value: unknown): value is Listing {

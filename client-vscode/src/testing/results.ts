@@ -1,10 +1,11 @@
 // What runs before or elsewhere have found, shown as a finished run.
 import { isRecord } from "../values";
-import type { Sink } from "./follower";
+import { type Sink, showOutcome } from "./follower";
 import type { Item } from "./items";
 import type { ListedTest } from "./listing";
-import { type Failure, NO_LESS } from "./outcomes";
+import { type Failure, NO_LESS, type Outcome } from "./outcomes";
 import type { TestTree } from "./tree";
+import { Worst } from "./worst";
 
 export interface FoundClause {
   /** IRI, or the number of the clause in its scenario from 0; one of both is told. */
@@ -21,6 +22,8 @@ export interface FoundClause {
 export interface FoundScenario {
   readonly uri: string;
   readonly variant: string;
+  /** IRI of the execution that it was run by, where there is one. */
+  readonly execution?: string | null;
   readonly variation: number;
   readonly values: string;
   readonly seconds: number | null;
@@ -48,6 +51,7 @@ export async function showResults<I extends Item<I>>(
   sink: Sink<I>,
 ): Promise<I[]> {
   const outdated: I[] = [];
+  const worst = new Worst<I>();
   for (const found of scenarios) {
     const variant = await listed(tree, found);
     if (variant === undefined) {
@@ -58,7 +62,10 @@ export async function showResults<I extends Item<I>>(
     for (const clause of found.clauses) {
       for (const item of itemsOf(tree, scenario, clause)) {
         // Only the whole execution was timed: each clause takes its share, so that the sum is right.
-        show(tree, sink, item, clause, found.values, whole === undefined ? undefined : whole / found.clauses.length);
+        const share = whole === undefined ? undefined : whole / found.clauses.length;
+        const outcome = worst.add(item, outcomeOf(clause, found.values));
+        tree.note(item, outcome.note);
+        showOutcome(sink, item, outcome, tree.about(item)?.place ?? null, share);
         if (found.stale || clause.stale) {
           outdated.push(item);
         }
@@ -73,7 +80,7 @@ async function listed<I extends Item<I>>(tree: TestTree<I>, found: FoundScenario
   if (!tree.knows(found.uri)) {
     await tree.load(found.uri);
   }
-  const variant = tree.variant(found.uri, found.variant);
+  const variant = tree.source(found.uri, { variant: found.variant, execution: found.execution ?? undefined });
   if (variant?.children.size === 0) {
     await tree.expand(variant);
   }
@@ -95,27 +102,15 @@ function itemsOf<I extends Item<I>>(tree: TestTree<I>, scenario: I, found: Found
   return [tree.clause(scenario, found.position, written)];
 }
 
-function show<I extends Item<I>>(
-  tree: TestTree<I>,
-  sink: Sink<I>,
-  item: I,
-  found: FoundClause,
-  values: string,
-  duration: number | undefined,
-): void {
-  tree.note(item, found.margin);
+function outcomeOf(found: FoundClause, values: string): Outcome {
   const text = `${found.said}${values === "" ? "" : ` [${values}]`}`;
-  const place = tree.about(item)?.place ?? null;
   switch (found.verdict) {
     case "holds":
-      sink.passed(item, duration);
-      break;
+      return { state: "passed", note: found.margin };
     case "violated":
-      sink.failed(item, { text, ...compared(found) }, place, duration);
-      break;
+      return { state: "failed", note: found.margin, failure: { text, ...compared(found) } };
     case "unknown":
-      sink.errored(item, { text }, place, duration);
-      break;
+      return { state: "errored", note: found.margin, failure: { text } };
   }
 }
 

@@ -1,9 +1,8 @@
 // What of a tree of tests is to be run, in the words of the server's command.
-import type { Facts, Item, Items } from "./items";
+import type { Facts, Item, Items, Source } from "./items";
 
-/** Scenarios of one variant by their numbers; all where none are named. */
-export interface Wanted {
-  readonly variant: string;
+/** Scenarios of one variant, or of one execution of it, by their numbers; all where none are named. */
+export interface Wanted extends Source {
   readonly variations?: readonly number[];
 }
 
@@ -14,6 +13,9 @@ export interface FileRun {
 }
 
 interface Numbers {
+  readonly source: Source;
+  /** How many there are. */
+  count: number;
   whole: boolean;
   readonly numbers: Set<number>;
 }
@@ -22,7 +24,7 @@ interface Numbers {
  * The runs that execute the included items without the excluded ones, file by file.
  *
  * A clause is judged with its scenario, so that it stands for the scenario; excluded alone it changes nothing.
- * `scenarios` lists the numbers of a variant that is excluded in part.
+ * Of a variant that is excluded in part the rest is named by its numbers.
  */
 export function fileRuns<I extends Item<I>>(
   roots: Items<I>,
@@ -31,7 +33,6 @@ export function fileRuns<I extends Item<I>>(
   exclude: readonly I[],
 ): FileRun[] {
   const wanted = new Map<string, Map<string, Numbers>>();
-  const counts = new Map<string, number>();
   const excluded = new Set(exclude);
   for (const item of include ?? [...roots].map(([, root]) => root)) {
     add(item);
@@ -39,12 +40,12 @@ export function fileRuns<I extends Item<I>>(
   for (const item of exclude) {
     remove(item);
   }
-  return [...wanted].flatMap(([uri, variants]) => {
-    const only = [...variants].flatMap(([variant, { whole, numbers }]) => {
+  return [...wanted].flatMap(([uri, sources]) => {
+    const only = [...sources.values()].flatMap(({ source, whole, numbers }) => {
       if (whole) {
-        return [{ variant }];
+        return [source];
       }
-      return numbers.size === 0 ? [] : [{ variant, variations: [...numbers].sort((a, b) => a - b) }];
+      return numbers.size === 0 ? [] : [{ ...source, variations: [...numbers].sort((a, b) => a - b) }];
     });
     return only.length === 0 ? [] : [{ uri, only }];
   });
@@ -54,43 +55,50 @@ export function fileRuns<I extends Item<I>>(
     if (facts === undefined || excluded.has(item)) {
       return;
     }
-    if (facts.kind === "story") {
+    if (facts.variant === undefined) {
       for (const [, child] of item.children) {
         add(child);
       }
       return;
     }
-    const found = numbersOf(facts);
-    if (facts.kind === "variant") {
+    const found = numbersOf(facts.uri, sourceOf(facts));
+    if (facts.number === undefined) {
       found.whole = true;
-      counts.set(facts.variant ?? "", facts.count ?? 0);
+      found.count = facts.count ?? 0;
     } else {
-      found.numbers.add(facts.number ?? 0);
+      found.numbers.add(facts.number);
     }
   }
 
   function remove(item: I): void {
     const facts = about(item);
-    const found = facts === undefined ? undefined : wanted.get(facts.uri)?.get(facts.variant ?? "");
+    const found = facts === undefined ? undefined : wanted.get(facts.uri)?.get(keyOf(sourceOf(facts)));
     if (facts?.number === undefined || facts.kind !== "scenario" || found === undefined) {
       return;
     }
     if (found.whole) {
       // What is left of a whole variant has to be named.
       found.whole = false;
-      const count = counts.get(facts.variant ?? "") ?? 0;
-      for (let number = 1; number <= count; number += 1) {
+      for (let number = 1; number <= found.count; number += 1) {
         found.numbers.add(number);
       }
     }
     found.numbers.delete(facts.number);
   }
 
-  function numbersOf(facts: Facts): Numbers {
-    const variants = wanted.get(facts.uri) ?? new Map<string, Numbers>();
-    wanted.set(facts.uri, variants);
-    const found = variants.get(facts.variant ?? "") ?? { whole: false, numbers: new Set<number>() };
-    variants.set(facts.variant ?? "", found);
+  function numbersOf(uri: string, source: Source): Numbers {
+    const sources = wanted.get(uri) ?? new Map<string, Numbers>();
+    wanted.set(uri, sources);
+    const found = sources.get(keyOf(source)) ?? { source, count: 0, whole: false, numbers: new Set<number>() };
+    sources.set(keyOf(source), found);
     return found;
   }
+}
+
+function sourceOf({ variant, execution }: Facts): Source {
+  return { variant: variant ?? "", ...(execution === undefined ? {} : { execution }) };
+}
+
+function keyOf({ variant, execution }: Source): string {
+  return execution ?? variant;
 }

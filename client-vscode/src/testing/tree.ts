@@ -1,10 +1,8 @@
-// The tree of tests: stories, variants, scenarios, clauses; it grows as it is asked for and follows the text.
-import type { Facts, Factory, Item, Items } from "./items";
+// The tree of tests: stories, variants, executions, scenarios, clauses; it grows as it is asked for and follows the text.
+import { described, factsOf, hasChanged, itemId, labelOf, makesScenarios, sameSource, sortOf } from "./facts";
+import type { Facts, Factory, Item, Items, Source } from "./items";
 import type { Ask, ListedTest, Listing, Place } from "./listing";
 import type { Wanted } from "./selection";
-
-/** Scenarios of a variant that are listed before anybody asks, so that rows and clauses have icons of their own. */
-export const EAGER = 100;
 
 export class TestTree<I extends Item<I>> {
   private readonly facts = new WeakMap<I, Facts>();
@@ -59,7 +57,7 @@ export class TestTree<I extends Item<I>> {
     const facts = item === undefined ? undefined : this.facts.get(item);
     if (item === undefined || facts === undefined) {
       await this.discover();
-    } else if (facts.kind === "variant") {
+    } else if (makesScenarios(facts)) {
       await this.expandVariant(item, facts);
     }
   }
@@ -88,19 +86,20 @@ export class TestTree<I extends Item<I>> {
     this.drop(this.roots, (facts) => facts.uri === uri, new Set());
   }
 
-  variant(uri: string, iri: string): I | undefined {
-    return this.variantsOf(uri).find((item) => this.facts.get(item)?.variant === iri);
+  /** The item of a variant, or of an execution of one. */
+  source(uri: string, source: Source): I | undefined {
+    return this.variantsOf(uri).find((item) => sameSource(this.facts.get(item) ?? {}, source));
   }
 
   /** The listed scenarios that are wanted of a variant. */
-  scenariosOf(uri: string, { variant, variations }: Wanted): I[] {
-    const scenarios = [...(this.variant(uri, variant)?.children ?? [])].map(([, item]) => item);
+  scenariosOf(uri: string, { variations, ...source }: Wanted): I[] {
+    const scenarios = [...(this.source(uri, source)?.children ?? [])].map(([, item]) => item);
     return scenarios.filter((item) => variations?.includes(this.facts.get(item)?.number ?? 0) ?? true);
   }
 
   /** What is wanted of a variant: the variant as a whole, or those of its scenarios. */
   wanted(uri: string, wanted: Wanted): I[] {
-    const whole = this.variant(uri, wanted.variant);
+    const whole = this.source(uri, wanted);
     return wanted.variations === undefined && whole !== undefined ? [whole] : this.scenariosOf(uri, wanted);
   }
 
@@ -175,7 +174,7 @@ export class TestTree<I extends Item<I>> {
 
   private async expandVariant(item: I, facts: Facts): Promise<void> {
     const variant = facts.variant ?? "";
-    await this.once(`${facts.uri} ${variant}`, async () => {
+    await this.once(`${facts.uri} ${facts.execution ?? variant}`, async () => {
       item.busy = true;
       try {
         const found = await this.ask({ uri: facts.uri, variant });
@@ -213,7 +212,7 @@ export class TestTree<I extends Item<I>> {
     const before = item === undefined ? undefined : this.facts.get(item);
     const facts = factsOf(uri, owner, listed);
     if (item === undefined) {
-      item = this.factory.create(id, labelOf(listed), listed.place?.uri ?? uri);
+      item = this.factory.create(id, labelOf(listed), owner?.execution === undefined ? (listed.place?.uri ?? uri) : uri);
       this.facts.set(item, facts);
       into.add(item);
     } else if (before !== undefined && hasChanged(before, facts)) {
@@ -224,9 +223,17 @@ export class TestTree<I extends Item<I>> {
     item.label = labelOf(listed);
     item.description = described(this.notes.get(item) ?? "", facts.detail);
     item.sortText = sortOf(listed, position);
-    item.canResolveChildren = listed.kind === "variant";
-    this.factory.setPlace(item, facts.place ?? (listed.kind === "scenario" ? (owner?.variation ?? null) : null));
+    item.canResolveChildren = makesScenarios(facts);
+    this.factory.setPlace(item, this.placeOf(facts, owner));
     return item;
+  }
+
+  /** Where an item is shown: what a clause or a row offers to run is the variant as it is, not its executions. */
+  private placeOf({ kind, place }: Facts, owner: Facts | undefined): Place | null {
+    if (owner?.execution !== undefined) {
+      return null;
+    }
+    return place ?? (kind === "scenario" ? (owner?.variation ?? null) : null);
   }
 
   private drop(from: Items<I>, among: (facts: Facts) => boolean, kept: ReadonlySet<string>): void {
@@ -249,57 +256,4 @@ export class TestTree<I extends Item<I>> {
     this.loading.set(key, next);
     return next;
   }
-}
-
-function described(note: string, detail: string): string {
-  return [note, detail].filter((part) => part !== "").join(" · ");
-}
-
-function factsOf(uri: string, owner: Facts | undefined, listed: ListedTest): Facts {
-  const common = { kind: listed.kind, uri, place: listed.place, detail: listed.detail };
-  switch (listed.kind) {
-    case "story":
-      return { ...common, detail: described(decodeURIComponent(uri.split("/").at(-1) ?? ""), listed.detail) };
-    case "variant": {
-      const count = listed.count ?? undefined;
-      const small = count !== undefined && count <= EAGER;
-      const variation: Place | null = listed.variation ?? null;
-      return { ...common, variant: listed.id, count, small, variation, digest: listed.digest };
-    }
-    case "scenario":
-      return { ...common, variant: owner?.variant ?? "", number: listed.number ?? Number(listed.id) };
-    case "clause":
-      return { ...common, variant: owner?.variant ?? "", number: owner?.number ?? 0, clause: listed.id };
-  }
-}
-
-/** Whether results that an item had are about another text: its words have changed, or those that it stands for. */
-function hasChanged(before: Facts, now: Facts): boolean {
-  return now.kind === "variant"
-    ? before.digest !== now.digest
-    : now.kind !== "story" && before.clause !== now.clause;
-}
-
-function itemId(uri: string, listed: ListedTest, position?: number): string {
-  switch (listed.kind) {
-    case "story":
-      return `${uri} ${listed.id}`;
-    case "variant":
-      return listed.id;
-    case "scenario":
-      return listed.id;
-    case "clause":
-      return String(position);
-  }
-}
-
-function labelOf(listed: ListedTest): string {
-  const role = listed.role ?? "";
-  return role === "" ? listed.name : `${role.charAt(0).toUpperCase()}${role.slice(1)} ${listed.name}`;
-}
-
-/** Everything stands in the order of the text: places of stories and variants, numbers of the others. */
-function sortOf(listed: ListedTest, position?: number): string {
-  const number = position ?? listed.number ?? listed.place?.range.start.line ?? 0;
-  return String(number).padStart(9, "0");
 }

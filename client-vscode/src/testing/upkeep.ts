@@ -2,8 +2,10 @@
 import * as vscode from "vscode";
 import type { TestTree } from "./tree";
 
-const LANGUAGE = "robbdd";
-const FILES = "**/*.{bdd,scene}";
+/** Languages of the files that tests stand in, and the endings of these. */
+const LANGUAGES = ["robbdd", "robbdd-bddx"];
+const ENDINGS = [".bdd", ".bddx"];
+const FILES = "**/*.{bdd,scene,scenex,ktree,bddx}";
 /** Milliseconds without a keystroke after which the tree follows the text. */
 const PAUSE = 400;
 
@@ -69,7 +71,7 @@ export class Upkeep implements vscode.Disposable {
   async follow(uri: string): Promise<void> {
     const shown = shownFiles();
     const affected = new Set(this.tree.dependents(uri));
-    if (uri.endsWith(".bdd") && (this.watches || shown.includes(uri)) && (await exists(uri))) {
+    if (ENDINGS.some((ending) => uri.endsWith(ending)) && (this.watches || shown.includes(uri)) && (await exists(uri))) {
       affected.add(uri);
     }
     for (const file of affected) {
@@ -104,7 +106,7 @@ export class Upkeep implements vscode.Disposable {
 
 function shownFiles(): string[] {
   const documents = vscode.window.visibleTextEditors.map(({ document }) => document);
-  return documents.filter((document) => document.languageId === LANGUAGE).map(({ uri }) => uri.toString());
+  return documents.filter(({ languageId }) => LANGUAGES.includes(languageId)).map(({ uri }) => uri.toString());
 }
 
 async function exists(uri: string): Promise<boolean> {

@@ -10,11 +10,13 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.plain import from_plain
+from robbdd_tools.features.executions import executions_of, what_matters
 from robbdd_tools.names.clauses import clauses_in
 from robbdd_tools.names.variants import variants_of
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
+    from robbdd_tools.features.executions import PlacedExecution
     from robbdd_tools.names.analysis import Definition
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.variants import PlacedVariant
@@ -48,6 +50,8 @@ class JudgedScenario:
 
     ``digest`` is that of the text of the variant and its template, ``row`` that of its row in a table (empty without).
     ``run`` is the number of the stored run that has it as scenario number ``index``; 0 where none is known.
+    ``execution`` is the IRI of the ``.bddx`` execution that it was run by and ``execution_digest`` that of its text,
+    both empty for a scenario that was run as it is.
     """
 
     model: str
@@ -60,6 +64,8 @@ class JudgedScenario:
     finished: bool = False
     run: int = 0
     index: int = 0
+    execution: str = ""
+    execution_digest: str = ""
 
     @property
     def outcome(self) -> str:
@@ -111,20 +117,29 @@ class Results:
         for scenario in scenarios:
             self._scenarios.setdefault((scenario.variant, scenario.variation), []).append(scenario)
 
-    def drop(self, variant: str, variation: int) -> None:
-        """Forget a scenario."""
-        self._scenarios.pop((variant, variation), None)
+    def drop(self, variant: str, variation: int, execution: str = "") -> None:
+        """Forget a scenario; where an execution is to tell of it again, those of others tell on."""
+        known = self._scenarios.pop((variant, variation), [])
+        self.add(one for one in known if execution and one.execution not in ("", execution))
+
+    def discard(self, scenario: JudgedScenario) -> None:
+        """Forget one result."""
+        known = self._scenarios.pop((scenario.variant, scenario.variation), [])
+        self.add(one for one in known if one is not scenario)
 
     def drop_others(self, variant: str, kept: Collection[int]) -> None:
         """Forget the scenarios of a variant that it does not have any more."""
         for key in [key for key in self._scenarios if key[0] == variant and key[1] not in kept]:
             del self._scenarios[key]
 
-    def drop_deleted(self, model: str, variants: Collection[str]) -> None:
-        """Forget what is known of variants that a model does not have any more."""
+    def drop_deleted(self, model: str, variants: Collection[str], executions: Collection[str] = ()) -> None:
+        """Forget what is known of variants and executions that a model does not have any more."""
         gone = {entry.variant for entry in self if entry.model == model} - set(variants)
         for key in [key for key in self._scenarios if key[0] in gone]:
             del self._scenarios[key]
+        known = {"", *executions}
+        for entry in [entry for entry in self if entry.model == model and entry.execution not in known]:
+            self.discard(entry)
 
     def findings(self) -> Findings:
         """Return what is known now."""
@@ -142,11 +157,15 @@ class Results:
 
 @dataclass(frozen=True, slots=True)
 class Digests:
-    """What the text says that a run is about: of clauses and variants by IRI, of rows by variant and number."""
+    """What the text says that a run is about: of clauses and variants by IRI, of rows by variant and number.
+
+    ``executions`` are those that the file itself declares, by IRI.
+    """
 
     clauses: Mapping[str, str]
     variants: Mapping[str, str]
     rows: Mapping[tuple[str, int], str]
+    executions: Mapping[str, str]
 
 
 def digests_of(snapshot: Snapshot, uri: str) -> Digests:
@@ -161,7 +180,8 @@ def digests_of(snapshot: Snapshot, uri: str) -> Digests:
             variants[variant.iri] = variant_digest(snapshot, variant)
             for number, row in enumerate(variant.rows, start=1):
                 rows[variant.iri, number] = digest(snapshot, name, row)
-    return Digests(clauses, variants, rows)
+    executions = {one.iri: execution_digest(snapshot, one) for one in executions_of(snapshot, uri)}
+    return Digests(clauses, variants, rows, executions)
 
 
 def digest(snapshot: Snapshot, uri: str, span: Span) -> str:
@@ -174,6 +194,12 @@ def variant_digest(snapshot: Snapshot, variant: PlacedVariant) -> str:
     """Return the digest of a variant and its template."""
     parts: tuple[Definition | None, ...] = (variant.definition, variant.template)
     return " ".join(digest(snapshot, part.uri, part.extent) for part in parts if part is not None)
+
+
+def execution_digest(snapshot: Snapshot, execution: PlacedExecution) -> str:
+    """Return the digest of an execution, of all that says how it is done, and of its variant."""
+    own = (digest(snapshot, site.uri, site.placed.span) for site in what_matters(execution))
+    return " ".join((*own, variant_digest(snapshot, execution.variant)))
 
 
 @lru_cache(maxsize=20_000)

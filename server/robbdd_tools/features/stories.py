@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from robbdd_tools.names.analysis import Definition
     from robbdd_tools.names.project import Snapshot
 
-_ENDING = ".bdd"
-_STORY = re.compile(r"\bUser\s+Story\b")
+_TOLD = {".bdd": re.compile(r"\bUser\s+Story\b"), ".bddx": re.compile(r"\bScenario\s+Exec\b")}
+"""What can be run, by the ending of the file that it stands in."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +60,11 @@ def stories_in(snapshot: Snapshot, uri: str) -> list[ListedStory]:
 
 
 def story_files(snapshot: Snapshot, folders: Iterable[str]) -> list[str]:
-    """Return the files that tell stories, open ones and those on disk below some folders, in alphabetical order."""
+    """Return the files with stories or executions, open ones and those on disk below some folders, sorted."""
     known = {uri: source.document.text for uri, source in snapshot.sources.items() if isinstance(source, FileIndex)}
     candidates = sorted({*model_files(folders), *known})
-    told = (uri for uri in candidates if uri.endswith(_ENDING))
-    return [uri for uri in told if _STORY.search(known[uri] if uri in known else _text(uri))]
+    told = ((uri, _TOLD.get(f".{uri.rpartition('.')[2]}")) for uri in candidates)
+    return [uri for uri, words in told if words and words.search(known[uri] if uri in known else _text(uri))]
 
 
 def _listed(variant: PlacedVariant) -> ListedVariant:

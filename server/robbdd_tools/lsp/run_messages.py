@@ -38,6 +38,8 @@ def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage
                 "values": values_words(spec),
                 "variant": spec.variant,
                 "variation": spec.variation,
+                "execution": None if spec.execution is None else spec.execution.iri,
+                "repetition": spec.repetition,
                 "source": plan.places.get(spec.variant),
                 "row": plan.rows.get((spec.variant, spec.variation)),
             }

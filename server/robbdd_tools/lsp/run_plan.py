@@ -20,12 +20,15 @@ from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.feature import Numbered
     from robbdd_tools.graph.built import BuiltGraph
-    from robbdd_tools.graph.model import Variant
+    from robbdd_tools.graph.model import AcceptanceModel, Execution, Variant
     from robbdd_tools.lsp.convert import Converter
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.run.protocol import ScenarioSpec
 
 Scenario = tuple[str, int]
 """The IRI of a variant and the number of one of its scenarios."""
+Executed = tuple[str, int, str]
+"""A scenario with the IRI of the execution that it was run by, empty where it was run as it is."""
 
 
 class ModelError(Exception):
@@ -38,8 +41,8 @@ class RunOptions:
 
     ``scenario`` is the name or IRI of a variant, ``variation`` the number of one of its scenarios; ``only`` lists
     what is wanted, each entry a ``variant`` (its IRI) and, if not all of them, the numbers of its scenarios as
-    ``variations``; ``failed`` takes those that did not hold the last time; ``record`` takes a picture of each
-    violation. ``token`` is what the run is called in its messages.
+    ``variations`` and the IRI of one ``execution`` of it; ``failed`` takes those that did not hold the last time;
+    ``record`` takes a picture of each violation. ``token`` is what the run is called in its messages.
     """
 
     uri: str
@@ -70,16 +73,47 @@ class RunOptions:
     def is_whole(self) -> bool:
         """Whether all scenarios of the variants are run, so that older results of them mean nothing any more."""
         numbers = {self.variation, self.where, self.first, self.sample}
-        return not self.failed and numbers == {None} and set((self.choice() or {}).values()) <= {None}
+        parts = (entry.get("variations") for entry in self.only or ())
+        return not self.failed and numbers == {None} and all(part is None for part in parts)
 
-    def choice(self) -> dict[str, frozenset[int] | None] | None:
-        """Return the numbers of scenarios that are wanted by variant (``None``: all), ``None`` where ``only`` is."""
-        if self.only is None:
-            return None
-        return {
-            str(entry["variant"]): None if entry.get("variations") is None else frozenset(entry["variations"])
-            for entry in self.only
-        }
+    def choice(self) -> Choice | None:
+        """Return what ``only`` names, ``None`` without it."""
+        return None if self.only is None else Choice.of(self.only)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What is wanted, by variant: executions (``None``: any) with numbers of scenarios (``None``: all)."""
+
+    entries: Mapping[str, Sequence[tuple[str | None, frozenset[int] | None]]]
+
+    @classmethod
+    def of(cls, only: Iterable[Mapping[str, Any]]) -> Choice:
+        """Read the entries of ``only``."""
+        entries: dict[str, list[tuple[str | None, frozenset[int] | None]]] = {}
+        for entry in only:
+            numbers = None if entry.get("variations") is None else frozenset(entry["variations"])
+            entries.setdefault(str(entry["variant"]), []).append((entry.get("execution"), numbers))
+        return cls(entries)
+
+    def wants(self, variant: str, number: int) -> bool:
+        """Tell whether a scenario is wanted, by whatever execution."""
+        return any(numbers is None or number in numbers for _, numbers in self.entries.get(variant, ()))
+
+    def wants_by(self, variant: str, number: int, execution: str) -> bool:
+        """Tell whether a scenario is wanted by an execution."""
+        entries = self.entries.get(variant, ())
+        return any(by in (None, execution) and (numbers is None or number in numbers) for by, numbers in entries)
+
+    def executions(self, model: AcceptanceModel) -> tuple[Execution, ...]:
+        """Return the wanted executions of a model."""
+        return tuple(
+            one for one in model.executions if any(by in (None, one.iri) for by, _ in self.entries.get(one.variant, ()))
+        )
+
+    def names_executions(self, variant: str) -> bool:
+        """Tell whether a variant is wanted only as executions say."""
+        return all(by is not None for by, _ in self.entries.get(variant, ()))
 
 
 _TYPES = {
@@ -105,7 +139,7 @@ class RunPlan:
     digest: str
 
 
-def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed: Collection[Scenario]) -> RunPlan:
+def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed: Collection[Executed]) -> RunPlan:
     """Return the plan of a run; ``failed`` are the scenarios that did not hold. Raises ``ModelError``."""
     from robbdd_tools.graph.digest import graph_digest, joint_digest
 
@@ -116,8 +150,12 @@ def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed
     chosen = [
         variant
         for variant in every
-        if _is_named(variant, options.scenario) and (choice is None or variant.iri in choice)
+        if _is_named(variant, options.scenario) and (choice is None or variant.iri in choice.entries)
     ]
+    executions = model.executions if choice is None else choice.executions(model)
+    if choice is not None:
+        executed = {execution.variant for execution in executions}
+        chosen = [one for one in chosen if one.iri in executed or not choice.names_executions(one.iri)]
     if not chosen and choice is not None:
         raise ModelError("the model does not have these scenarios any more")
     if not chosen:
@@ -128,13 +166,21 @@ def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed
     except SelectionError as error:
         raise ModelError(str(error)) from None
 
+    some_failed = {(variant, number) for variant, number, _ in failed}
+
     def is_wanted(variant: Variant, number: int) -> bool:
-        numbers = None if choice is None else choice[variant.iri]
         return (
             options.variation in (None, number)
-            and (numbers is None or number in numbers)
-            and (not options.failed or (variant.iri, number) in failed)
+            and (choice is None or choice.wants(variant.iri, number))
+            and (not options.failed or (variant.iri, number) in some_failed)
         )
+
+    def is_wanted_so(spec: ScenarioSpec) -> bool:
+        if spec.execution is None:
+            return True
+        executed = (spec.variant, spec.variation, spec.execution.iri)
+        known = {executed, (*executed[:2], "")}
+        return (choice is None or choice.wants_by(*executed)) and (not options.failed or not known.isdisjoint(failed))
 
     def scenarios(variant: Variant) -> Iterable[Numbered]:
         return (numbered for numbered in selected.scenarios(variant) if is_wanted(variant, numbered[0]))
@@ -142,7 +188,7 @@ def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed
     if all(next(iter(scenarios(variant)), None) is None for variant in chosen):
         raise ModelError("no scenario failed" if options.failed else "no scenario fits the selection")
     variants = {variant.iri for variant in chosen}
-    request = RunRequest(model, options.uri, options.seed, variants, scenarios)
+    request = RunRequest(model, options.uri, options.seed, variants, scenarios, executions, None, is_wanted_so)
     uris, places, rows = places_of(snapshot, convert, options.uri)
     digest = joint_digest([graph_digest(built)])
     return RunPlan(request, uris, digests_of(snapshot, options.uri), places, rows, digest)

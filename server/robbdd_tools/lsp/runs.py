@@ -83,7 +83,7 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
     try:
         options = RunOptions.of({**argument, **more})
         ls.run = run = ActiveRun(options, f"robbdd-run-{next(ls.run_numbers)}")
-        failed = [(known.variant, known.variation) for known in ls.results if known.outcome != "holds"]
+        failed = {(one.variant, one.variation, one.execution) for one in ls.results if one.outcome != "holds"}
         plan = await ls.in_background(lambda snapshot: plan_run(snapshot, ls.convert, options, failed), options.uri)
         place, excuse = await asyncio.to_thread(ls.stores.begin, options.uri)
         if excuse:
@@ -129,7 +129,7 @@ class _Follower:
         self._plan = plan
         self._results = results
         self._loop = asyncio.get_running_loop()
-        self._begun: dict[str, set[int]] = {}
+        self._begun: dict[str, set[tuple[int, str]]] = {}
 
     def hear(self, message: RunMessage) -> None:
         """Take a message from a thread of the scheduler."""
@@ -163,11 +163,11 @@ class _Follower:
             self._take(judged)
         if self._run.options.is_whole and not scheduler.ending:
             for variant, begun in self._begun.items():
-                self._ls.results.drop_others(variant, begun)
+                self._ls.results.drop_others(variant, {number for number, _ in begun})
         self._drop_unjudged()
         request = self._plan.request
         known = {variant.iri for story in request.model.stories for variant in story.variants}
-        self._ls.results.drop_deleted(request.name, known)
+        self._ls.results.drop_deleted(request.name, known, {one.iri for one in request.model.executions})
         for scenario in self._run.judged.values():
             scenario.mark_vacuous(self._results.vacuous())
         self._take(RunFinished(not scheduler.ending))
@@ -206,6 +206,7 @@ class _Follower:
         found = self._run.judged.get(index)
         if found is None:
             spec, digests = self._results.scenarios[index].spec, self._plan.digests
+            execution = "" if spec.execution is None else spec.execution.iri
             found = self._run.judged[index] = JudgedScenario(
                 self._plan.request.name,
                 spec.variant,
@@ -215,12 +216,14 @@ class _Follower:
                 digests.rows.get((spec.variant, spec.variation), ""),
                 run=self._place.number,
                 index=index,
+                execution=execution,
+                execution_digest=digests.executions.get(execution, ""),
             )
             begun = self._begun.setdefault(spec.variant, set())
-            if spec.variation not in begun:
+            if (spec.variation, execution) not in begun:
                 # Until it is executed again, a scenario keeps the result that it had.
-                begun.add(spec.variation)
-                self._ls.results.drop(spec.variant, spec.variation)
+                begun.add((spec.variation, execution))
+                self._ls.results.drop(spec.variant, spec.variation, execution)
             self._ls.results.add([found])
         return found
 
@@ -228,7 +231,7 @@ class _Follower:
         """Forget scenarios that a cancelled run began, and no clause of which was judged."""
         for scenario in self._run.judged.values():
             if not scenario.finished and not scenario.clauses:
-                self._ls.results.drop(scenario.variant, scenario.variation)
+                self._ls.results.discard(scenario)
 
     def _judge(self, message: ClauseJudged) -> None:
         clause = clause_at(self._results, message.index, message.line)

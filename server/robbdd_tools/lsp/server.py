@@ -208,7 +208,7 @@ class RobbddServer(LanguageServer):
         # What a run has found by now is newer than what is kept.
         going_on = list(self.run.judged.values()) if self.run is not None else []
         for scenario in going_on:
-            kept.drop(scenario.variant, scenario.variation)
+            kept.drop(scenario.variant, scenario.variation, scenario.execution)
         kept.add(going_on)
         self.results = kept
         self.show_results(list(self._opened))

@@ -9,12 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.files import Unreadable, read_text, uri_to_path
+from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.results import Digests, JudgedScenario, digests_of
 from robbdd_tools.features.stories import stories_in, story_files
 from robbdd_tools.run.imported import BrokenResults, ImportedScenario, read_results
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.names.project import Snapshot
@@ -55,13 +56,15 @@ def _kept(snapshot: Snapshot, scenarios: Sequence[JudgedScenario], models: Itera
 
 def _kept_scenario(scenario: JudgedScenario, now: Digests) -> dict[str, Any]:
     row = now.rows.get((scenario.variant, scenario.variation), "")
+    same = scenario.digest == now.variants.get(scenario.variant) and scenario.row == row
     return {
         "uri": scenario.model,
         "variant": scenario.variant,
+        "execution": scenario.execution or None,
         "variation": scenario.variation,
         "values": scenario.values,
         "seconds": None,
-        "stale": scenario.digest != now.variants.get(scenario.variant) or scenario.row != row,
+        "stale": not same or scenario.execution_digest != now.executions.get(scenario.execution, ""),
         "clauses": [
             {
                 "clause": iri,
@@ -91,31 +94,41 @@ def _read(uri: str) -> list[ImportedScenario] | str:
 
 
 def _matched(snapshot: Snapshot, scenarios: Sequence[ImportedScenario], files: Sequence[str]) -> dict[str, Any]:
-    """Find the variants that results are about: by IRI, else by the names of story and variant."""
+    """Find the variants that results are about: by IRI, else by the names of story and variant; and the executions."""
     places: dict[str, list[tuple[str, str]]] = {}
+    executions: dict[tuple[str, str], list[tuple[str, str]]] = {}
     for uri in files:
+        for one in executions_of(snapshot, uri):
+            executions.setdefault((one.variant.iri, one.definition.symbol.name), []).append((uri, one.iri))
         for story in stories_in(snapshot, uri):
             for variant in story.variants:
                 place = (uri, variant.placed.iri)
                 named = f"{story.definition.symbol.name} {variant.placed.definition.symbol.name}"
                 for key in (variant.placed.iri, named):
                     places.setdefault(key, []).append(place)
-    found = [(scenario, _place(scenario, places)) for scenario in scenarios]
-    answers = [_imported_scenario(scenario, *place) for scenario, place in found if place is not None]
+    answers: list[dict[str, Any]] = []
+    for scenario in scenarios:
+        place = _place(scenario, places.get(scenario.variant) or places.get(f"{scenario.story} {scenario.variant}"))
+        if place is not None:
+            executed = _place(scenario, executions.get((place[1], scenario.execution)))
+            answers.append(_imported_scenario(scenario, *place, *(executed or ())))
     return {"problem": None, "left": len(scenarios) - len(answers), "scenarios": answers}
 
 
-def _place(scenario: ImportedScenario, places: Mapping[str, Sequence[tuple[str, str]]]) -> tuple[str, str] | None:
-    """Return file and IRI of the variant; of several files the one that the results name."""
-    candidates = places.get(scenario.variant) or places.get(f"{scenario.story} {scenario.variant}") or ()
+def _place(scenario: ImportedScenario, candidates: Sequence[tuple[str, str]] | None) -> tuple[str, str] | None:
+    """Return file and IRI; of several files the one that the results name."""
+    candidates = candidates or ()
     name = scenario.model.replace("\\", "/").rsplit("/", 1)[-1]
     return next((place for place in candidates if name and place[0].endswith(f"/{name}")), next(iter(candidates), None))
 
 
-def _imported_scenario(scenario: ImportedScenario, uri: str, variant: str) -> dict[str, Any]:
+def _imported_scenario(
+    scenario: ImportedScenario, uri: str, variant: str, executing: str = "", execution: str | None = None
+) -> dict[str, Any]:
     return {
-        "uri": uri,
+        "uri": executing or uri,
         "variant": variant,
+        "execution": execution,
         "variation": scenario.variation,
         "values": scenario.values,
         "seconds": scenario.seconds,

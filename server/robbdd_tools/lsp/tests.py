@@ -1,22 +1,25 @@
 """The request ``robbdd/tests``: what can be run, level by level, as a tree of tests shows it.
 
-Without parameters it answers with the files that tell stories; with ``uri`` with the stories of a file and their
-variants; with ``uri`` and ``variant`` (IRI) with scenarios, ``most`` of them from number ``first`` on, and their
-clauses. The answer is described by ``docs/schemas/tests.schema.json``.
+Without parameters it answers with the files that have any; with ``uri`` with the stories of a file and their variants,
+or with the executions of a ``.bddx``; with ``uri`` and ``variant`` (IRI) with scenarios, ``most`` of them from number
+``first`` on, and their clauses. The answer is described by ``docs/schemas/tests.schema.json``.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
+from urllib.parse import unquote
 
-from robbdd_tools.features.results import variant_digest
+from robbdd_tools.features.executions import PlacedExecution, executions_of
+from robbdd_tools.features.results import execution_digest, variant_digest
+from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.features.stories import ListedStory, ListedVariant, stories_in, story_files
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
 from robbdd_tools.names.clauses import clauses_in
 from robbdd_tools.run.listing import ListedScenario, listed_scenarios
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from lsprotocol import types
 
@@ -64,10 +67,21 @@ def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]
         placed = listed.placed
         return {
             **_declared("variant", placed.iri, placed.definition),
-            "detail": "" if listed.count is None else f"{listed.count:,} scenario{'' if listed.count == 1 else 's'}",
+            "detail": _counted(listed.count, "scenario"),
             "count": listed.count,
             "digest": variant_digest(snapshot, placed),
             "variation": convert.location(snapshot, placed.definition.uri, listed.variation),
+        }
+
+    def execution(one: PlacedExecution) -> dict[str, Any]:
+        variant, count = one.variant, number_of_scenarios(one.variant)
+        return {
+            **_declared("execution", one.iri, one.definition),
+            "detail": " · ".join(part for part in (variant.definition.symbol.path, *_ways(one, count)) if part),
+            "variant": variant.iri,
+            "count": count,
+            "digest": execution_digest(snapshot, one),
+            "variation": convert.location(snapshot, variant.definition.uri, variant.site.span(variant.node.variation)),
         }
 
     def _declared(kind: str, iri: str, definition: Definition) -> dict[str, Any]:
@@ -75,11 +89,31 @@ def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]
         return {"kind": kind, "id": iri, "name": definition.symbol.name, "place": place, "tests": []}
 
     unreadable = snapshot.unreadable(uri)
+    executions = [execution(one) for one in executions_of(snapshot, uri)]
+    file = {"kind": "file", "id": uri, "name": unquote(uri.rpartition("/")[2]), "detail": "", "place": None}
     return {
         "problem": None if unreadable is None else unreadable.reason,
         "files": [file.document.uri for file in snapshot.closure(uri)] if unreadable is None else [uri],
-        "tests": [story(each) for each in stories_in(snapshot, uri)],
+        "tests": [
+            *(story(each) for each in stories_in(snapshot, uri)),
+            *([{**file, "detail": _counted(len(executions), "execution"), "tests": executions}] * bool(executions)),
+        ],
     }
+
+
+def _counted(count: int | None, word: str) -> str:
+    return "" if count is None else f"{count:,} {word}{'' if count == 1 else 's'}"
+
+
+def _ways(execution: PlacedExecution, count: int | None) -> Iterator[str]:
+    """Yield what an execution says beside its variant, in words."""
+    node = execution.node
+    yield _counted(count, "scenario")
+    yield "" if node.repeat is None or node.repeat.value == 1 else f"{node.repeat.value} times each"
+    yield f"by {node.behaviour.path}"
+    yield f"in {node.scene.path}"
+    yield f"policies {', '.join(policy.path for policy in node.policies)}" if node.policies else ""
+    yield "" if node.seed is None else f"seed {node.seed.value}"
 
 
 def _scenarios(snapshot: Snapshot, convert: Converter, uri: str, variant: str, first: int, most: int) -> dict[str, Any]:

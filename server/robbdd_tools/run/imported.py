@@ -39,8 +39,8 @@ class ImportedClause:
 class ImportedScenario:
     """An execution: number ``variation`` of a variant; ``variant`` is its IRI, or its name alone from JUnit XML.
 
-    ``model`` is the model file as it was named there (empty from JUnit XML), ``story`` the story's name; ``seconds``
-    is time on the clock where that is told.
+    ``model`` is the model file as it was named there (empty from JUnit XML), ``story`` the story's name; ``execution``
+    the name of that of a ``.bddx`` (empty without one); ``seconds`` is time on the clock where that is told.
     """
 
     model: str
@@ -50,6 +50,7 @@ class ImportedScenario:
     values: str
     seconds: float | None
     clauses: tuple[ImportedClause, ...]
+    execution: str = ""
 
 
 class BrokenResults(Exception):
@@ -88,6 +89,7 @@ def _scenario(entry: _Reader) -> ImportedScenario:
         ", ".join(value_words(name, value) for name, value in values.items()),
         None,
         tuple(_clause(clause) for clause in entry.mapping("clauses").entries()),
+        (entry.optional("execution") or "").rpartition(":")[2],
     )
 
 
@@ -129,6 +131,9 @@ class _Reader:
 
     def text(self, name: str, otherwise: str | None = None) -> str:
         return self._of(name, (str,), "a text", otherwise)
+
+    def optional(self, name: str) -> str | None:
+        return self._of(name, (str, type(None)), "a text or null", None) if name in self._object() else None
 
     def number(self, name: str) -> int:
         return self._of(name, (int,), "a whole number", None)
@@ -173,9 +178,9 @@ def _case(story: str, case: ElementTree.Element) -> ImportedScenario | None:
     if named is None:
         return None
     clauses = tuple(map(_told, _CLAUSE.finditer(case.findtext("system-out", ""))))
-    return ImportedScenario(
-        "", story, named["variant"], int(named["number"]), named["values"] or "", _seconds(case.get("time")), clauses
-    )
+    values, seconds = named["values"] or "", _seconds(case.get("time"))
+    execution = case.get("classname", "").partition(".")[2]
+    return ImportedScenario("", story, named["variant"], int(named["number"]), values, seconds, clauses, execution)
 
 
 def _told(found: re.Match[str]) -> ImportedClause:

@@ -1,0 +1,74 @@
+// What is known of a listed test, and how its item is called, described and sorted.
+import type { Facts, Source } from "./items";
+import type { ListedTest, Place } from "./listing";
+
+/** Scenarios of a variant that are listed before anybody asks, so that rows and clauses have icons of their own. */
+export const EAGER = 100;
+
+export function described(note: string, detail: string): string {
+  return [note, detail].filter((part) => part !== "").join(" · ");
+}
+
+export function factsOf(uri: string, owner: Facts | undefined, listed: ListedTest): Facts {
+  const common = { kind: listed.kind, uri, place: listed.place, detail: listed.detail };
+  switch (listed.kind) {
+    case "file":
+      return common;
+    case "story":
+      return { ...common, detail: described(decodeURIComponent(uri.split("/").at(-1) ?? ""), listed.detail) };
+    case "variant":
+    case "execution": {
+      const count = listed.count ?? undefined;
+      const small = count !== undefined && count <= EAGER;
+      const variation: Place | null = listed.variation ?? null;
+      return { ...common, ...sourceOf(listed), count, small, variation, digest: listed.digest };
+    }
+    case "scenario":
+      return { ...common, ...ownedBy(owner), number: listed.number ?? Number(listed.id) };
+    case "clause":
+      return { ...common, ...ownedBy(owner), number: owner?.number ?? 0, clause: listed.id };
+  }
+}
+
+function sourceOf(listed: ListedTest): Source {
+  return listed.kind === "execution" ? { variant: listed.variant ?? "", execution: listed.id } : { variant: listed.id };
+}
+
+function ownedBy(owner: Facts | undefined): Source {
+  return { variant: owner?.variant ?? "", execution: owner?.execution };
+}
+
+/** Whether what is told of is a variant, or an execution of one. */
+export function makesScenarios({ kind }: Facts): boolean {
+  return kind === "variant" || kind === "execution";
+}
+
+export function sameSource(one: Partial<Source>, other: Source): boolean {
+  return one.variant === other.variant && one.execution === other.execution;
+}
+
+/** Whether results that an item had are about another text: its words have changed, or those that it stands for. */
+export function hasChanged(before: Facts, now: Facts): boolean {
+  return makesScenarios(now) ? before.digest !== now.digest : before.clause !== now.clause;
+}
+
+export function itemId(uri: string, listed: ListedTest, position?: number): string {
+  if (listed.kind === "clause") {
+    return String(position);
+  }
+  return listed.kind === "story" ? `${uri} ${listed.id}` : listed.id;
+}
+
+export function labelOf(listed: ListedTest): string {
+  const role = listed.role ?? "";
+  return role === "" ? listed.name : `${role.charAt(0).toUpperCase()}${role.slice(1)} ${listed.name}`;
+}
+
+/** Everything stands in the order of the text: places of what is declared, numbers of the others; files come last. */
+export function sortOf(listed: ListedTest, position?: number): string {
+  if (listed.kind === "file") {
+    return `~${listed.name}`;
+  }
+  const number = position ?? listed.number ?? listed.place?.range.start.line ?? 0;
+  return String(number).padStart(9, "0");
+}

@@ -1,0 +1,47 @@
+// What several verdicts on one item come to: an execution that is repeated judges its clauses again and again.
+import type { Outcome } from "./outcomes";
+
+interface Seen {
+  held: number;
+  count: number;
+  worst: Outcome;
+  margin: number;
+}
+
+const BADNESS = { failed: 0, errored: 1, passed: 2 } as const;
+
+/** A clause is as good as its worst verdict in a run, and says how many held. */
+export class Worst<I> {
+  private readonly seen = new Map<I, Seen>();
+
+  has(item: I): boolean {
+    return this.seen.has(item);
+  }
+
+  /** Take a verdict, with its margin where that is told, and return what is known of the item now. */
+  add(item: I, outcome: Outcome, margin: number | null = null): Outcome {
+    const held = outcome.state === "passed" ? 1 : 0;
+    const here = margin ?? Infinity;
+    const known = this.seen.get(item);
+    if (known === undefined) {
+      this.seen.set(item, { held, count: 1, worst: outcome, margin: here });
+      return outcome;
+    }
+    known.held += held;
+    known.count += 1;
+    const difference = BADNESS[outcome.state] - BADNESS[known.worst.state];
+    if (difference < 0 || (difference === 0 && here < known.margin)) {
+      known.worst = outcome;
+      known.margin = here;
+    }
+    return told(known);
+  }
+}
+
+function told({ held, count, worst }: Seen): Outcome {
+  const note = [`${held}/${count} hold`, worst.note].filter((part) => part !== "").join(" · ");
+  const { failure } = worst;
+  return failure === undefined
+    ? { ...worst, note }
+    : { ...worst, note, failure: { ...failure, text: `${held} of ${count} hold, the worst: ${failure.text}` } };
+}

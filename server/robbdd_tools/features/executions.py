@@ -1,0 +1,62 @@
+"""The executions of a ``.bddx``, told from its text, as a tree of tests shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.names.elements import Site, site_of
+from robbdd_tools.names.variants import PlacedVariant, variants_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.project import Snapshot
+
+_HOW = (".bddx", ".scenex", ".ktree")
+"""Endings of files that say how something is executed, not what is asked of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedExecution:
+    """An execution as it is declared, its tree, the declaration around it, and the variant that it executes."""
+
+    definition: Definition
+    iri: str
+    site: Site
+    node: tree.Execution
+    variant: PlacedVariant
+
+
+def executions_of(snapshot: Snapshot, uri: str) -> Iterator[PlacedExecution]:
+    """Yield the executions of a file that have an IRI and a known variant, in the order of the text."""
+    file = snapshot.file(uri)
+    variants: dict[str, dict[str, PlacedVariant]] = {}
+    for placed in file.declarations if file is not None else ():
+        node = placed.declaration.tree
+        if file is None or not isinstance(node, tree.Execution):
+            continue
+        site = Site(snapshot, file, placed)
+        found, target = file.definitions.get(node.name.text), site.target(node.variant)
+        if found is None or found.iri is None or found.span != site.span(node.name) or target is None:
+            continue
+        if target.uri not in variants:
+            variants[target.uri] = {one.definition.symbol.path: one for one in variants_of(snapshot, target.uri)}
+        variant = variants[target.uri].get(target.symbol.path)
+        if variant is not None:
+            yield PlacedExecution(found, found.iri, site, node, variant)
+
+
+def what_matters(execution: PlacedExecution) -> list[Site]:
+    """Return its declaration and those that it leads to in files of its kind, directly or over others, in order."""
+    site = execution.site
+    found = {(site.uri, site.placed.offset): site}
+    fresh = [site]
+    while fresh:
+        here = fresh.pop()
+        targets = (target for target in here.placed.targets.values() if target.uri.endswith(_HOW))
+        for other in (site_of(here.snapshot, target) for target in targets):
+            if other is not None and found.setdefault((other.uri, other.placed.offset), other) is other:
+                fresh.append(other)
+    return [found[key] for key in sorted(found)]

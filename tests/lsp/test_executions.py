@@ -1,0 +1,136 @@
+"""Executions of a ``.bddx`` in the tree of tests: listed, run by themselves, each with results of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from lsprotocol import types
+
+from kit import schema_errors
+from lsp_kit import Editor, plain
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.cli import main
+
+VARIANT = "https://example.org/robbdd/criteria/part-to-bin"
+ONE, TWO = (f"https://example.org/robbdd/execution/{name}" for name in ("in-simulation", "far-too-strict"))
+STRICT = """
+obs policy (ns=exec) on-the-spot for <pick-place.at-goal> horizon: 0.5 seconds {
+    observations: { <thing-pose>, <goal-pose> }
+    evaluator: linear distance { less-than: 0.0001 m max time offset: 0.02 s }
+}
+
+Scenario Exec (ns=exec) far-too-strict {
+    variant: <tidy-bench.part-to-bin>
+    scene inst: <bench_sim>
+    bhv: <built-in>
+    policies: { <on-the-spot> }
+    repeat: 2
+}
+"""
+
+
+@pytest.fixture
+def model(editor: Editor) -> Path:
+    """The example's executions, with one more that no arm can pass, as it says itself."""
+    path = editor.path.with_suffix(".bddx")
+    path.write_text(path.read_text(encoding="utf-8") + STRICT, encoding="utf-8")
+    return path
+
+
+async def ask(editor: Editor, request: str, schema: str, **params: object) -> Any:
+    answer = plain(await editor.client.protocol.send_request_async(f"robbdd/{request}", params))
+    assert schema_errors(f"{schema}.schema.json", answer) == []
+    return answer
+
+
+async def executions(editor: Editor, model: Path) -> list[Any]:
+    (file,) = (await ask(editor, "tests", "tests", uri=path_to_uri(model)))["tests"]
+    assert (file["kind"], file["name"]) == ("file", "pickplace.bddx")
+    return list(file["tests"])
+
+
+async def run(editor: Editor, model: Path, command: str = "run", **options: object) -> Any:
+    target = {"uri": path_to_uri(model), **options}
+    params = types.ExecuteCommandParams(command=f"robbdd.{command}", arguments=[target])
+    return plain(await editor.client.workspace_execute_command_async(params))
+
+
+async def test_an_execution_is_told_with_what_it_says(editor: Editor, model: Path) -> None:
+    assert path_to_uri(model) in (await ask(editor, "tests", "tests"))["files"]
+    one, two = await executions(editor, model)
+    assert (one["id"], one["kind"], one["name"], one["variant"]) == (ONE, "execution", "in-simulation", VARIANT)
+    said = ("tidy-bench.part-to-bin", "4 scenarios", "by built-in", "in bench_sim")
+    assert one["detail"].split(" · ") == [*said, "policies near-goal, starts-outside", "seed 1"]
+    assert "2 times each" in two["detail"]
+    line = int(one["place"]["range"]["start"]["line"])
+    assert model.read_text(encoding="utf-8").split("\n")[line].startswith("Scenario Exec (ns=exec) in-simulation")
+    listed = await ask(editor, "tests", "tests", uri=path_to_uri(model), variant=VARIANT, first=1, most=1)
+    assert listed["tests"][0]["tests"][0]["name"] == "at-source"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "changed"),
+    [
+        ("seed: 1", "seed: 2", {ONE}),
+        ("less-than: 0.2 m", "less-than: 0.1 m", {ONE}),
+        ("0.0001 m", "0.0002 m", {TWO}),
+        ("30 Hz noise: 2 mm", "30 Hz noise: 3 mm", {ONE}),
+        ("bhv impl (ns=exec) built-in {", "// The same.\nbhv impl  (ns=exec) built-in {", set[str]()),
+    ],
+)
+async def test_an_execution_is_another_when_what_it_names_changes(
+    editor: Editor, model: Path, old: str, new: str, changed: set[str]
+) -> None:
+    before = {one["id"]: one["digest"] for one in await executions(editor, model)}
+    text = model.read_text(encoding="utf-8").replace(old, new)
+    item = types.TextDocumentItem(uri=path_to_uri(model), language_id="bddx", version=0, text=text)
+    editor.client.text_document_did_open(types.DidOpenTextDocumentParams(text_document=item))
+    after = {one["id"]: one["digest"] for one in await executions(editor, model)}
+    assert {iri for iri, digest in after.items() if digest != before[iri]} == changed
+
+
+@pytest.mark.physics
+async def test_each_execution_has_results_of_its_own(editor: Editor, model: Path, run_messages: list[Any]) -> None:
+    chosen = [
+        {"variant": VARIANT, "execution": ONE, "variations": [1, 2]},
+        {"variant": VARIANT, "execution": TWO, "variations": [1]},
+    ]
+    answer = await run(editor, model, only=chosen)
+    assert {name: answer[name] for name in ("total", "holds", "violated")} == {"total": 4, "holds": 2, "violated": 2}
+    started = [entry.message for entry in run_messages if entry.message.type == "ScenarioStarted"]
+    assert sorted((one.execution, one.variation, one.repetition) for one in started) == [
+        (TWO, 1, 1),
+        (TWO, 1, 2),
+        (ONE, 1, 1),
+        (ONE, 2, 1),
+    ]
+    assert all(schema_errors("runmessage.schema.json", plain(entry)) == [] for entry in run_messages)
+
+    async def kept() -> list[tuple[str, int, list[str]]]:
+        found = (await ask(editor, "testResults", "testresults"))["scenarios"]
+        told = [(one["execution"], one["variation"], [clause["verdict"] for clause in one["clauses"]]) for one in found]
+        return sorted((by, number, sorted({*verdicts} - {"holds"})) for by, number, verdicts in told)
+
+    every = sorted(((TWO, 1, ["violated"]), (TWO, 1, ["violated"]), (ONE, 1, list[str]()), (ONE, 2, list[str]())))
+    assert await kept() == every
+    # What one execution finds again leaves the other's results as they are; only what failed is run again.
+    assert (await run(editor, model, only=chosen[:1]))["total"] == 2
+    assert await kept() == every
+    assert (await run(editor, model, "rerunFailed"))["total"] == 2
+    assert await kept() == every
+
+
+async def test_an_execution_that_is_gone_is_not_run(editor: Editor, model: Path) -> None:
+    answer = await run(editor, model, only=[{"variant": VARIANT, "execution": f"{ONE}-2"}])
+    assert "the model does not have these scenarios any more" in answer["problem"]
+
+
+@pytest.mark.parametrize("option", ["--json", "--junit"])
+@pytest.mark.physics
+async def test_results_of_ci_are_those_of_the_execution(editor: Editor, model: Path, option: str) -> None:
+    results = model.with_name("results.ci")
+    assert main(["run", str(model), "--scenario", "far-too-strict", "--first", "1", "--no-store", option, str(results)])
+    found = (await ask(editor, "importResults", "testresults", uri=path_to_uri(results)))["scenarios"]
+    assert [(one["uri"], one["variant"], one["execution"]) for one in found] == [(path_to_uri(model), VARIANT, TWO)] * 2
