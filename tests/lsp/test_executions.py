@@ -115,6 +115,9 @@ async def test_each_execution_has_results_of_its_own(editor: Editor, model: Path
 
     every = sorted(((TWO, 1, ["violated"]), (TWO, 1, ["violated"]), (ONE, 1, list[str]()), (ONE, 2, list[str]())))
     assert await kept() == every
+    for execution in (ONE, TWO):
+        trace = await ask(editor, "trace", "trace", uri=path_to_uri(model), variant=VARIANT, execution=execution)
+        assert trace["scenario"]["execution"] == execution
     # What one execution finds again leaves the other's results as they are; only what failed is run again.
     assert (await run(editor, model, only=chosen[:1]))["total"] == 2
     assert await kept() == every

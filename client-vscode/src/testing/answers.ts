@@ -12,3 +12,10 @@ export function picturesOf(answer: unknown): string[] {
   const found: unknown = isRecord(answer) ? answer["pictures"] : undefined;
   return Array.isArray(found) ? found.filter((entry) => typeof entry === "string") : [];
 }
+
+/** Address of the folder that keeps what was recorded of a run. */
+export function recordedIn(answer: unknown): string | undefined {
+  const stored: unknown = isRecord(answer) ? answer["stored"] : undefined;
+  const folder = isRecord(stored) ? stored["folder"] : undefined;
+  return typeof folder === "string" ? folder : undefined;
+}

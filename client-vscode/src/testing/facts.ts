@@ -67,7 +67,8 @@ export function labelOf(listed: ListedTest): string {
 /** Everything stands in the order of the text: places of what is declared, numbers of the others; files come last. */
 export function sortOf(listed: ListedTest, position?: number): string {
   if (listed.kind === "file") {
-    return `~${listed.name}`;
+    // The editor compares as a dictionary does: letters come after numbers, signs before them.
+    return `z${listed.name}`;
   }
   const number = position ?? listed.number ?? listed.place?.range.start.line ?? 0;
   return String(number).padStart(9, "0");

@@ -3,7 +3,7 @@ import * as vscode from "vscode";
 import type { Server } from "../client";
 import type { RunNotification } from "../runs/messages";
 import type { RunMonitor } from "../runs/monitor";
-import { picturesOf, problemOf } from "./answers";
+import { picturesOf, problemOf, recordedIn } from "./answers";
 import { normalised, sinkOf, titleOf } from "./display";
 import { RunFollower } from "./follower";
 import { type FileRun, fileRuns } from "./selection";
@@ -126,8 +126,8 @@ export class TestRunner implements vscode.Disposable {
       if (problem !== undefined) {
         follower.refuse(only.flatMap((wanted) => this.tree.wanted(uri, wanted)), problem);
       }
-      for (const picture of picturesOf(answer)) {
-        run.appendOutput(`    picture: ${vscode.Uri.parse(picture).fsPath}\r\n`);
+      for (const line of command === "robbdd.record" ? recordingWords(answer) : []) {
+        run.appendOutput(`${line}\r\n`);
       }
     });
     await Promise.race([executed, cancelled]);
@@ -165,6 +165,15 @@ export class TestRunner implements vscode.Disposable {
       }
     }
   }
+}
+
+/** What a run with recording says at its end: paths, which the terminal makes links of. */
+function recordingWords(answer: unknown): string[] {
+  const path = (uri: string) => vscode.Uri.parse(uri).fsPath;
+  const folder = recordedIn(answer);
+  const pictures = picturesOf(answer).map((picture) => `    picture of a violation: ${path(picture)}`);
+  const recorded = `● Recorded, for a replay too: ${path(folder ?? "")}${pictures.length > 0 ? "" : ". Nothing was violated that could be pictured."}`;
+  return folder === undefined ? pictures : [recorded, ...pictures];
 }
 
 function whenResolved(): { readonly promise: Promise<void>; readonly resolve: () => void } {

@@ -64,10 +64,11 @@ export class TestingView implements vscode.Disposable {
     if (facts?.variant === undefined) {
       return undefined;
     }
-    const { uri, variant, number, clause } = facts;
+    const { uri, variant, execution, number, clause } = facts;
     return {
       uri,
       variant,
+      ...(execution === undefined ? {} : { execution }),
       ...(number === undefined ? {} : { variation: number }),
       ...(clause === undefined ? {} : { clause }),
     };

@@ -64,10 +64,11 @@ def _runs(store: RunStore, params: Any) -> dict[str, Any]:
 def _trace(store: RunStore, params: Any) -> dict[str, Any]:
     # The parameters are a named tuple, which has an ``index`` of its own.
     given: dict[str, Any] = params._asdict()
-    word, index, *scenario = map(given.get, ("run", "index", "variant", "variation", "repetition"))
+    word, index = map(given.get, ("run", "index"))
     word = None if word is None else str(word)
     if index is None:
-        run, index = find_trace(store, word, *scenario)
+        wanted = ("variant", "variation", "execution", "repetition")
+        run, index = find_trace(store, word, {name: given[name] for name in wanted if given.get(name) is not None})
     else:
         run = store.find(word or "latest")
     return {**shown_trace(run, int(index)), "model": path_to_uri(run.model())}

@@ -48,16 +48,13 @@ def traced_variants(run: StoredRun) -> frozenset[str]:
         return frozenset()
 
 
-def find_trace(
-    store: RunStore, word: str | None, variant: str | None, variation: int | None, repetition: int | None
-) -> tuple[StoredRun, int]:
+def find_trace(store: RunStore, word: str | None, given: Mapping[str, object]) -> tuple[StoredRun, int]:
     """Return the run and the number of a scenario with a trace: of the run ``word``, else of the newest that has one.
 
-    Among several that fit it is the first that is violated, else the first. Raises ``NoTrace`` and ``NoSuchRun``.
+    ``given`` are the fields that it has in ``scenarios``. Among several that fit it is the first that is violated, else
+    the first. Raises ``NoTrace`` and ``NoSuchRun``.
     """
     runs = list(reversed(store.runs())) if word is None else [store.find(word)]
-    wanted = {"variant": variant, "variation": variation, "repetition": repetition}
-    given = {name: value for name, value in wanted.items() if value is not None}
     for run in runs:
         try:
             fitting = [one for one in scenarios(run) if one["trace"] and given.items() <= one.items()]
@@ -132,6 +129,7 @@ def _scenario(run: StoredRun, index: int, spec: ScenarioSpec, verdict: str) -> d
         "story": spec.story,
         "variant": spec.variant,
         "variation": spec.variation,
+        "execution": None if spec.execution is None else spec.execution.iri,
         "repetition": spec.repetition,
         "seed": spec.seed,
         "verdict": verdict,

@@ -7,6 +7,7 @@ import { promisify } from "node:util";
 import { EXAMPLES, LANGUAGE_SERVER } from "./harness/checkout.mjs";
 import { lengthened, renamed } from "./harness/models.mjs";
 import { story } from "./harness/story.mjs";
+import { TestingView } from "./harness/testingView.mjs";
 import { PATIENCE, SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "pickplace.bdd";
@@ -20,16 +21,18 @@ const BROKEN_RESULTS = "ci-broken.json";
 const RUN_LIMIT = 3 * 60_000;
 /** What a user may wait for a cancelled run, ms: half a second, and what this driver takes to look. */
 const CANCEL_LIMIT = 1500;
-const MOST_TRIES = 6;
 
 /** @type {import("./harness/session.mjs").Session} */
 let session;
 /** @type {import("./harness/workbench.mjs").Workbench} */
 let workbench;
+/** @type {TestingView} */
+let tests;
 
 const step = story("testing", (opened) => {
   session = opened;
   workbench = opened.workbench;
+  tests = new TestingView(workbench);
 }, {
   workspace: join(EXAMPLES, "pickplace"),
   settings: { "testing.automaticallyOpenPeekView": "never" },
@@ -45,64 +48,33 @@ const step = story("testing", (opened) => {
   },
 });
 
-/** A row of the tree by its words. */
-function row(text) {
-  return workbench.page.locator(".test-explorer-tree .monaco-list-row", { hasText: text });
-}
-
-/** The rows that show a state: `passed`, `failed`, `error`, `queued`, or `run` while it is being executed. */
-function rowsThat(state, text = /./) {
-  const icon = workbench.page.locator(state === "run" ? ".computed-state.codicon-loading" : `.codicon-testing-${state}-icon`);
-  return row(text).filter({ has: icon });
-}
-
-async function expand(text) {
-  const found = row(text).first();
-  const expanded = found.and(workbench.page.locator('[aria-expanded="true"]'));
-  await found.waitFor();
-  // While the tree is being filled its rows move, and a click may meet nothing.
-  for (let tries = 0; tries < MOST_TRIES && !(await expanded.isVisible()); tries += 1) {
-    // The words about the row that was pointed at last may cover this one.
-    await workbench.page.mouse.move(0, 0);
-    await found.click();
-    await workbench.page.keyboard.press("ArrowRight");
-    await expanded.waitFor({ timeout: PATIENCE / MOST_TRIES }).catch(() => {});
-  }
-  await expanded.waitFor();
-}
-
-async function runRow(text) {
-  await row(text).first().hover();
-  await row(text).first().locator(".codicon-testing-run-icon").first().click();
-}
-
 step("the view lists the stories of all files before any is opened", async () => {
-  await showView();
-  await row("tidy-bench").first().waitFor();
-  await row("no-bench").first().waitFor();
+  await tests.show();
+  await tests.row("tidy-bench").first().waitFor();
+  await tests.row("no-bench").first().waitFor();
 });
 
 step("a file that is written, renamed or deleted changes the tree", async () => {
   const text = (await session.text(FILE)).replace("tidy-bench", "new-bench").replaceAll("criteria/", "created/");
   const [path, moved] = ["new.bdd", "moved.bdd"].map((name) => join(session.workspace, name));
   await writeFile(path, text);
-  await row("new-bench").waitFor();
+  await tests.row("new-bench").waitFor();
   await rename(path, moved);
   await writeFile(moved, text.replace("new-bench", "moved-bench"));
-  await row("moved-bench").waitFor();
-  await row("new-bench").waitFor({ state: "detached" });
+  await tests.row("moved-bench").waitFor();
+  await tests.row("new-bench").waitFor({ state: "detached" });
   await rm(moved);
-  await row("moved-bench").waitFor({ state: "detached" });
+  await tests.row("moved-bench").waitFor({ state: "detached" });
 });
 
 step("a story expands to variants, scenarios and clauses", async () => {
   await workbench.openFile(FILE);
   await workbench.codeLens("Run").first().waitFor();
-  await expand("tidy-bench");
-  await expand("part-to-bin");
-  await expand("thing = cube0, goal = left_ws");
-  await row("Then at-goal").waitFor();
-  await row("Given at-source").waitFor();
+  await tests.expand("tidy-bench");
+  await tests.expand("part-to-bin");
+  await tests.expand("thing = cube0, goal = left_ws");
+  await tests.row("Then at-goal").waitFor();
+  await tests.row("Given at-source").waitFor();
   await workbench.screenshot("testing-tree");
 });
 
@@ -113,33 +85,33 @@ step("the gutter offers to run the variant and each clause", async () => {
 });
 
 step("running a variant turns its clauses, with their margins", async () => {
-  await runRow("part-to-bin");
-  await rowsThat("passed", "Then at-goal").waitFor({ timeout: RUN_LIMIT });
-  await rowsThat("passed", /part-to-bin/).first().waitFor({ timeout: RUN_LIMIT });
-  await row(/Then at-goal.*\+\d.*mm/).waitFor();
+  await tests.runRow("part-to-bin");
+  await tests.rowsThat("passed", "Then at-goal").waitFor({ timeout: RUN_LIMIT });
+  await tests.rowsThat("passed", /part-to-bin/).first().waitFor({ timeout: RUN_LIMIT });
+  await tests.row(/Then at-goal.*\+\d.*mm/).waitFor();
   await workbench.screenshot("testing-passed");
 });
 
 step("a run begun from the code lens shows in the view too", async () => {
   await workbench.openFile(LENS_FILE);
-  await expand("lens-bench");
+  await tests.expand("lens-bench");
   // The panel with the output of the run before covers the line of the lens.
   await workbench.closePanel();
   const { line } = await placeOf(LENS_FILE, "Scenario part-by-lens");
   await workbench.goTo(line, 1);
   await workbench.codeLens("Run").first().click();
-  await rowsThat("passed", "part-by-lens").waitFor({ timeout: RUN_LIMIT });
+  await tests.rowsThat("passed", "part-by-lens").waitFor({ timeout: RUN_LIMIT });
 });
 
 step("a failing clause shows its margin and instant where it stands, and what was expected", async () => {
   await workbench.openFile(FAILING_FILE);
-  await expand("no-bench");
-  await expand("part-stays");
-  await runRow("part-stays");
-  await rowsThat("failed", "part-stays").waitFor({ timeout: RUN_LIMIT });
-  await expand("goal = left_ws");
-  await rowsThat("failed", /Then at-goal.*−\d.*mm.*at \d+\.\d+ s/).waitFor();
-  await rowsThat("passed", "Then in-hand").first().waitFor();
+  await tests.expand("no-bench");
+  await tests.expand("part-stays");
+  await tests.runRow("part-stays");
+  await tests.rowsThat("failed", "part-stays").waitFor({ timeout: RUN_LIMIT });
+  await tests.expand("goal = left_ws");
+  await tests.rowsThat("failed", /Then at-goal.*−\d.*mm.*at \d+\.\d+ s/).waitFor();
+  await tests.rowsThat("passed", "Then in-hand").first().waitFor();
   const { line } = await placeOf(FAILING_FILE, "at-goal");
   await workbench.goTo(line, 1);
   const told = /−\d+.*mm\sat\s\d+\.\d+\ss\s!=\smargin\s≥\s0/;
@@ -160,25 +132,25 @@ step("a failing clause shows its margin and instant where it stands, and what wa
 step("only what failed is run again", async () => {
   const { scenarios } = await session.runOf(() => workbench.command("Test: Rerun Failed Tests"), RUN_LIMIT);
   assert.deepEqual([...new Set(scenarios.map(({ variant }) => variant.split("/").at(-1)))], ["part-stays"]);
-  await rowsThat("run").first().waitFor({ state: "detached" });
-  await rowsThat("failed", "part-stays").waitFor();
+  await tests.rowsThat("run").first().waitFor({ state: "detached" });
+  await tests.rowsThat("failed", "part-stays").waitFor();
   await workbench.screenshot("testing-rerun");
 });
 
 step("a run that is cancelled ends at once", async () => {
-  await runRow("long-bench");
-  await rowsThat("run", "long-bench").waitFor();
+  await tests.runRow("long-bench");
+  await tests.rowsThat("run", "long-bench").waitFor();
   // The palette would take longer than the run.
   await workbench.page.locator('.part.sidebar [aria-label^="Cancel Test Run"]').first().click();
   const begun = Date.now();
-  await rowsThat("run").first().waitFor({ state: "detached" });
+  await tests.rowsThat("run").first().waitFor({ state: "detached" });
   assert.ok(Date.now() - begun < CANCEL_LIMIT, `${Date.now() - begun} ms`);
-  assert.equal(await rowsThat("error").count(), 0, "what was not judged has no result");
+  assert.equal(await tests.rowsThat("error").count(), 0, "what was not judged has no result");
 });
 
 step("a continuous run follows each save", async () => {
-  await row("part-stays").first().hover();
-  await row("part-stays").first().locator('[aria-label^="Turn on Continuous Run"]').click();
+  await tests.row("part-stays").first().hover();
+  await tests.row("part-stays").first().locator('[aria-label^="Turn on Continuous Run"]').click();
   const { line, column } = await placeOf(FAILING_FILE, "before <evt-pick-start>)", "at-goal");
   await workbench.focusEditor();
   await workbench.goTo(line, column);
@@ -187,16 +159,16 @@ step("a continuous run follows each save", async () => {
   }
   await workbench.type("after <evt-place-end>");
   await workbench.page.keyboard.press("Control+S");
-  await rowsThat("passed", "part-stays").waitFor({ timeout: RUN_LIMIT });
-  await rowsThat("passed", "Then at-goal").first().waitFor();
+  await tests.rowsThat("passed", "part-stays").waitFor({ timeout: RUN_LIMIT });
+  await tests.rowsThat("passed", "Then at-goal").first().waitFor();
   await workbench.screenshot("testing-continuous");
 });
 
 step("results of CI are imported, and a broken file says where", async () => {
   await importFile(RESULTS);
   await workbench.notification(`2 results of ${RESULTS} are shown`);
-  await rowsThat("failed", "part-stays").waitFor();
-  await rowsThat("failed", /Then at-goal.*−\d+ mm/).waitFor();
+  await tests.rowsThat("failed", "part-stays").waitFor();
+  await tests.rowsThat("failed", /Then at-goal.*−\d+ mm/).waitFor();
   await workbench.screenshot("testing-imported");
   await writeFile(join(session.workspace, BROKEN_RESULTS), '{\n  "scenarios": [,]\n}');
   await importFile(BROKEN_RESULTS);
@@ -206,22 +178,22 @@ step("results of CI are imported, and a broken file says where", async () => {
 step("a run that is refused says why at the variant, until it is run again", async () => {
   await rewrite(FAILING_FILE, (text) => text.replace("Given:", "Given"));
   await workbench.waitForError();
-  await runRow("part-stays");
-  await rowsThat("error", "part-stays").waitFor();
+  await tests.runRow("part-stays");
+  await tests.rowsThat("error", "part-stays").waitFor();
   await workbench.page.locator(".part.panel", { hasText: /the\smodel\shas\serrors/ }).first().waitFor();
   await workbench.screenshot("testing-refused");
   await rewrite(FAILING_FILE, (text) => text.replace("Given", "Given:"));
   await workbench.waitForNoError();
-  await runRow("part-stays");
-  await rowsThat("passed", "part-stays").waitFor({ timeout: RUN_LIMIT });
+  await tests.runRow("part-stays");
+  await tests.rowsThat("passed", "part-stays").waitFor({ timeout: RUN_LIMIT });
 });
 
 step("after a restart the results of the session before are there", async () => {
   await workbench.page.reload();
-  await showView();
-  await rowsThat("passed", "tidy-bench").or(rowsThat("failed", "no-bench")).first().waitFor();
-  await rowsThat("passed", "no-bench").waitFor();
-  assert.equal(await rowsThat("error").count(), 0, "what the cancelled run left open has no result");
+  await tests.show();
+  await tests.rowsThat("passed", "tidy-bench").or(tests.rowsThat("failed", "no-bench")).first().waitFor();
+  await tests.rowsThat("passed", "no-bench").waitFor();
+  assert.equal(await tests.rowsThat("error").count(), 0, "what the cancelled run left open has no result");
   await workbench.screenshot("testing-restored");
 });
 
@@ -230,10 +202,6 @@ async function rewrite(file, change) {
   const changed = change(text);
   assert.notEqual(changed, text);
   await writeFile(join(session.workspace, file), changed);
-}
-
-async function showView() {
-  await workbench.page.locator('.activitybar .action-label[aria-label^="Testing"]').click();
 }
 
 /** Choose a file of the workspace in the dialog of the import. */

@@ -9,6 +9,8 @@ export interface Recording {
   readonly index?: number;
   readonly variant?: string;
   readonly variation?: number;
+  /** IRI of the execution that it was run by. */
+  readonly execution?: string;
   readonly repetition?: number;
 }
 

@@ -9,12 +9,13 @@ export function recordingOf(value: unknown): Recording | undefined {
   if (!isRecord(value) || typeof value["uri"] !== "string") {
     return undefined;
   }
-  const { uri, run, variant } = value;
+  const { uri, run, variant, execution } = value;
   const numbers = NUMBERS.filter((name) => typeof value[name] === "number").map((name) => [name, value[name]]);
   return {
     uri,
     ...(typeof run === "number" || typeof run === "string" ? { run } : {}),
     ...(typeof variant === "string" ? { variant } : {}),
+    ...(typeof execution === "string" ? { execution } : {}),
     ...(Object.fromEntries(numbers) as Partial<Record<(typeof NUMBERS)[number], number>>),
   };
 }
