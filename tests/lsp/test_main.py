@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 import json
 import socket
+import subprocess
 import sys
 from collections.abc import AsyncIterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -31,6 +33,24 @@ def test_no_address_ends_with_a_sentence(text: str, capsys: pytest.CaptureFixtur
         main(["--tcp", text])
     assert ended.value.code == 2
     assert "PORT" in capsys.readouterr().err
+
+
+def test_a_log_that_cannot_be_written_ends_with_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--log-file", str(tmp_path / "missing" / "log")])
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.endswith("log: No such file or directory\n")
+
+
+def test_an_address_in_use_ends_with_a_sentence() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        command = [sys.executable, "-m", "robbdd_tools.lsp.main", "--tcp", port]
+        ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert ended.returncode == 2
+    assert ended.stderr.endswith(f"no client can connect to 127.0.0.1:{port}: Address already in use\n")
 
 
 def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:

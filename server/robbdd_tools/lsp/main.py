@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import logging
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,7 +29,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--log-file", type=Path, metavar="FILE", help="write a log to this file")
     options = parser.parse_args(arguments)
-    _log_to(options.log_file)
+    try:
+        _log_to(options.log_file)
+    except OSError as error:
+        parser.error(f"the log cannot be written to {options.log_file}: {error.strerror or error}")
 
     from robbdd_tools.base.memory import collect_rarely, nothing_to_collect
 
@@ -40,7 +44,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.tcp is None:
         server.start_io()
     else:
-        server.start_tcp(*options.tcp)
+        try:
+            server.start_tcp(*options.tcp)
+        except OSError as error:
+            host, port = options.tcp
+            reason = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or error
+            parser.error(f"no client can connect to {host}:{port}: {reason}")
     return 0
 
 
