@@ -143,6 +143,44 @@ def test_an_import_offers_what_it_may_import_beside_it_and_in_folders(tmp_path: 
     assert (found.span, found.whole) == (Span(14, 15), Span(14, 18))
 
 
+def test_a_model_offers_the_files_that_it_may_be_in_and_what_the_catalog_has(tmp_path: Path) -> None:
+    for name in ("arm.xml", "arm.urdf", "notes.txt", "other.scenex"):
+        (tmp_path / name).touch()
+    uri, project = path_to_uri(tmp_path / "main.scenex"), Project()
+    begun = "scene inst (ns=x) s { scene: <s> agn <arms.panda> { model m as mjcf { "
+    found: list[list[str]] = []
+    for ending in ("sys path = '", 'catalog "'):
+        project.open(uri, 1, begun + ending)
+        found.append([entry.label for entry in complete(project.snapshot(), uri, len(begun + ending))])
+    assert found[0] == ["arm.urdf", "arm.xml"]
+    assert {"franka-panda", "cube"} <= set(found[1])
+    assert "pick-place" not in found[1]
+
+
+def test_an_execution_offers_the_behaviours_of_the_catalog() -> None:
+    case = fixture('//- main.bddx\nbhv impl (ns=x) b { catalog "pi$0ck-p" }')
+    found = {entry.label: entry for entry in complete(case.snapshot, case.uri, case.cursor)}
+    assert (found["pick-place"].span.end - found["pick-place"].span.start, found["pick-place"].text) == (
+        2,
+        "pick-place",
+    )
+    assert "franka-panda" not in found
+
+
+def test_parts_of_a_tree_are_offered_as_they_are_named_where_they_stand() -> None:
+    poses = "kgraph (ns=x) g { body a { frame one { } frame two { } } body b { frame three { pose p { wrt: <"
+    start = "//- main.scenex\nns x = 'http://x/'\nscene inst (ns=x) s { scene: <none> "
+
+    def found(text: str) -> list[str]:
+        case = fixture(start + text)
+        return [entry.label for entry in complete(case.snapshot, case.uri, case.cursor)]
+
+    assert found(f"{poses}$0") == ["a.one", "a.two", "three"]
+    assert found(f"{poses}b.$0") == ["a.one", "a.two", "b.three"]
+    closed = poses.removesuffix("pose p { wrt: <") + "} } } obj <o> { camera c { frame: <$0"
+    assert found(closed) == ["g.a.one", "g.a.two", "g.b.three"]
+
+
 @pytest.mark.parametrize("language", ["bdd", "scene", "scenex", "ktree", "bddx"])
 def test_every_declaration_has_a_snippet_that_parses(language: str) -> None:
     case = fixture(f"//- main.{language}\n$0")

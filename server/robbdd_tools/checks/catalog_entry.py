@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.names.index import language_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 
@@ -16,23 +17,23 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 
+def known_entries(language: str) -> Mapping[str, object]:
+    """Return what ``catalog "…"`` may name in a kind of file: behaviours in an execution, else models."""
+    catalog = load_catalog()
+    return catalog.behaviours if language == "bddx" else {**catalog.robots, **catalog.objects}
+
+
 def catalog_entry(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each model or behaviour that the catalog is asked for in vain."""
     for placed in file.declarations:
         root = placed.declaration.tree
         if not isinstance(root, tree.SceneInstance | tree.Implementation):
             continue
-        what, known = _known(root)
+        known = known_entries(language_of(file.document.uri))
+        what = "behaviour" if isinstance(root, tree.Implementation) else "model"
         for node in walk(root):
             if isinstance(node, tree.CatalogEntry) and node.name.value not in known:
                 yield _unknown(file.document.uri, node.name, placed.offset, what, known)
-
-
-def _known(root: tree.SceneInstance | tree.Implementation) -> tuple[str, Mapping[str, object]]:
-    catalog = load_catalog()
-    if isinstance(root, tree.Implementation):
-        return "behaviour", catalog.behaviours
-    return "model", {**catalog.robots, **catalog.objects}
 
 
 def _unknown(uri: str, name: tree.Text, offset: int, what: str, known: Mapping[str, object]) -> Diagnostic:

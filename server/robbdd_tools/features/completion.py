@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.cursor import Cursor, cursor_at
 from robbdd_tools.features.fixes import import_edit
-from robbdd_tools.features.import_paths import import_paths, typed_path
+from robbdd_tools.features.quoted import quoted
 from robbdd_tools.features.snippets import declaration_snippets
 from robbdd_tools.features.unimported import beside, loaded
 from robbdd_tools.features.value_types import fits, kinds_in_text, scene_wanted, slot_wanted, values_wanted
@@ -35,7 +35,7 @@ _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet
 
 @dataclass(frozen=True, slots=True)
 class Completion:
-    """One proposal: ``kind`` is ``keyword``, ``snippet``, ``file``, ``folder`` or the kind of a symbol.
+    """One proposal: ``kind`` is ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog`` or the kind of a symbol.
 
     ``text`` replaces ``span``, or with what stands behind the cursor ``whole``; that of a snippet has placeholders.
     Of two proposals the one with the smaller ``rank`` fits better. ``edits`` go with it (an import). ``origin`` is
@@ -64,7 +64,7 @@ def complete(snapshot: Snapshot, uri: str, offset: int) -> list[Completion]:
         return []
     cursor = cursor_at(analysis, offset)
     if cursor.quoted is not None:
-        return list(_import_paths(uri, analysis, offset))
+        return list(_in_quotes(uri, analysis, offset))
     language = language_of(uri)
     cursor = replace(cursor, before=without_earlier_scenarios(cursor.before))
     before, expected = _expected(language, cursor.before)
@@ -163,7 +163,17 @@ class _Names:
         visible = scope.visible(ROLE_KINDS[role], self.cursor.scopes)
         misfits = _misfits(self.cursor) if role == "Variable" else frozenset[str]()
         for name in sorted(visible, key=lambda name: (name in misfits, name)):
-            yield name, scope.define(*visible[name]), int(name in misfits)
+            definition = scope.define(*visible[name])
+            yield self._written(name, definition), definition, int(name in misfits)
+
+    def _written(self, name: str, definition: Definition) -> str:
+        """Return the shortest form of a name that begins with the qualifier which is typed already."""
+        qualifier, dot, _ = self.cursor.word.rpartition(".")
+        path = definition.symbol.path
+        if not dot or definition.uri != self.file.document.uri or not path.endswith(name):
+            return name
+        forms = (path.removeprefix(f"{scope}.") for scope in (*self.cursor.scopes, ""))
+        return next((form for form in forms if form.startswith(qualifier + dot)), name)
 
     def _to_import(self, role: str, known: set[str], bracket: str) -> Iterator[Completion]:
         uri = self.file.document.uri
@@ -202,14 +212,11 @@ def _word_end(text: str, offset: int) -> int:
     return offset if match is None else match.end()
 
 
-def _import_paths(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion]:
-    """Propose folders and model files inside the quotes of an import."""
+def _in_quotes(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion]:
+    """Propose what may stand inside quotes."""
     text = file.document.text
-    typed = typed_path(text[text.rfind("\n", 0, offset) + 1 : offset])
-    if typed is None:
-        return
-    start = offset - len(typed) + typed.rfind("/") + 1
     rest = re.compile(r"[^\"'\n/]*").match(text, offset)
-    whole = Span(start, offset if rest is None else rest.end())
-    for name, is_folder in import_paths(uri, typed):
-        yield Completion(name, "folder" if is_folder else "file", "", name, Span(start, offset), whole)
+    for name, kind, typed in quoted(uri, text[text.rfind("\n", 0, offset) + 1 : offset]):
+        start = offset - len(typed)
+        whole = Span(start, offset if rest is None else rest.end())
+        yield Completion(name, kind, "", name, Span(start, offset), whole)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
 _WORD = re.compile(r"[\w\-.]*\Z")
 _QUOTED = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?")
 _VARIANT = re.compile(r"(?<![\w\-.<])Scenario\s+(?!Template\b)([^\W\d][\w\-]*)\s*\{")
+_BLOCK = re.compile(r"(?<![\w\-.<])(?:kgraph\s*\([^()]*\)|body)\s*([^\W\d][\w\-]*)\s*\{")
+"""What has names inside a kinematic tree or a scene instance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +42,8 @@ def cursor_at(analysis: FileAnalysis, offset: int) -> Cursor:
     start = 0 if placed is None else placed.offset
     text = analysis.document.text[start:offset]
     match = _WORD.search(text)
-    word = match[0] if match else ""
+    # A point behind a reference stands before a word of its own.
+    word = match[0].lstrip(".") if match else ""
     before = text[: len(text) - len(word)]
     return Cursor(placed, before, word, Span(offset - len(word), offset), _scopes(placed, before), _quoted(text))
 
@@ -48,9 +52,24 @@ def _scopes(placed: PlacedDeclaration | None, before: str) -> tuple[str, ...]:
     symbols = placed.declaration.symbols if placed else ()
     if not symbols:
         return ()
-    outer = symbols[0].path
-    variants = _VARIANT.findall(before)
-    return (f"{outer}.{variants[-1]}", outer) if variants else (outer,)
+    scopes = (symbols[0].path,)
+    # Variants follow one another, whatever their braces are like.
+    for name in (*_VARIANT.findall(before)[-1:], *_open_blocks(before)):
+        scopes = (f"{scopes[0]}.{name}", *scopes)
+    return scopes
+
+
+def _open_blocks(before: str) -> Iterator[str]:
+    """Yield the names of the blocks that a text ends in, outermost first."""
+    blocks = list(_BLOCK.finditer(before))
+    code = _QUOTED.sub(lambda match: " " * len(match[0]), before) if blocks else ""
+    for block in blocks:
+        depth, lowest = 1, 1
+        for sign in re.findall(r"[{}]", code[block.end() :]):
+            depth += 1 if sign == "{" else -1
+            lowest = min(lowest, depth)
+        if lowest > 0:
+            yield block[1]
 
 
 def _quoted(text: str) -> str | None:

@@ -26,6 +26,7 @@ _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     "snippet": _KINDS.Snippet,
     "file": _KINDS.File,
     "folder": _KINDS.Folder,
+    "catalog": _KINDS.Value,
     SymbolKind.EVENT: _KINDS.Event,
     SymbolKind.VARIABLE: _KINDS.Variable,
     SymbolKind.SET_VARIABLE: _KINDS.Variable,

@@ -29,7 +29,7 @@ def register_reading(server: RobbddServer) -> None:
 
 
 def _register_completion(server: RobbddServer) -> None:
-    options = types.CompletionOptions(trigger_characters=["<", ".", '"', "/", " "], resolve_provider=True)
+    options = types.CompletionOptions(trigger_characters=["<", ".", '"', "'", "/", " "], resolve_provider=True)
 
     @server.feature(types.TEXT_DOCUMENT_COMPLETION, options)
     async def completion(ls: RobbddServer, params: types.CompletionParams) -> list[types.CompletionItem]:

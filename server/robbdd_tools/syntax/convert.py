@@ -19,12 +19,13 @@ _KINDS = {"obj": "object", "ws": "workspace", "agn": "agent"}
 
 
 def convert(raw: RawNode, text: str) -> Any:
-    """Return the tree node of a parser's object made from ``text``."""
+    """Return the tree node of a parser's object made from ``text``, which may have been mended by signs behind it."""
     rule = type(raw).__name__
-    span = _span(raw)
+    span = Span(min(raw._tx_position, len(text)), min(raw._tx_position_end, len(text)))
     if rule.endswith("Ref"):
-        start = text.index(raw.path, span.start)
-        return tree.Ref(Span(start, start + len(raw.path)), rule.removesuffix("Ref"), raw.path)
+        start = text.find(raw.path, span.start)
+        start, end = (start, start + len(raw.path)) if start >= 0 else (span.end, span.end)
+        return tree.Ref(Span(start, end), rule.removesuffix("Ref"), raw.path)
     word = word_of_rule(rule)
     if word is not None:
         return tree.PhraseUse(span, word, _phrase_arguments(raw, text))
@@ -48,10 +49,6 @@ def _value(value: Any, text: str) -> Any:
     if value is None or isinstance(value, str | bool):
         return value
     return convert(value, text)
-
-
-def _span(raw: RawNode) -> Span:
-    return Span(raw._tx_position, raw._tx_position_end)
 
 
 def _phrase_arguments(raw: RawNode, text: str) -> tuple[tuple[str, tree.Ref | tree.Name], ...]:

@@ -30,4 +30,6 @@ def read_piece(language: str, text: str) -> Piece:
     faults = tuple(fault_in(text, fault) for fault in recovered.faults)
     if recovered.parsed is None:
         return Piece(None, faults, None)
-    return Piece(convert(recovered.parsed.declaration, recovered.text), faults, recovered.parsed.trailing)
+    # What was put behind the end to mend it is no text of the user's.
+    mended = recovered.text[: len(text)]
+    return Piece(convert(recovered.parsed.declaration, mended), faults, recovered.parsed.trailing)

@@ -29,8 +29,9 @@ _HEADERS = (
     (re.compile(r"Scenario\s+Template" + _NAMED), SymbolKind.TEMPLATE),
     (re.compile(r"User\s+Story" + _NAMED), SymbolKind.STORY),
     (re.compile(r"distrib\b" + _NAMED), SymbolKind.DISTRIBUTION),
-    (re.compile(rf"ktree\s+inst\b(?:\s*{_ARGUMENT}|\s+){_NAME}\s+of\b(?:\s*<\s*{_TARGET})?"), SymbolKind.TREE_INSTANCE),
-    (re.compile(rf"ktree\s*{_ARGUMENT}{_NAME}"), SymbolKind.TREE),
+    (re.compile(rf"ktree(?:\s+inst\b)?{_NAMED}\s+of\b(?:\s*<\s*{_TARGET})?"), SymbolKind.TREE_INSTANCE),
+    (re.compile(rf"ktree\s+inst\b{_NAMED}\s*<\s*{_TARGET}"), SymbolKind.TREE_INSTANCE),
+    (re.compile(rf"ktree\s*(?:{_ARGUMENT}|{_DAMAGED}){_NAME}"), SymbolKind.TREE),
     (re.compile(rf"ktree\s+{_NAME}(?P<ns>)"), SymbolKind.TREE_TEMPLATE),
     (re.compile(r"bhv\s+impl\b" + _NAMED), SymbolKind.IMPLEMENTATION),
     (re.compile(r"obs\s+provider\b" + _NAMED), SymbolKind.PROVIDER),
@@ -58,7 +59,7 @@ _PARTS = {
 _KINEMATIC = {SymbolKind.TREE, SymbolKind.TREE_TEMPLATE, SymbolKind.SCENE_INSTANCE}
 _KINEMATIC_PART = re.compile(
     r"(?<![\w\-.<])(?P<kind>kgraph|body|frame|pose|fixed|revolute|model|camera|force-torque|imu)"
-    rf"\s+(?:{_ARGUMENT})?{_NAME}"
+    rf"\s+(?:{_ARGUMENT}|{_DAMAGED})?{_NAME}"
 )
 _KINEMATIC_PARTS = {
     "kgraph": SymbolKind.GRAPH,

@@ -1,0 +1,52 @@
+"""What may stand inside quotes, half typed: the path of an import or of a model file, an entry of the catalog."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from urllib.parse import quote, urljoin
+
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.checks.catalog_entry import known_entries
+from robbdd_tools.names.imports import IMPORTABLE
+from robbdd_tools.names.index import language_of
+
+_IMPORT = re.compile(r"import\s*[\"']([^\"']*)\Z")
+_MODEL = re.compile(r"\bsys\s+path\s*=\s*[\"']([^\"']*)\Z")
+_ENTRY = re.compile(r"\bcatalog\s*[\"']([^\"']*)\Z")
+_MODEL_ENDINGS = frozenset({".xml", ".mjcf", ".urdf", ".usd", ".usda", ".usdc"})
+
+
+def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str]]:
+    """Yield what may stand in the quotes that a line ends in: name, kind, and how much of it is typed already."""
+    if match := _ENTRY.search(line):
+        yield from ((name, "catalog", match[1]) for name in sorted(known_entries(language_of(uri))))
+        return
+    wanted = frozenset(f".{kind}" for kind in IMPORTABLE.get(language_of(uri), ()))
+    match = _IMPORT.search(line)
+    if match is None:
+        match, wanted = _MODEL.search(line), _MODEL_ENDINGS
+    if match is not None:
+        folder, _, last = match[1].rpartition("/")
+        for name, kind in _entries(uri, folder and f"{folder}/", wanted):
+            yield name, kind, last
+
+
+def _entries(uri: str, folder: str, endings: Collection[str]) -> Iterator[tuple[str, str]]:
+    """Yield the folders (ending in ``/``) and the files with some endings in a folder, given relative to a file."""
+    own, place = uri_to_path(uri), uri_to_path(urljoin(uri, quote(folder) or "./"))
+    if own is None or place is None:
+        return
+    for entry in _listed(place):
+        if entry.is_dir():
+            yield f"{entry.name}/", "folder"
+        elif entry.suffix.lower() in endings and entry != own:
+            yield entry.name, "file"
+
+
+def _listed(folder: Path) -> list[Path]:
+    try:
+        return sorted(entry for entry in folder.iterdir() if not entry.name.startswith("."))
+    except OSError:
+        return []
