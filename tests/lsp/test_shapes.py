@@ -15,6 +15,7 @@ from pytest_lsp import LanguageClient
 from kit import FOLDER, MODEL, SCENE
 from lsp_kit import CLIENTS, PATIENCE, Editor
 from robbdd_tools.graph.user_shapes import EditorShapes
+from robbdd_tools.lsp import shapes
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.worker import Answer, Request
 
@@ -106,6 +107,29 @@ async def test_a_killed_process_is_started_again_with_what_it_owes(answers: Answ
     answer = await answers.next()
     assert (answer.revision, [entry.code for entry in answer.diagnostics]) == (2, ["shacl-horizon"])
     assert answers.validator.process_id != killed
+
+
+@pytest.mark.parametrize(
+    ("fault", "told"), [("error", "RuntimeError"), ("end", "ended over it"), ("hang", "longer than 5 seconds")]
+)
+async def test_a_file_that_validation_fails_over_is_told_and_all_others_are_answered(
+    answers: Answers, monkeypatch: pytest.MonkeyPatch, fault: str, told: str
+) -> None:
+    folder = str(Path(__file__).parent)
+    monkeypatch.setattr(
+        shapes, "_WORKER", f"import sys; sys.path.insert(0, {folder!r}); from planted_worker import main; main"
+    )
+    monkeypatch.setattr(shapes, "HANGING", 5.0)
+    other = f"{FOLDER}other.bdd"
+    texts = {f"{FOLDER}lab.scene": (1, SCENE), other: (1, MODEL.replace("0.5 seconds", "0 seconds"))}
+    texts |= {MAIN: (1, f"{MODEL}// planted {fault}")}
+    for number, uri in enumerate((MAIN, other)):
+        answers.validator.request(Request(number, uri, texts, EditorShapes()))
+    found = {answer.uri: answer for answer in (await answers.next(), await answers.next())}
+    assert told in found[MAIN].error
+    assert (found[other].error, [entry.code for entry in found[other].diagnostics]) == ("", ["shacl-horizon"])
+    answers.ask(3, MODEL)
+    assert (await answers.next()) == Answer(3, MAIN, ())
 
 
 async def test_only_the_newest_revision_is_answered(answers: Answers) -> None:

@@ -73,3 +73,21 @@ class Document:
         start = self.line_starts[line]
         end = self.line_starts[line + 1] if line + 1 < len(self.line_starts) else len(self.text)
         return self.text[start:end].rstrip("\r\n")
+
+
+def edited_part(old: str, new: str) -> tuple[int, int]:
+    """Return start and end in ``old`` of the smallest part that has to be replaced to get ``new``."""
+    start = _common(old, new)
+    return start, len(old) - _common(old[start:][::-1], new[start:][::-1])
+
+
+def _common(one: str, other: str) -> int:
+    """Return the length of the longest common prefix, by comparing ever finer slices."""
+    low, high = 0, min(len(one), len(other))
+    while low < high:
+        middle = (low + high + 1) // 2
+        if one[low:middle] == other[low:middle]:
+            low = middle
+        else:
+            high = middle - 1
+    return low

@@ -180,7 +180,7 @@ class RobbddServer(LanguageServer):
         if not self.pulls:
             await self._publish_one(uri)
         request, texts = await self.analyse(lambda snapshot: self._order(snapshot, uri), urgent=False)
-        self._shapes.request(uri, texts)
+        self._shapes.request(uri, request.revision, texts)
         self.validator.request(request)
 
     def opened(self) -> list[str]:
@@ -279,7 +279,7 @@ class RobbddServer(LanguageServer):
         return await self.analyse(find, urgent=False)
 
     def _shapes_found(self, answer: Answer) -> None:
-        """Take an answer of the validation process, which is the newest for its file."""
+        """Take an answer of the validation process."""
         if self._shapes.take(answer):
             self.spawn(self._show_diagnostics(list(self._opened)))
 

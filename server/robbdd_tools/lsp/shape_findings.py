@@ -1,24 +1,28 @@
-"""What the validation process has found in the open files, each finding as long as its text stands."""
+"""What the validation process has found in the open files, wherever an edit since then leaves it in its place."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.document import Span, edited_part
 from robbdd_tools.lsp.convert import document_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
-    from robbdd_tools.base.diagnostic import Diagnostic
     from robbdd_tools.lsp.worker import Answer
     from robbdd_tools.names.project import Snapshot
+
+UNCHECKED = "the shapes were not checked, because of an internal error: {}; they will be after the next change"
 
 
 @dataclass(frozen=True, slots=True)
 class _Found:
     """What was found about a file, in itself and in its imports, and the texts that this is about, by URI."""
 
+    revision: int
     diagnostics: tuple[Diagnostic, ...]
     texts: Mapping[str, str]
 
@@ -28,19 +32,27 @@ class ShapeFindings:
 
     def __init__(self) -> None:
         self._found: dict[str, _Found] = {}
-        self._requested: dict[str, Mapping[str, str]] = {}
+        self._requested: dict[str, dict[int, Mapping[str, str]]] = {}
 
-    def request(self, uri: str, texts: Mapping[str, str]) -> None:
-        """Note the texts that the next answer about a file will be about."""
-        self._requested[uri] = texts
+    def request(self, uri: str, revision: int, texts: Mapping[str, str]) -> None:
+        """Note the texts that an answer about a file will be about."""
+        self._requested.setdefault(uri, {})[revision] = texts
 
     def take(self, answer: Answer) -> bool:
-        """Take an answer, which is the newest for its file; tells whether there is something to show or to remove."""
-        if answer.error:
-            return False
+        """Take an answer; tells whether there is something to show or to remove."""
+        requested = self._requested.get(answer.uri, {})
         before = self._found.get(answer.uri)
-        self._found[answer.uri] = _Found(answer.diagnostics, self._requested[answer.uri])
-        return bool(answer.diagnostics or (before and before.diagnostics))
+        if answer.revision not in requested or (before is not None and before.revision > answer.revision):
+            return False
+        diagnostics = answer.diagnostics
+        if answer.error:
+            told = UNCHECKED.format(answer.error)
+            diagnostics = (Diagnostic(answer.uri, Span(0, 0), Severity.WARNING, "shapes-unchecked", told),)
+        self._found[answer.uri] = _Found(answer.revision, diagnostics, requested[answer.revision])
+        self._requested[answer.uri] = {
+            revision: texts for revision, texts in requested.items() if revision > answer.revision
+        }
+        return bool(diagnostics or (before and before.diagnostics))
 
     def forget(self, uri: str) -> None:
         """Drop what is known about a file; an answer about it must not come any more."""
@@ -48,8 +60,30 @@ class ShapeFindings:
         self._requested.pop(uri, None)
 
     def valid(self, snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-        """Return the findings in a file, whichever open file they are about, while its text is the same."""
+        """Return the findings in a file, whichever open file they are about, except where its text has changed."""
         text = document_of(snapshot, uri).text
         # A list, since the other thread may add and remove meanwhile.
-        about_this = [found for found in list(self._found.values()) if found.texts.get(uri) == text]
-        return [diagnostic for found in about_this for diagnostic in found.diagnostics if diagnostic.uri == uri]
+        return [one for found in list(self._found.values()) for one in _in_place(found, uri, text)]
+
+
+def _in_place(found: _Found, uri: str, text: str) -> Iterator[Diagnostic]:
+    """Yield the findings in a file at their places in its present text."""
+    old = found.texts.get(uri)
+    here = [one for one in found.diagnostics if one.uri == uri] if old is not None else []
+    if old is None or not here or old == text:
+        yield from here
+        return
+    start, end = edited_part(old, text)
+    grown = len(text) - len(old)
+    for one in here:
+        span = _moved(one.span, start, end, grown)
+        if span is not None:
+            # Other places, and what would mend it, come again with the next answer.
+            yield replace(one, span=span, related=(), fixes=())
+
+
+def _moved(span: Span, start: int, end: int, grown: int) -> Span | None:
+    """Return where a place is after an edit between ``start`` and ``end``, ``None`` where the edit touches it."""
+    if span.end < start:
+        return span
+    return span.shifted(grown) if span.start > end else None

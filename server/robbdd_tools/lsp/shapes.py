@@ -12,33 +12,37 @@ from contextlib import suppress
 from typing import Any
 
 from robbdd_tools.lsp.requests import log_background_error
-from robbdd_tools.lsp.worker import LENGTH, Answer, Forget, Request, frame
+from robbdd_tools.lsp.worker import LENGTH, Answer, Begun, Forget, Request, frame
 
 PAUSE = 0.02
 """Seconds in which edits that follow one another at once, as an editor sends them for several cursors, become one."""
 MOST_DEATHS = 2
-"""Deaths of the process, with no answer in between, after which what it was asked is given up."""
+"""Deaths of the process over the same file after which that file is given up until it changes."""
+HANGING = 120.0
+"""Seconds after which one validation is taken to hang: the first one of 10,000 lines takes about 5 s of processor."""
 # Not "-m": the messages' classes must have the same module name in both processes.
 _WORKER = "from robbdd_tools.lsp.worker import main; main"
 _LOG = logging.getLogger(__name__)
 
 
 class ShapeValidator:
-    """Validates files in a worker process, the newest request of each file only.
+    """Validates files in a worker process.
 
-    ``deliver`` gets each answer whose request is still the newest of its file, also one that tells of an error. With
-    ``in_passing`` the process leaves the processor to all others. A newer request is sent at once, so
-    that the process leaves the older one. The process is started with the first request; when it dies, it is started
-    again with what it has not answered.
+    ``deliver`` gets each answer about a file that is still asked for, also one that tells of an error. With
+    ``in_passing`` the process leaves the processor to all others. A newer request is sent at once, so that the process
+    leaves the older one, unless it has left too many. The process is started with the first request; when it dies, or
+    hangs and is killed, it is started again with what it has not answered, except for the file that it fails over.
     """
 
     def __init__(self, deliver: Callable[[Answer], None], in_passing: bool = False) -> None:
-        self._code = f"{_WORKER}(in_passing={in_passing})"
+        self._in_passing = in_passing
         self._deliver = deliver
         self._unsent: dict[str, Request | Forget] = {}
         self._open: dict[str, Request] = {}
         self._process: Process | None = None
-        self._deaths = 0
+        self._working = ""
+        self._watch: asyncio.TimerHandle | None = None
+        self._deaths: dict[str, int] = {}
         self._stopped = False
         self._tasks: set[asyncio.Task[None]] = set()
         self._sending: asyncio.Task[None] | None = None
@@ -64,6 +68,7 @@ class ShapeValidator:
     def stop(self) -> None:
         """End the process."""
         self._stopped = True
+        self._work_on("")
         for task in self._tasks:
             task.cancel()
         if self._process is not None and self._process.returncode is None:
@@ -88,7 +93,8 @@ class ShapeValidator:
                 await process.stdin.drain()
 
     async def _start(self) -> Process:
-        self._process = await asyncio.create_subprocess_exec(sys.executable, "-c", self._code, stdin=PIPE, stdout=PIPE)
+        code = f"{_WORKER}(in_passing={self._in_passing})"
+        self._process = await asyncio.create_subprocess_exec(sys.executable, "-c", code, stdin=PIPE, stdout=PIPE)
         self._spawn(self._receive(self._process))
         return self._process
 
@@ -102,30 +108,56 @@ class ShapeValidator:
         if not self._stopped:
             self._died()
 
-    def _take(self, answer: Answer) -> None:
-        self._deaths = 0
-        asked = self._open.get(answer.uri)
-        if asked is None or asked.revision != answer.revision:
+    def _take(self, message: Begun | Answer) -> None:
+        if isinstance(message, Begun):
+            self._deaths.pop("", None)
+            self._work_on(message.uri)
             return
-        del self._open[answer.uri]
-        if answer.error:
-            _LOG.error("validation of %s failed: %s", answer.uri, answer.error)
-        self._deliver(answer)
+        self._work_on("")
+        self._deaths.pop(message.uri, None)
+        asked = self._open.get(message.uri)
+        if asked is None:
+            return
+        if asked.revision == message.revision:
+            del self._open[message.uri]
+        if message.error:
+            _LOG.error("validation of %s failed: %s", message.uri, message.error)
+        self._deliver(message)
+
+    def _work_on(self, uri: str) -> None:
+        """Note what the process works on (``""``: nothing), and see to it that this comes to an end."""
+        self._working = uri
+        if self._watch is not None:
+            self._watch.cancel()
+        self._watch = asyncio.get_running_loop().call_later(HANGING, self._hangs) if uri else None
+
+    def _hangs(self) -> None:
+        uri = self._working
+        self._work_on("")
+        self._give_up(uri, f"it took longer than {HANGING:g} seconds")
+        if self._process is not None:
+            with suppress(ProcessLookupError):
+                self._process.kill()
 
     def _died(self) -> None:
         self._process = None
-        self._deaths += 1
-        if self._deaths < MOST_DEATHS:
-            _LOG.warning("the validation process ended unexpectedly and is started again")
-            for request in self._open.values():
-                self._send(request)
-        elif self._open:
-            _LOG.error("the validation process ended again; it is started with the next change")
-            given_up = list(self._open.values())
-            self._open.clear()
-            self._deaths = 0
-            for request in given_up:
-                self._deliver(Answer(request.revision, request.uri, (), "the validation process ended"))
+        guilty = self._working
+        self._work_on("")
+        self._deaths[guilty] = self._deaths.get(guilty, 0) + 1
+        _LOG.warning("the validation process ended unexpectedly and is started again")
+        if self._deaths[guilty] >= MOST_DEATHS:
+            # One that dies before it begins anything would never answer.
+            for uri in [guilty] if guilty else list(self._open):
+                self._give_up(uri, "the validation process ended over it")
+        for request in self._open.values():
+            self._send(request)
+
+    def _give_up(self, uri: str, problem: str) -> None:
+        self._deaths.pop(uri, None)
+        request = self._open.pop(uri, None)
+        if request is not None:
+            _LOG.error("validation of %s was given up: %s", uri, problem)
+            self._deliver(Answer(request.revision, uri, (), problem))
 
     def _spawn(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         task = asyncio.get_running_loop().create_task(work)

@@ -1,8 +1,8 @@
 """The validation process: reads texts, answers with the shapes' findings. It ends when its input ends.
 
-Frames in both directions are a length (4 bytes, big endian) and a pickled ``Request``, ``Forget`` or ``Answer``; both
-ends are the same installation. A request replaces an older one for the same file, even while that is being worked on;
-only the newest gets an answer.
+Frames in both directions are a length (4 bytes, big endian) and a pickled ``Request``, ``Forget``, ``Begun`` or
+``Answer``; both ends are the same installation. A request replaces an older one for the same file, even while that is
+being worked on, but not endlessly.
 """
 
 from __future__ import annotations
@@ -25,6 +25,8 @@ from robbdd_tools.names.project import Project, Snapshot
 
 IN_PASSING = 10
 """Niceness: high enough to give way to the editor and the other processes, low enough to get on."""
+MOST_LEFT = 8
+"""Validations of a file in a row that are left for a newer one: who types without end sees findings all the same."""
 LENGTH = struct.Struct(">I")
 
 
@@ -52,6 +54,13 @@ class Forget:
 
 
 @dataclass(frozen=True, slots=True)
+class Begun:
+    """The process works on ``uri`` from now on, until it answers or begins something else (``""``: it waits)."""
+
+    uri: str
+
+
+@dataclass(frozen=True, slots=True)
 class Answer:
     """The findings about a file and its imports, or what went wrong inside.
 
@@ -67,7 +76,7 @@ class Answer:
     documents: dict[str, Document] = field(default_factory=dict[str, Document])
 
 
-def frame(message: Request | Forget | Answer) -> bytes:
+def frame(message: Request | Forget | Begun | Answer) -> bytes:
     """Return a message as it is sent."""
     data = pickle.dumps(message)
     return LENGTH.pack(len(data)) + data
@@ -117,21 +126,30 @@ class Worker:
     inbox: Inbox
     project: Project = field(default_factory=Project)
     validations: dict[str, Validation] = field(default_factory=dict[str, Validation])
+    left: dict[str, int] = field(default_factory=dict[str, int])
+    """How many validations of a file in a row were left because a newer one was asked for."""
+
+    def forget(self, uri: str) -> None:
+        """Drop what is known of a file."""
+        self.validations.pop(uri, None)
+        self.left.pop(uri, None)
 
     def answer(self, request: Request) -> Answer | None:
-        """Return the findings about a file; ``None`` when a newer request for it has come meanwhile."""
+        """Return the findings about a file; ``None`` when it was left because a newer request has come meanwhile."""
         self.project.replace(request.texts)
         if request.surveyed:
             return self._survey(request)
         validation = self.validations.setdefault(request.uri, Validation())
+        left = self.left.pop(request.uri, 0)
 
         def is_superseded() -> bool:
-            return self.inbox.has_news_of(request.uri)
+            return left < MOST_LEFT and self.inbox.has_news_of(request.uri)
 
         try:
             snapshot = self.project.snapshot()
             found = shape_diagnostics(snapshot, request.uri, request.shapes, validation, is_superseded)
         except Superseded:
+            self.left[request.uri] = left + 1
             return None
         except Exception as error:  # An error of ours must cost one answer, not the process.
             del self.validations[request.uri]
@@ -170,9 +188,14 @@ def main(in_passing: bool = False) -> None:
     # Whatever a library prints must not get between the frames.
     sys.stdout = sys.stderr
     worker = Worker(Inbox(sys.stdin.buffer))
+
+    def tell(message: Begun | Answer) -> None:
+        stdout.write(frame(message))
+        stdout.flush()
+
     while (message := worker.inbox.take()) is not None:
         if isinstance(message, Forget):
-            worker.validations.pop(message.uri, None)
-        elif (answer := worker.answer(message)) is not None:
-            stdout.write(frame(answer))
-            stdout.flush()
+            worker.forget(message.uri)
+            continue
+        tell(Begun(message.uri))
+        tell(worker.answer(message) or Begun(""))

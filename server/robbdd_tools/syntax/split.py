@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
+from robbdd_tools.base.document import edited_part
+
 _NAME = r"[^\W\d][\w\-]*"
 _GAP = r"(?:\s|//[^\n]*\n)"
 """What may stand between two words: white space and comments."""
@@ -74,13 +76,12 @@ def resplit(language: str, old: str, chunks: tuple[Chunk, ...], new: str) -> tup
     the edit (the one before the edited chunk, whose end the edit may have moved) and stop where, behind the edit,
     it meets a start that it has met before.
     """
-    prefix = _common(old, new)
-    suffix = _common(old[prefix:][::-1], new[prefix:][::-1])
-    first = bisect_left(chunks, prefix, key=lambda chunk: chunk.offset) - 2
+    edited, behind_edit = edited_part(old, new)
+    first = bisect_left(chunks, edited, key=lambda chunk: chunk.offset) - 2
     if first < 0:
         return split(language, new)
     shift = len(new) - len(old)
-    behind = {chunk.offset + shift: index for index, chunk in enumerate(chunks) if chunk.offset >= len(old) - suffix}
+    behind = {chunk.offset + shift: index for index, chunk in enumerate(chunks) if chunk.offset >= behind_edit}
     begin = chunks[first].offset
     starts = [begin]
     rest: tuple[Chunk, ...] = ()
@@ -94,18 +95,6 @@ def resplit(language: str, old: str, chunks: tuple[Chunk, ...], new: str) -> tup
     end = rest[0].offset if rest else len(new)
     between = (Chunk(start, new[start:stop]) for start, stop in pairwise((*starts, end)))
     return (*chunks[:first], *between, *rest)
-
-
-def _common(one: str, other: str) -> int:
-    """Return the length of the longest common prefix, by comparing ever finer slices."""
-    low, high = 0, min(len(one), len(other))
-    while low < high:
-        middle = (low + high + 1) // 2
-        if one[low:middle] == other[low:middle]:
-            low = middle
-        else:
-            high = middle - 1
-    return low
 
 
 _LEAD = re.compile(r"\A(?:\s|\ufeff|//[^\n]*)+")
