@@ -135,6 +135,8 @@ def test_many_variations_are_told_in_short() -> None:
     (found,) = clause_diagnostics(case.snapshot, case.uri, findings)
     assert found.message.count("\n") == 6
     assert found.message.endswith("… and 25 more")
+    (found,) = clause_diagnostics(case.snapshot, case.uri, findings, brief=True)
+    assert found.message.count("\n") == 1
     (hint,) = clause_hints(case.snapshot, case.uri, findings)
     assert hint.tooltip.endswith("… and 10 more")
 

@@ -66,7 +66,7 @@ async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(
     editor.open(short(editor))
     await editor.diagnostics()
     command = (await lenses(editor))[0]
-    assert command.title == "Run scenario part-to-bin"
+    assert command.title == "Run"
     params = types.ExecuteCommandParams(command=command.command, arguments=command.arguments)
     answer: Any = await editor.client.workspace_execute_command_async(params)
     assert {name: answer[name] for name in ("total", "holds", "violated", "unknown", "cancelled")} == {

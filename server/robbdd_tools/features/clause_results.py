@@ -102,10 +102,11 @@ def pass_rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) ->
     return PassRate(sum(scenario.outcome == "holds" for scenario in finished), len(finished), stale)
 
 
-def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings) -> list[Diagnostic]:
+def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:
     """Return a finding for each clause that did not hold in some variation; none where the text has changed since.
 
-    It names the worst variations with the instants, and leads to the rows of their tables.
+    It names the worst variations with the instants, and leads to the rows of their tables; a ``brief`` one names the
+    worst alone: it stands above a hover that tells of all.
     """
     rows = _rows(snapshot, uri) if findings.clauses else {}
     found: list[Diagnostic] = []
@@ -114,7 +115,8 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings) -> list
             message = f"This clause could not have failed in the last run: {hint.vacuous}."
             found.append(Diagnostic(uri, hint.span, Severity.HINT, "clause-vacuous", message))
         if hint.failing and not hint.stale:
-            lines = _shortened([_line(entry) for entry in hint.failing], MOST_TOLD)
+            told = list(map(_line, hint.failing))
+            lines = told[:1] if brief else _shortened(told, MOST_TOLD)
             severity = Severity.ERROR if hint.outcome == "violated" else Severity.WARNING
             related = tuple(
                 Related(uri, rows[scenario.variant, scenario.row], _line((scenario, judgement)))

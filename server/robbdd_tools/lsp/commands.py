@@ -102,7 +102,7 @@ def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionPar
     """Yield the fix of a clause that no step can judge."""
     uri = params.text_document.uri
     span = ls.convert.span(document_of(snapshot, uri), params.range)
-    for found in clause_diagnostics(snapshot, uri, ls.findings):
+    for found in clause_diagnostics(snapshot, uri, ls.findings, brief=ls.shows_pictures):
         if found.code == _UNDEFINED and found.span.start <= span.end and span.start <= found.span.end:
             title = "Write a step skeleton"
             yield types.CodeAction(
@@ -115,7 +115,7 @@ def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionPar
 
 
 def _lenses(ls: RobbddServer, snapshot: Snapshot, variant: PlacedVariant, recorded: bool) -> Iterator[types.Command]:
-    yield _command(f"Run scenario {variant.definition.symbol.name}", RUN, variant)
+    yield _command("Run", RUN, variant)
     rate = pass_rate(snapshot, variant, ls.findings)
     if rate is not None and rate.passed < rate.run:
         yield _command(f"Rerun {rate.run - rate.passed} failed", RERUN, variant)

@@ -82,7 +82,8 @@ def _register_hover(server: RobbddServer) -> None:
             pictures = await asyncio.to_thread(pictures_of, ls.stores, found.judged) if ls.shows_pictures else ""
             # Hovers are low: what is to be seen stands right below the title.
             title, _, rest = markdown.partition("\n\n")
-            markdown = "\n\n".join(filter(None, (title, link, pictures, rest)))
+            title = " · ".join(filter(None, (title, link)))
+            markdown = "\n\n".join(filter(None, (title, pictures, rest)))
         client = ls.client_capabilities.text_document
         formats = client.hover.content_format if client is not None and client.hover is not None else None
         return types.Hover(contents=markup(markdown, formats), range=place)

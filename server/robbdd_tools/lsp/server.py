@@ -272,7 +272,7 @@ class RobbddServer(LanguageServer):
 
         def find(snapshot: Snapshot) -> tuple[int, list[types.Diagnostic]]:
             found = [*fast_diagnostics(snapshot, uri), *self._shapes.valid(snapshot, uri)]
-            found += clause_diagnostics(snapshot, uri, self.findings)
+            found += clause_diagnostics(snapshot, uri, self.findings, brief=self.shows_pictures)
             document = document_of(snapshot, uri)
             return document.version, [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
 

@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 
 from robbdd_tools.run.report import MINUS, margin
 
-WIDTH, HEIGHT = 380, 188
+WIDTH, HEIGHT = 320, 180
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 34, 20
 """Room around the plot for numbers and for the names of events, pixels."""
 INK, LINE, GOOD, BAD = "#8a8f98", "#3f8fd6", "#2ea043", "#e5534b"
