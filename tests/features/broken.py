@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from checks.models import LINES, SETS, story
+from checks.test_behaviour_tree import TREE, linked
+from checks.test_behaviour_tree import other as another
 from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE
 from syntax.test_published import PUBLISHED, SCENE_IMPORT
 
@@ -19,6 +21,15 @@ _ROW = "                | <parts.bolt> | <arms.panda> | <places.tray_ws> |\n"
 _LISTED = "                | <parts.bolt> | <arms.panda> | { <places.tray_ws>,\n                <places.bench_ws> } |\n"
 _ELSEWHERE = "//- more.scene\nns x = 'https://example.org/x/'\nagn set (ns=x) robots { agent r2 }\n"
 _EXECUTABLE = "//- main.scenex\nimport \"lab.scene\"\nns x = 'https://example.org/x/'\n"
+
+
+_REPEATED = (
+    EVENTS
+    + TREE
+    + "Scenario Template (ns=t) fetch { duration: from <start> until <end> task: <task> set var parts var robot\n"
+    + "for all ( var part in <parts> ) { When: Behaviour (ns=t) carry { duration: from <pick-start> until <place-end>\n"
+    + "<robot> picks <part>\n node: <handling.pick>\n } } }\n"
+)
 
 
 def _without(*lines: str) -> str:
@@ -136,6 +147,24 @@ BROKEN: dict[str, list[str]] = {
         _declared("Event (ns=t) spare\n"),
         _declared("Event (ns=t) spare Event (ns=t) spare-too\n"),
         _declared("Event\n (ns=t)\n spare // not needed\n"),
+    ],
+    "behaviour-tree": [
+        EVENTS + TREE + linked("pick") + another(TEMPLATE) + STORY,
+        EVENTS + TREE.replace("        node place\n", "") + linked("pick") + another(linked("pick")) + STORY,
+        _REPEATED,
+    ],
+    "namespace-iri": [MODEL.replace("'https://example.org/t/'", "'t'"), MODEL.replace("https://example.org/t/", "a b")],
+    "missing-value": [
+        _without("                var <fetch.robot>: { <arms.panda> }\n"),
+        _without(
+            "                var <fetch.robot>: { <arms.panda> }\n",
+            "                var <fetch.goal>: { <places.bench_ws>, <places.tray_ws> }\n",
+        ),
+    ],
+    "duplicate-name": [
+        _declared("Event (ns=t) start\n"),
+        _swapped("in-tray", "on-bench"),
+        "//- lab.scene\n" + SCENE.replace("object nut", "object nut, object nut, object nut-2"),
     ],
     "unused-task": [_declared("Task (ns=t) spare\n")],
     "unused-set": [

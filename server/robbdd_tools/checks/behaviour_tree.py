@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Related, Severity
+from robbdd_tools.base.document import Span
 from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.checks.finding import listed, removal
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.document import Span
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration
@@ -39,7 +41,8 @@ def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
                 "one node cannot execute a behaviour that is repeated for all elements of a set: "
                 "take the link out, or state the behaviour outside of 'for all'"
             )
-            yield Diagnostic(link.uri, link.span, Severity.ERROR, CODE, message)
+            fixes = tuple(_without(snapshot, link, "Take the link out"))
+            yield Diagnostic(link.uri, link.span, Severity.ERROR, CODE, message, fixes=fixes)
     trees = [
         (root, placed.offset)
         for placed in file.declarations
@@ -49,11 +52,13 @@ def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
         return
     links = list(links_to(snapshot, file))
     for declared, offset in trees:
-        yield from _leaves(file.document.uri, declared, offset, links)
+        yield from _leaves(snapshot, file, declared, offset, links)
 
 
-def _leaves(uri: str, declared: tree.BehaviourTree, offset: int, links: list[Link]) -> Iterator[Diagnostic]:
-    name = declared.name.text
+def _leaves(
+    snapshot: Snapshot, file: FileAnalysis, declared: tree.BehaviourTree, offset: int, links: list[Link]
+) -> Iterator[Diagnostic]:
+    uri, name = file.document.uri, declared.name.text
     linked: dict[str, list[Link]] = {}
     for link in links:
         if link.node[0] == uri and link.node[1].startswith(f"{name}."):
@@ -68,13 +73,56 @@ def _leaves(uri: str, declared: tree.BehaviourTree, offset: int, links: list[Lin
                 f"nothing says what '{path}' does, so the tree cannot go on there: "
                 f"link the behaviour of a scenario template to it, 'node: <{path}>'"
             )
-            yield Diagnostic(uri, span, Severity.WARNING, CODE, message)
+            yield Diagnostic(uri, span, Severity.WARNING, CODE, message, fixes=tuple(_linking(snapshot, file, path)))
         words = {link.behaviour.action.word: link for link in reversed(found)}
         if len(words) > 1:
             said = " and ".join(f"'{link.behaviour.name.text}'" for link in reversed(words.values()))
             related = tuple(Related(link.uri, link.span, "linked here") for link in reversed(words.values()))
             message = f"'{path}' cannot execute different behaviours, {said}: give one of them a node of its own"
-            yield Diagnostic(uri, span, Severity.ERROR, CODE, message, related)
+            _, *others = reversed(words.values())
+            same = [
+                link for link in found if any(link.behaviour.action.word == one.behaviour.action.word for one in others)
+            ]
+            fixes = tuple(_apart(snapshot, same))
+            yield Diagnostic(uri, span, Severity.ERROR, CODE, message, related, fixes)
+
+
+def _linking(snapshot: Snapshot, file: FileAnalysis, path: str) -> Iterator[Fix]:
+    """Yield the links to a node that behaviours of templates could have which have none yet."""
+    for uri in (file.document.uri, *snapshot.importers(file.document.uri)):
+        other = snapshot.file(uri)
+        for placed in other.declarations if other is not None else ():
+            for use in _free_uses(placed.declaration):
+                end = use.action.span.end + placed.offset
+                line = snapshot.document(uri).line_text(snapshot.document(uri).position(end).line)
+                indent = line[: len(line) - len(line.lstrip())]
+                edit = Edit(uri, Span(end, end), f"\n{indent}node: <{path}>")
+                yield Fix(f"Link the behaviour '{use.name.text}' to it", (edit,))
+
+
+def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
+    """Yield the behaviours of a sound template that name no node and are not repeated."""
+    root = declaration.tree
+    if isinstance(root, tree.Template) and not declaration.faults and root.body.when is not None:
+        use = root.body.when.behaviour
+        if use.node is None and use.name.span.start < use.name.span.end:
+            yield use
+
+
+def _apart(snapshot: Snapshot, links: list[Link]) -> Iterator[Fix]:
+    """Yield the change that takes out some links, all of which are in the way of others."""
+    removals = [fix for link in links for fix in _without(snapshot, link, "")]
+    names = listed(list(dict.fromkeys(link.behaviour.name.text for link in links)))
+    if removals and len(removals) == len(links):
+        yield Fix(f"Take out the link of {names}", tuple(edit for fix in removals for edit in fix.edits))
+
+
+def _without(snapshot: Snapshot, link: Link, title: str) -> Iterator[Fix]:
+    document = snapshot.document(link.uri)
+    begun = re.search(r"\bnode\s*:\s*<\s*\Z", document.text[: link.span.start])
+    ended = re.compile(r"\s*>").match(document.text, link.span.end)
+    if begun is not None and ended is not None:
+        yield removal(document, title, Span(begun.start(), ended.end()))
 
 
 def links_to(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Link]:

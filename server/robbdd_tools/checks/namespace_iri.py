@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
 from robbdd_tools.syntax.tree import Namespace
 
 if TYPE_CHECKING:
@@ -22,10 +22,8 @@ def namespace_iri(_: Snapshot, analysis: FileAnalysis) -> Iterator[Diagnostic]:
     for placed in analysis.declarations:
         root = placed.declaration.tree
         if isinstance(root, Namespace) and not _IRI.fullmatch(root.iri.value):
-            yield Diagnostic(
-                analysis.document.uri,
-                root.iri.span.shifted(placed.offset),
-                Severity.ERROR,
-                "namespace-iri",
-                f"'{root.iri.value}' is no absolute IRI: write one such as 'https://example.org/{root.name.text}/'",
-            )
+            uri, span = analysis.document.uri, root.iri.span.shifted(placed.offset)
+            example = f"'https://example.org/{root.name.text}/'"
+            message = f"'{root.iri.value}' is no absolute IRI: write one such as {example}"
+            fix = Fix(f"Change to {example}", (Edit(uri, span, example),))
+            yield Diagnostic(uri, span, Severity.ERROR, "namespace-iri", message, fixes=(fix,))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import count
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Related, Severity
@@ -13,7 +14,8 @@ from robbdd_tools.names.roles import ROLE_KINDS, may_declare
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.index import Declared
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.index import Declared, FileIndex
     from robbdd_tools.names.resolve import Resolution, Unresolved
     from robbdd_tools.names.scope import Scope
     from robbdd_tools.syntax.declaration import Reference
@@ -43,7 +45,17 @@ def repeated(scope: Scope) -> Iterator[Diagnostic]:
             message = f"'{path}' is already declared: give one of the two another name"
             related = (Related(uri, span, "the first declaration"),)
             place = other.symbol.span.shifted(other.offset)
-            yield Diagnostic(uri, place, Severity.ERROR, "duplicate-name", message, related)
+            fixes = () if other.symbol.kind in ROLE_KINDS["Variable"] else tuple(_renamed(file, path, place))
+            yield Diagnostic(uri, place, Severity.ERROR, "duplicate-name", message, related, fixes)
+
+
+def _renamed(file: FileIndex, path: str, place: Span) -> Iterator[Fix]:
+    """Yield a new name for what is declared again; what refers to the name means the first one."""
+    name = path.rpartition(".")[2]
+    taken = {known.rpartition(".")[2] for known in file.names.entries}
+    free = next(found for number in count(2) if (found := f"{name}-{number}") not in taken)
+    if file.document.text[place.start : place.end] == name:
+        yield Fix(f"Change to '{free}'", (Edit(file.document.uri, place, free),))
 
 
 def _same_variable(first: Declared, second: Declared) -> bool:
