@@ -11,8 +11,9 @@ from kit import FOLDER, MODEL, SCENE
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.graph.user_shapes import EditorShapes
+from robbdd_tools.lsp.frames import Answer, Request
 from robbdd_tools.lsp.shape_findings import ShapeFindings
-from robbdd_tools.lsp.worker import MOST_LEFT, Answer, Inbox, Request, Worker
+from robbdd_tools.lsp.worker import MOST_LEFT, Inbox, Worker
 from robbdd_tools.names.project import Project
 
 MAIN = f"{FOLDER}main.bdd"

@@ -16,8 +16,8 @@ from kit import FOLDER, MODEL, SCENE
 from lsp_kit import CLIENTS, PATIENCE, Editor
 from robbdd_tools.graph.user_shapes import EditorShapes
 from robbdd_tools.lsp import shapes
+from robbdd_tools.lsp.frames import Answer, Request
 from robbdd_tools.lsp.shapes import ShapeValidator
-from robbdd_tools.lsp.worker import Answer, Request
 
 SAFETY = """@prefix sh: <http://www.w3.org/ns/shacl#> .
 @prefix bdd: <https://secorolab.github.io/metamodels/acceptance-criteria/bdd#> .

@@ -13,9 +13,9 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.user_shapes import EditorShapes
 from robbdd_tools.lsp import survey
 from robbdd_tools.lsp.convert import Converter
+from robbdd_tools.lsp.frames import Answer, Request
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.survey import Survey
-from robbdd_tools.lsp.worker import Answer, Request
 
 PATIENCE = 10.0
 

@@ -22,6 +22,7 @@ from robbdd_tools.features.results import NOTHING, Results
 from robbdd_tools.lsp.analysis import AnalysisThread
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.frames import Answer, Request
 from robbdd_tools.lsp.importers import Importers
 from robbdd_tools.lsp.kept_results import load_results
 from robbdd_tools.lsp.newest import Newest
@@ -33,7 +34,6 @@ from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.stores import Stores
 from robbdd_tools.lsp.survey import Survey
-from robbdd_tools.lsp.worker import Answer, Request
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 

@@ -11,8 +11,8 @@ from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from typing import Any
 
+from robbdd_tools.lsp.frames import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.lsp.requests import log_background_error
-from robbdd_tools.lsp.worker import LENGTH, Answer, Begun, Forget, Request, frame
 
 PAUSE = 0.02
 """Seconds in which edits that follow one another at once, as an editor sends them for several cursors, become one."""

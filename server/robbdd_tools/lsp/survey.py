@@ -20,8 +20,8 @@ from robbdd_tools.lsp.shapes import ShapeValidator
 if TYPE_CHECKING:
     from lsprotocol import types
 
+    from robbdd_tools.lsp.frames import Answer
     from robbdd_tools.lsp.server import RobbddServer
-    from robbdd_tools.lsp.worker import Answer
 
 PAUSE = 1.0
 """Seconds after the last change until files are looked at."""

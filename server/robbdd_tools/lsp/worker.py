@@ -1,85 +1,25 @@
-"""The validation process: reads texts, answers with the shapes' findings. It ends when its input ends.
-
-Frames in both directions are a length (4 bytes, big endian) and a pickled ``Request``, ``Forget``, ``Begun`` or
-``Answer``; both ends are the same installation. A request replaces an older one for the same file, even while that is
-being worked on, but not endlessly.
-"""
+"""The validation process: reads texts, answers with the shapes' findings. It ends when its input ends."""
 
 from __future__ import annotations
 
 import os
 import pickle
-import struct
 import sys
 import threading
 from dataclasses import dataclass, field
 from typing import BinaryIO
 
-from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import read_text, uri_to_path
 from robbdd_tools.features.diagnostics import fast_diagnostics, shape_diagnostics
 from robbdd_tools.graph.incremental import Superseded, Validation
-from robbdd_tools.graph.user_shapes import EditorShapes
+from robbdd_tools.lsp.frames import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.names.project import Project, Snapshot
 
 IN_PASSING = 10
 """Niceness: high enough to give way to the editor and the other processes, low enough to get on."""
 MOST_LEFT = 8
 """Validations of a file in a row that are left for a newer one: who types without end sees findings all the same."""
-LENGTH = struct.Struct(">I")
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """Validate ``uri``; ``texts`` holds the version and text of every open file, ``shapes`` what the editor adds.
-
-    A file that is not open is ``surveyed``: all findings are wanted, with the texts that they stand in. Its
-    ``importers`` are the files that build on it, open or not, without which what only they use would seem unused.
-    """
-
-    revision: int
-    uri: str
-    texts: dict[str, tuple[int, str]]
-    shapes: EditorShapes
-    surveyed: bool = False
-    importers: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Forget:
-    """Stop validating ``uri`` and drop what is known of it."""
-
-    uri: str
-
-
-@dataclass(frozen=True, slots=True)
-class Begun:
-    """The process works on ``uri`` from now on, until it answers or begins something else (``""``: it waits)."""
-
-    uri: str
-
-
-@dataclass(frozen=True, slots=True)
-class Answer:
-    """The findings about a file and its imports, or what went wrong inside.
-
-    Of a surveyed file also the files that were ``reached``, looked at or missed, and the ``documents`` that the
-    findings name.
-    """
-
-    revision: int
-    uri: str
-    diagnostics: tuple[Diagnostic, ...]
-    error: str = ""
-    reached: frozenset[str] = frozenset()
-    documents: dict[str, Document] = field(default_factory=dict[str, Document])
-
-
-def frame(message: Request | Forget | Begun | Answer) -> bytes:
-    """Return a message as it is sent."""
-    data = pickle.dumps(message)
-    return LENGTH.pack(len(data)) + data
 
 
 class Inbox:
