@@ -119,7 +119,7 @@ async def test_hover_tells_of_uses_in_closed_files(scene: Editor) -> None:
     async with asyncio.timeout(PATIENCE):
         while "so far" in (told := await hovered(scene, "object bin_ri")):
             pass
-    assert "used 2 times in 2 files" in told
+    assert "used 2 times: bench.scene:13, bench.scenex:13" in told
 
 
 async def test_what_carries_out_a_clause_is_found_in_closed_files(editor: Editor) -> None:
