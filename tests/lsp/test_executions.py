@@ -137,3 +137,52 @@ async def test_results_of_ci_are_those_of_the_execution(editor: Editor, model: P
     assert main(["run", str(model), "--scenario", "far-too-strict", "--first", "1", "--no-store", option, str(results)])
     found = (await ask(editor, "importResults", "testresults", uri=path_to_uri(results)))["scenarios"]
     assert [(one["uri"], one["variant"], one["execution"]) for one in found] == [(path_to_uri(model), VARIANT, TWO)] * 2
+
+
+def show(editor: Editor, model: Path) -> None:
+    text = model.read_text(encoding="utf-8")
+    item = types.TextDocumentItem(uri=path_to_uri(model), language_id="robbdd", version=1, text=text)
+    editor.client.text_document_did_open(types.DidOpenTextDocumentParams(text_document=item))
+
+
+async def lenses(editor: Editor, model: Path) -> list[tuple[str, Any]]:
+    document = types.TextDocumentIdentifier(uri=path_to_uri(model))
+    found = await editor.client.text_document_code_lens_async(types.CodeLensParams(text_document=document))
+    commands = [lens.command for lens in found or () if lens.command is not None]
+    return [(command.title, plain((command.arguments or [None])[0])) for command in commands]
+
+
+async def test_each_execution_is_run_by_a_lens_of_its_own(editor: Editor, model: Path) -> None:
+    show(editor, model)
+    first, second = [{"variant": VARIANT, "execution": iri} for iri in (ONE, TWO)]
+    uri = path_to_uri(model)
+    assert await lenses(editor, model) == [
+        ("Run", {"uri": uri, "only": [first]}),
+        ("Record", {"uri": uri, "only": [first]}),
+        ("4 scenarios", None),
+        ("Run", {"uri": uri, "only": [second]}),
+        ("Record", {"uri": uri, "only": [second]}),
+        ("4 scenarios", None),
+    ]
+    document = types.TextDocumentIdentifier(uri=uri)
+    line = model.read_text(encoding="utf-8").split("\n").index("    repeat: 2")
+    place = types.Range(start=types.Position(line=line, character=0), end=types.Position(line=line, character=0))
+    context = types.CodeActionContext(diagnostics=[], only=[types.CodeActionKind.Source])
+    params = types.CodeActionParams(text_document=document, range=place, context=context)
+    actions = await editor.client.text_document_code_action_async(params)
+    assert [action.title for action in actions or ()] == ["Run execution far-too-strict"]
+
+
+@pytest.mark.physics
+async def test_a_lens_tells_how_often_an_execution_passed(editor: Editor, model: Path) -> None:
+    await run(editor, model, only=[{"variant": VARIANT, "execution": TWO, "variations": [1]}])
+    show(editor, model)
+    found = dict(await lenses(editor, model))
+    assert {"Rerun 2 failed", "0/2 passed"} < set(found)
+    text = model.read_text(encoding="utf-8").replace("repeat: 2", "repeat: 1")
+    document = types.VersionedTextDocumentIdentifier(uri=path_to_uri(model), version=2)
+    change = types.TextDocumentContentChangeWholeDocument(text=text)
+    editor.client.text_document_did_change(
+        types.DidChangeTextDocumentParams(text_document=document, content_changes=[change])
+    )
+    assert "0/2 passed (stale)" in dict(await lenses(editor, model))

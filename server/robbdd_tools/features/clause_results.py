@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
-from robbdd_tools.features.results import digest, variant_digest
+from robbdd_tools.features.results import digest, execution_digest, variant_digest
 from robbdd_tools.names.clauses import clauses_in
 from robbdd_tools.names.variants import variants_of
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
+    from robbdd_tools.features.executions import PlacedExecution
     from robbdd_tools.features.results import Findings, Judged, JudgedScenario
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.variants import PlacedVariant
@@ -94,12 +95,23 @@ def row_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHi
 
 def pass_rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> PassRate | None:
     """Return the pass rate of a variant's last runs, ``None`` when it was never run."""
-    finished = [scenario for scenario in findings.variants.get(variant.iri, ()) if scenario.finished]
+    now = variant_digest(snapshot, variant)
+    return _rate((one, one.digest == now) for one in findings.variants.get(variant.iri, ()))
+
+
+def execution_rate(snapshot: Snapshot, execution: PlacedExecution, findings: Findings) -> PassRate | None:
+    """Return the pass rate of the last runs of a variant by an execution, ``None`` when there was none."""
+    now = execution_digest(snapshot, execution)
+    own = (one for one in findings.variants.get(execution.variant.iri, ()) if one.execution == execution.iri)
+    return _rate((one, one.execution_digest == now) for one in own)
+
+
+def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
+    """Return the pass rate of scenarios, each with whether it was judged by the text as it is now."""
+    finished = [(one.outcome == "holds", current) for one, current in scenarios if one.finished]
     if not finished:
         return None
-    now = variant_digest(snapshot, variant)
-    stale = any(scenario.digest != now for scenario in finished)
-    return PassRate(sum(scenario.outcome == "holds" for scenario in finished), len(finished), stale)
+    return PassRate(sum(holds for holds, _ in finished), len(finished), not all(current for _, current in finished))
 
 
 def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:

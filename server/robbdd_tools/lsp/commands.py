@@ -1,4 +1,4 @@
-"""Commands of the server, and the code lenses and actions that offer them.
+"""Commands of the server, and the quick fix that offers one of them.
 
 All take one object with the ``uri`` of a model; those that run take the options of ``run_plan.RunOptions`` too.
 """
@@ -12,19 +12,15 @@ from typing import TYPE_CHECKING, Any
 from lsprotocol import types
 
 from robbdd_tools.base.files import path_to_uri, uri_to_path
-from robbdd_tools.features.clause_results import clause_diagnostics, pass_rate
-from robbdd_tools.features.scenarios import number_of_scenarios
+from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.gherkin.files import write_features
 from robbdd_tools.gherkin.skeleton import add_steps, free_patterns, steps_file
 from robbdd_tools.lsp.convert import document_of
-from robbdd_tools.lsp.result_hover import REPLAY
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan
 from robbdd_tools.lsp.runs import cancel_run, start_run
 from robbdd_tools.lsp.server import RobbddServer
-from robbdd_tools.names.variants import PlacedVariant, variants_of
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.document import Span
     from robbdd_tools.names.project import Snapshot
 
 RUN, RERUN, RECORD, CANCEL = "robbdd.run", "robbdd.rerunFailed", "robbdd.record", "robbdd.cancel"
@@ -33,24 +29,9 @@ _UNDEFINED = "clause-undefined"
 
 
 def register_commands(server: RobbddServer) -> None:
-    """Add the commands and their code lenses to a server."""
+    """Add the commands to a server."""
     _register_runs(server)
     _register_writing(server)
-
-    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
-    async def code_lens(ls: RobbddServer, params: types.CodeLensParams) -> list[types.CodeLens]:
-        uri = params.text_document.uri
-        recorded = await asyncio.to_thread(ls.stores.replayable, uri) if ls.shows_replays else frozenset[str]()
-
-        def find(snapshot: Snapshot) -> list[types.CodeLens]:
-            document = document_of(snapshot, uri)
-            return [
-                types.CodeLens(range=ls.convert.range(document, variant.definition.span), command=command)
-                for variant in variants_of(snapshot, document.uri)
-                for command in _lenses(ls, snapshot, variant, variant.iri in recorded)
-            ]
-
-        return await ls.analyse(find)
 
 
 def _register_runs(server: RobbddServer) -> None:
@@ -86,18 +67,6 @@ def _register_writing(server: RobbddServer) -> None:
         return {"files": await _write_steps(ls, str(target["uri"]))}
 
 
-def source_actions(snapshot: Snapshot, uri: str, span: Span) -> Iterator[types.CodeAction]:
-    """Yield what can be done with the scenarios in a part of a file, and with the file."""
-    variants = list(variants_of(snapshot, uri))
-    touched = [
-        one for one in variants if one.definition.extent.start <= span.end and span.start <= one.definition.extent.end
-    ]
-    commands = [_command(f"Run scenario {one.definition.symbol.name}", RUN, one) for one in touched]
-    commands += [_command("Generate Gherkin", GHERKIN, one) for one in variants[:1]]
-    for command in commands:
-        yield types.CodeAction(title=command.title, kind=types.CodeActionKind.Source, command=command)
-
-
 def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionParams) -> Iterator[types.CodeAction]:
     """Yield the fix of a clause that no step can judge."""
     uri = params.text_document.uri
@@ -112,31 +81,6 @@ def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionPar
                 command=types.Command(title=title, command=STEPS, arguments=[{"uri": uri}]),
                 is_preferred=True,
             )
-
-
-def _lenses(ls: RobbddServer, snapshot: Snapshot, variant: PlacedVariant, recorded: bool) -> Iterator[types.Command]:
-    yield _command("Run", RUN, variant)
-    rate = pass_rate(snapshot, variant, ls.findings)
-    if rate is not None and rate.passed < rate.run:
-        yield _command(f"Rerun {rate.run - rate.passed} failed", RERUN, variant)
-    yield _command("Record", RECORD, variant)
-    if recorded:
-        target = {"uri": variant.definition.uri, "variant": variant.iri}
-        yield types.Command(title="Replay", command=REPLAY, arguments=[target])
-    yield _command("Generate Gherkin", GHERKIN, variant)
-    number = number_of_scenarios(variant)
-    # A lens without a command is but a text.
-    if number is not None:
-        yield types.Command(title=f"{number:,} scenario{'' if number == 1 else 's'}", command="")
-    if rate is not None:
-        yield types.Command(title=rate.label, command="")
-
-
-def _command(title: str, command: str, variant: PlacedVariant) -> types.Command:
-    target: dict[str, Any] = {"uri": variant.definition.uri}
-    if command != GHERKIN:
-        target["scenario"] = variant.iri
-    return types.Command(title=title, command=command, arguments=[target])
 
 
 async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:

@@ -9,10 +9,11 @@ from lsprotocol import types
 
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.fixes import imports_from_disk
-from robbdd_tools.lsp.commands import register_commands, source_actions, step_fixes
+from robbdd_tools.lsp.commands import register_commands, step_fixes
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.editing import refactorings, register_editing
 from robbdd_tools.lsp.graph_picture import register_graph
+from robbdd_tools.lsp.lenses import register_lenses, source_actions
 from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.projects import register_projects
@@ -37,6 +38,7 @@ def create_server() -> RobbddServer:
     register_editing(server)
     _register_actions(server)
     register_commands(server)
+    register_lenses(server)
     register_settings(server)
     register_watching(server)
     register_navigation(server)
@@ -110,7 +112,7 @@ def _register_actions(server: RobbddServer) -> None:
             found = refactorings(ls, snapshot, uri, selected)
             actions += (action for action in found if not only or any(_is(action.kind, kind) for kind in only))
             if _asked(only, types.CodeActionKind.Source):
-                actions += source_actions(snapshot, uri, selected)
+                actions += source_actions(snapshot, uri, selected, ls.findings)
             return actions
 
         return await ls.analyse(find)
