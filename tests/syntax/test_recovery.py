@@ -28,6 +28,30 @@ def mended(text: str) -> str:
     return text
 
 
+_WHEN, _THEN = TEMPLATE.index("    When:"), TEMPLATE.index("    Then:")
+GIVEN = TEMPLATE[TEMPLATE.index("    Given:") : _WHEN]
+WHEN, THEN = TEMPLATE[_WHEN:_THEN], TEMPLATE[_THEN:].removesuffix("}\n")
+LOOP = "    for all ( var one in <parts> ) { When: <robot> picks <one> }\n"
+
+
+@pytest.mark.parametrize(
+    ("parts", "word", "message"),
+    [
+        (GIVEN + THEN, "Then", "'Then:' must come behind 'When:' or 'for all'"),
+        (GIVEN + THEN + LOOP, "Then", "'Then:' must come behind 'When:' or 'for all'"),
+        (WHEN + THEN + GIVEN, "Given", "'Given:' must come before 'When:', 'for all' and 'Then:'"),
+        (GIVEN + WHEN + THEN + LOOP, "for", "'for all' must come behind 'Given:' and before 'Then:'"),
+        (GIVEN + WHEN + LOOP + THEN, "for", "'for all' must come behind 'Given:' and before 'Then:'"),
+        (GIVEN + LOOP + WHEN + THEN, "When", "'When:' must come behind 'Given:' and before 'Then:'"),
+    ],
+)
+def test_a_part_of_a_scenario_that_is_out_of_order_is_told_its_place(parts: str, word: str, message: str) -> None:
+    text = TEMPLATE.replace(GIVEN + WHEN + THEN, parts)
+    first = parse_declaration("bdd", text).faults[0]
+    assert text[first.span.start : first.span.end] == word
+    assert first.message.startswith(message)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "found"),
     [

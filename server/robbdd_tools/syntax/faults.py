@@ -30,6 +30,19 @@ _RULE_WORDS = {
 }
 _EMPTY_LINE = re.compile(r"[ \t\r]*\n([ \t]*)\r?\n")
 _STARTS = frozenset({"import", "ns"})
+_PLACES = {
+    "Given": "'Given:' must come before 'When:', 'for all' and 'Then:'",
+    "When": "'When:' must come behind 'Given:' and before 'Then:'",
+    "for all": "'for all' must come behind 'Given:' and before 'Then:', in the place of 'When:'",
+    "Then": "'Then:' must come behind 'When:' or 'for all'",
+}
+"""Where the parts of a scenario may stand: their order is easily mistaken."""
+_PART = re.compile(r"(?:Given|When|Then)(?=\s*:)|for(?=\s+all\b)")
+# The first word of a part that is out of order is read as the name of a clause; by what is missed behind it then.
+_AS_NAMES = {
+    "holds": re.compile(r"(?<![\w\-.])(Given|When|Then)\s*:\s*\Z"),
+    ":": re.compile(r"(?<![\w\-.])(for)\s+all\Z"),
+}
 
 
 def fault_in(text: str, fault: Fault) -> SyntaxFault:
@@ -56,6 +69,9 @@ def _path_words(rule: str) -> str:
 def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     span = _token(text, rejected.offset)
     found = _shown(text, span)
+    misplaced = _misplaced(text, rejected)
+    if misplaced is not None:
+        return misplaced
     if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
         return SyntaxFault(span, f"'{found}' does not begin a declaration")
     words = expected_words(rejected.expected)
@@ -66,6 +82,21 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
         place = _blank_line(text) if "}" in rejected.expected.literals else None
         return SyntaxFault(place or last_token(text), f"the declaration ends too early: expected {expected}")
     return SyntaxFault(span, f"unexpected '{found}': expected {expected}")
+
+
+def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
+    """Return what is wrong with a part of a scenario that stands where another one belongs."""
+    part = _PART.match(text, rejected.offset)
+    if part is None and len(rejected.expected.literals) == 1:
+        (missed,) = rejected.expected.literals
+        as_name = _AS_NAMES.get(missed)
+        end = rejected.offset if missed == "holds" else _token(text, rejected.offset).end
+        part = None if as_name is None else as_name.search(text, 0, end)
+    word = None if part is None else part[part.lastindex or 0]
+    if part is None or word is None or word in rejected.expected.literals:
+        return None
+    start = part.start()
+    return SyntaxFault(Span(start, start + len(word)), _PLACES["for all" if word == "for" else word])
 
 
 def trailing_fault(text: str, offset: int) -> SyntaxFault:
