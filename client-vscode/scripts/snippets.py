@@ -16,10 +16,10 @@ def main(folder: Path) -> None:
     """Write one file for each kind of file, into an existing folder."""
     for language in LANGUAGES:
         found = {
-            snippet.label: {
+            # The name is what stands beside the suggestion: it tells this one from the keyword alone.
+            f"{snippet.label}: whole declaration": {
                 "prefix": snippet.label,
                 "body": snippet.body.split("\n"),
-                "description": "whole declaration",
             }
             for snippet in declaration_snippets(language)
         }
