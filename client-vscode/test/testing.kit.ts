@@ -137,7 +137,8 @@ export class World {
     }
     const count = this.stories.flatMap((one) => one.tests).find((one) => one.id === question.variant)?.count ?? 0;
     const tests = this.problem === null ? Array.from({ length: count }, (_, index) => scenario(index + 1)) : [];
-    return { problem: this.problem, files: [FILE], tests };
+    const { first = 1, most = count } = question;
+    return { problem: this.problem, files: [FILE], tests: tests.slice(first - 1, first - 1 + most) };
   };
 
   readonly tree = new TestTree<Node>(this.roots, factory, this.ask, (items) => {

@@ -65,6 +65,26 @@ test("a mistake is shown at the variant and keeps what was listed", async () => 
   assert.equal(fetch.problem, undefined);
 });
 
+test("of many scenarios the first are listed, as many again with each step further, with their kept results", async () => {
+  const world = new World();
+  const { told, sink } = recorded();
+  await world.tree.load(FILE);
+  const item = world.item("tidy", "sort");
+  const kept = { ...found, variant: "t:sort", variation: 500, clauses: [{ ...held, clause: "t:held", position: null, stale: false }] };
+  assert.deepEqual(await showResults(world.tree, [kept], sink), { outdated: [], left: [kept] });
+  assert.deepEqual(world.labels(item).slice(-2), ["part = cube200", "More: 201 to 400"]);
+  await world.tree.expand(world.item("tidy", "sort", "More: 201 to 400"));
+  assert.equal(item.children.size, 401);
+  await world.tree.expand(item);
+  assert.equal(item.children.size, 401, "an edit lists as many as were listed");
+  await world.tree.expand(world.item("tidy", "sort", "More: 401 to 800"));
+  await showResults(world.tree, [kept], sink);
+  assert.deepEqual(told, ["passed part = cube500 / Then held ?"]);
+  await world.tree.expand(world.item("tidy", "sort", "More: 801 to 1,000"));
+  assert.equal(world.labels(item).at(-1), "part = cube1000");
+  assert.equal(item.children.size, 1000);
+});
+
 test("files that are gone take their stories along", async () => {
   const world = new World();
   await world.tree.expand(undefined);
@@ -207,7 +227,8 @@ test("imported results are shown by position, with their words and their share o
   const { told, sink } = recorded();
   const placed = { ...held, position: 1, verdict: "violated", margin: "−3.0 mm", said: "✗ −3.0 mm at 2.00 s: pushed" } as const;
   const clauses = [held, placed].map((clause) => ({ ...clause, stale: false }));
-  assert.deepEqual(await showResults(world.tree, [{ ...found, seconds: 1, clauses }], sink), []);
+  const shown = await showResults(world.tree, [{ ...found, seconds: 1, clauses }], sink);
+  assert.deepEqual(shown, { outdated: [], left: [] });
   assert.deepEqual(told, [
     "passed part = cube2 / Then held 500",
     "failed part = cube2 / Then placed ✗ −3.0 mm at 2.00 s: pushed [part = cube2] @3 (−3.0 mm at 2.00 s)",
@@ -220,7 +241,7 @@ test("kept results are shown by IRI; stale ones are told, and variants that are 
   const { told, sink } = recorded();
   const unknown = { ...held, clause: "t:placed", position: null, verdict: "unknown", said: "? unknown", stale: true } as const;
   const gone = { ...found, variant: "t:gone", clauses: [unknown] };
-  const outdated = await showResults(world.tree, [{ ...found, clauses: [unknown] }, gone], sink);
+  const { outdated } = await showResults(world.tree, [{ ...found, clauses: [unknown] }, gone], sink);
   assert.deepEqual(told, ["errored part = cube2 / Then placed ? unknown [part = cube2]"]);
   assert.deepEqual(outdated, [world.item("tidy", "fetch", "part = cube2", "Then placed")]);
 });

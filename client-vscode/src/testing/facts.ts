@@ -5,6 +5,9 @@ import type { ListedTest, Place } from "./listing";
 /** Scenarios of a variant that are listed before anybody asks, so that rows and clauses have icons of their own. */
 export const EAGER = 100;
 
+/** Scenarios that are listed at first where there are more; as many again with each step further. */
+export const PAGE = 200;
+
 export function described(note: string, detail: string): string {
   return [note, detail].filter((part) => part !== "").join(" · ");
 }
@@ -72,4 +75,13 @@ export function sortOf(listed: ListedTest, position?: number): string {
   }
   const number = position ?? listed.number ?? listed.place?.range.start.line ?? 0;
   return String(number).padStart(9, "0");
+}
+
+/** What the item behind the first scenarios says, whose expansion lists as many again. */
+export function moreWords(listed: number, count: number | undefined): { readonly label: string; readonly description: string } {
+  const last = Math.min(2 * listed, count ?? Infinity);
+  return {
+    label: `More: ${(listed + 1).toLocaleString("en")} to ${last.toLocaleString("en")}`,
+    description: count === undefined ? "expand to list them" : `of ${count.toLocaleString("en")} scenarios: expand to list them`,
+  };
 }

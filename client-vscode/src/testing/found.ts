@@ -8,6 +8,8 @@ import type { TestTree } from "./tree";
 
 export class ResultsElsewhere {
   private restored: Promise<void> | undefined;
+  /** Kept results that are not shown yet: of scenarios that nobody has listed. */
+  private left: readonly FoundScenario[] = [];
 
   constructor(
     private readonly server: Server,
@@ -16,15 +18,19 @@ export class ResultsElsewhere {
     private readonly outdated: (items: readonly vscode.TestItem[]) => void,
   ) {}
 
-  /** Show once what the server kept of runs, those of earlier sessions too. */
-  restore(): Promise<void> {
+  /** Show once what the server kept of runs, those of earlier sessions too; the rest when more scenarios are listed. */
+  async restore(): Promise<void> {
     this.restored ??= (async () => {
       const answer = await this.server.request("robbdd/testResults", {});
-      if (isFoundResults(answer) && answer.scenarios.length > 0) {
-        await this.show(answer.scenarios, "Kept results", false);
-      }
+      this.left = isFoundResults(answer) ? answer.scenarios.map(normalised) : [];
     })();
-    return this.restored;
+    await this.restored;
+    const due = this.left.filter((found) => this.isDue(found));
+    if (due.length > 0) {
+      this.left = this.left.filter((found) => !this.isDue(found));
+      const left = await this.show(due, "Kept results", false);
+      this.left = [...this.left, ...left];
+    }
   }
 
   /** There is another server, which may have kept other results. */
@@ -49,22 +55,32 @@ export class ResultsElsewhere {
     } else if (scenarios.length === 0) {
       void vscode.window.showWarningMessage(`RobBDD: ${name} has no results of a scenario in this workspace.`);
     } else {
-      await this.show(scenarios, name, true);
+      await this.show(scenarios.map(normalised), name, true);
       const rest = left > 0 ? `; ${left} of scenarios that the workspace does not have are left out` : "";
       void vscode.window.showInformationMessage(`RobBDD: ${scenarios.length} results of ${name} are shown${rest}.`);
       await vscode.commands.executeCommand("workbench.view.testing.focus");
     }
   }
 
-  private async show(scenarios: readonly FoundScenario[], name: string, persist: boolean): Promise<void> {
-    const found = scenarios.map((scenario) => ({ ...scenario, uri: normal(scenario.uri) }));
+  /** Whether a result can be shown now, or where is to be found out. */
+  private isDue({ uri, variant, execution, variation }: FoundScenario): boolean {
+    const item = this.tree.source(uri, { variant, execution: execution ?? undefined });
+    return item === undefined || item.children.size === 0 || this.tree.lists(item, variation);
+  }
+
+  private async show(found: readonly FoundScenario[], name: string, persist: boolean): Promise<readonly FoundScenario[]> {
     const run = this.openRun(name, persist);
-    const outdated = await showResults(this.tree, found, sinkOf(run));
+    const { outdated, left } = await showResults(this.tree, found, sinkOf(run));
     run.end();
     if (outdated.length > 0) {
       this.outdated(outdated);
     }
+    return left;
   }
+}
+
+function normalised(found: FoundScenario): FoundScenario {
+  return { ...found, uri: normal(found.uri) };
 }
 
 async function chooseFile(): Promise<vscode.Uri | undefined> {

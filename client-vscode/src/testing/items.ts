@@ -35,7 +35,8 @@ export interface Source {
 
 /** What an item stands for; `uri` is the model that is run. */
 export interface Facts extends Partial<Source> {
-  readonly kind: Kind;
+  /** `more` stands for scenarios that are not listed yet. */
+  readonly kind: Kind | "more";
   readonly uri: string;
   readonly place: Place | null;
   /** Of a variant or an execution: how many scenarios it makes, where known. */

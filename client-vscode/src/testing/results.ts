@@ -44,17 +44,29 @@ export function isFoundResults(value: unknown): value is FoundResults {
   return isRecord(value) && typeof value["left"] === "number" && Array.isArray(value["scenarios"]);
 }
 
-/** Put results onto the items of the tree; returns the items whose text has changed since. */
+export interface Shown<I> {
+  /** Items whose text has changed since. */
+  readonly outdated: readonly I[];
+  /** Results of scenarios that are not listed yet, with clauses that only the list could tell. */
+  readonly left: readonly FoundScenario[];
+}
+
+/** Put results onto the items of the tree. */
 export async function showResults<I extends Item<I>>(
   tree: TestTree<I>,
   scenarios: readonly FoundScenario[],
   sink: Sink<I>,
-): Promise<I[]> {
+): Promise<Shown<I>> {
   const outdated: I[] = [];
+  const left: FoundScenario[] = [];
   const worst = new Worst<I>();
   for (const found of scenarios) {
     const variant = await listed(tree, found);
     if (variant === undefined) {
+      continue;
+    }
+    if (!tree.lists(variant, found.variation) && found.clauses.some(({ position }) => position === null)) {
+      left.push(found);
       continue;
     }
     const scenario = tree.scenario(variant, found.variation, found.values);
@@ -72,7 +84,7 @@ export async function showResults<I extends Item<I>>(
       }
     }
   }
-  return outdated;
+  return { outdated, left };
 }
 
 /** The variant of an execution with its scenarios, undefined where the workspace does not have it any more. */

@@ -1,8 +1,11 @@
 // The tree of tests: stories, variants, executions, scenarios, clauses; it grows as it is asked for and follows the text.
-import { described, factsOf, hasChanged, itemId, labelOf, makesScenarios, sameSource, sortOf } from "./facts";
+import * as words from "./facts";
 import type { Facts, Factory, Item, Items, Source } from "./items";
 import type { Ask, ListedTest, Listing, Place } from "./listing";
 import type { Wanted } from "./selection";
+
+/** Scenarios that the server tells at most in one answer. */
+const MOST = 10_000;
 
 export class TestTree<I extends Item<I>> {
   private readonly facts = new WeakMap<I, Facts>();
@@ -10,6 +13,8 @@ export class TestTree<I extends Item<I>> {
   private readonly notes = new WeakMap<I, string>();
   /** For each file with stories the files that its tests depend on. */
   private readonly files = new Map<string, ReadonlySet<string>>();
+  /** How many scenarios of a variant are listed, where they are. */
+  private readonly listed = new WeakMap<I, number>();
   /** What is being read, so that nothing is read twice at a time. */
   private readonly loading = new Map<string, Promise<void>>();
 
@@ -57,9 +62,17 @@ export class TestTree<I extends Item<I>> {
     const facts = item === undefined ? undefined : this.facts.get(item);
     if (item === undefined || facts === undefined) {
       await this.discover();
-    } else if (makesScenarios(facts)) {
-      await this.expandVariant(item, facts);
+    } else if (words.makesScenarios(facts)) {
+      await this.expandVariant(item);
+    } else if (facts.kind === "more" && item.parent !== undefined) {
+      const listed = this.listed.get(item.parent) ?? 0;
+      await this.list(item.parent, listed + 1, listed + Math.min(listed, MOST));
     }
+  }
+
+  /** Whether a scenario is among those that are listed. */
+  lists(variant: I, number: number): boolean {
+    return number <= (this.listed.get(variant) ?? 0);
   }
 
   /** List the scenarios of a file's variants that have only few, and of those that are listed already. */
@@ -67,7 +80,7 @@ export class TestTree<I extends Item<I>> {
     for (const item of this.variantsOf(uri)) {
       const facts = this.facts.get(item);
       if (facts !== undefined && (facts.small === true || item.children.size > 0)) {
-        await this.expandVariant(item, facts);
+        await this.expandVariant(item);
       }
     }
   }
@@ -88,7 +101,7 @@ export class TestTree<I extends Item<I>> {
 
   /** The item of a variant, or of an execution of one. */
   source(uri: string, source: Source): I | undefined {
-    return this.variantsOf(uri).find((item) => sameSource(this.facts.get(item) ?? {}, source));
+    return this.variantsOf(uri).find((item) => words.sameSource(this.facts.get(item) ?? {}, source));
   }
 
   /** The listed scenarios that are wanted of a variant. */
@@ -104,7 +117,7 @@ export class TestTree<I extends Item<I>> {
   }
 
   /** The item of a scenario; one that was not listed yet is made with the words of its run. */
-  scenario(variant: I, number: number, words: string): I {
+  scenario(variant: I, number: number, name: string): I {
     const facts = this.facts.get(variant);
     const found = variant.children.get(String(number));
     return (
@@ -112,7 +125,7 @@ export class TestTree<I extends Item<I>> {
       this.put(variant.children, facts?.uri ?? "", facts, {
         kind: "scenario",
         id: String(number),
-        name: words,
+        name,
         detail: `scenario ${number}`,
         place: null,
         tests: [],
@@ -133,7 +146,7 @@ export class TestTree<I extends Item<I>> {
   /** Show what a run found behind an item's name. */
   note(item: I, note: string): void {
     this.notes.set(item, note);
-    item.description = described(note, this.facts.get(item)?.detail ?? "");
+    item.description = words.described(note, this.facts.get(item)?.detail ?? "");
   }
 
   /** The clauses below an item that are listed, the item itself where it is one. */
@@ -172,17 +185,22 @@ export class TestTree<I extends Item<I>> {
     this.drop(this.roots, (facts) => facts.uri === uri, kept);
   }
 
-  private async expandVariant(item: I, facts: Facts): Promise<void> {
-    const variant = facts.variant ?? "";
-    await this.once(`${facts.uri} ${facts.execution ?? variant}`, async () => {
+  /** List the first scenarios of a variant, again as many as there are. */
+  private async expandVariant(item: I): Promise<void> {
+    await this.list(item, 1, Math.min(MOST, Math.max(words.PAGE, this.listed.get(item) ?? 0)));
+  }
+
+  private async list(item: I, first: number, last: number): Promise<void> {
+    const { uri = "", variant = "", execution } = this.facts.get(item) ?? {};
+    await this.once(`${uri} ${execution ?? variant}`, async () => {
       item.busy = true;
       try {
-        const found = await this.ask({ uri: facts.uri, variant });
+        const found = await this.ask({ uri, variant, first, most: last - first + 1 });
         if (found !== undefined) {
           this.factory.setProblem(item, found.problem ?? undefined);
           // What was listed before a mistake stays: it is what results are about.
           if (found.problem === null) {
-            this.fill(item, found.tests);
+            this.fill(item, found.tests, first, last);
           }
         }
       } finally {
@@ -191,8 +209,9 @@ export class TestTree<I extends Item<I>> {
     });
   }
 
-  private fill(item: I, scenarios: readonly ListedTest[]): void {
+  private fill(item: I, scenarios: readonly ListedTest[], first: number, last: number): void {
     const owner = this.facts.get(item);
+    const ended = scenarios.length <= last - first || last === owner?.count;
     const kept = new Set<string>();
     for (const listed of scenarios) {
       const scenario = this.put(item.children, owner?.uri ?? "", owner, listed);
@@ -202,28 +221,46 @@ export class TestTree<I extends Item<I>> {
       );
       this.drop(scenario.children, () => true, new Set(clauses.map((clause) => clause.id)));
     }
-    this.drop(item.children, () => true, kept);
+    // What a run has shown further on stays, as long as there is such a scenario.
+    const isAmong = ({ number = 0 }: Facts) => number >= first && (ended || number <= last);
+    this.drop(item.children, (facts) => facts.kind === "more" || isAmong(facts), kept);
+    this.listed.set(item, first - 1 + scenarios.length);
+    if (!ended) {
+      this.addMore(item, last);
+    }
+  }
+
+  /** Add what lists more scenarios when it is expanded. */
+  private addMore(variant: I, listed: number): void {
+    const { uri = "", count } = this.facts.get(variant) ?? {};
+    const { label, description } = words.moreWords(listed, count);
+    const item = this.factory.create(`more-${listed}`, label, uri);
+    this.facts.set(item, { kind: "more", uri, place: null, detail: description });
+    item.description = description;
+    item.sortText = "z";
+    item.canResolveChildren = true;
+    variant.children.add(item);
   }
 
   /** Make or update the item of a listed test; it stays the same item, so that it keeps its results. */
   private put(into: Items<I>, uri: string, owner: Facts | undefined, listed: ListedTest, position?: number): I {
-    const id = itemId(uri, listed, position);
+    const id = words.itemId(uri, listed, position);
     let item = into.get(id);
     const before = item === undefined ? undefined : this.facts.get(item);
-    const facts = factsOf(uri, owner, listed);
+    const facts = words.factsOf(uri, owner, listed);
     if (item === undefined) {
-      item = this.factory.create(id, labelOf(listed), owner?.execution === undefined ? (listed.place?.uri ?? uri) : uri);
+      item = this.factory.create(id, words.labelOf(listed), owner?.execution === undefined ? (listed.place?.uri ?? uri) : uri);
       this.facts.set(item, facts);
       into.add(item);
-    } else if (before !== undefined && hasChanged(before, facts)) {
+    } else if (before !== undefined && words.hasChanged(before, facts)) {
       this.outdated([item]);
       this.notes.delete(item);
     }
     this.facts.set(item, facts);
-    item.label = labelOf(listed);
-    item.description = described(this.notes.get(item) ?? "", facts.detail);
-    item.sortText = sortOf(listed, position);
-    item.canResolveChildren = makesScenarios(facts);
+    item.label = words.labelOf(listed);
+    item.description = words.described(this.notes.get(item) ?? "", facts.detail);
+    item.sortText = words.sortOf(listed, position);
+    item.canResolveChildren = words.makesScenarios(facts);
     this.factory.setPlace(item, this.placeOf(facts, owner));
     return item;
   }
