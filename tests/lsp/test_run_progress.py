@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
@@ -13,7 +14,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcInternalError
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
-from lsp_kit import Editor, begin_session
+from lsp_kit import PATIENCE, Editor, begin_session
 
 Told = list[tuple[str, Any]]
 SHOWN, REFUSED, UNKNOWN = "shown", "refused", "unknown"
@@ -73,3 +74,22 @@ async def test_a_run_shows_its_progress_where_the_client_shows_such_things(
     assert [kind for kind, _ in told] == kinds
     messages = [value["message"] for kind, value in told if kind == "report"]
     assert messages == [f"{done}/4 scenarios" for done in range(1, 5)][: len(messages)]
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("client", [SHOWN], indirect=True)
+async def test_the_progress_of_a_cancelled_run_ends_by_saying_so(
+    client: LanguageClient, tmp_path: Path, told: Told
+) -> None:
+    editor = Editor(client, tmp_path)
+    editor.open()
+    params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
+    running = asyncio.ensure_future(client.workspace_execute_command_async(params))
+    async with asyncio.timeout(PATIENCE):
+        while not told:
+            await asyncio.sleep(0.01)
+    await client.workspace_execute_command_async(types.ExecuteCommandParams(command="robbdd.cancel"))
+    await running
+    kind, value = told[-1]
+    assert kind == "end"
+    assert value["message"].startswith("cancelled: ")

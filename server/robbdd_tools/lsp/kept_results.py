@@ -35,9 +35,9 @@ def save_results(folders: Iterable[Path], scenarios: Iterable[JudgedScenario]) -
 
 def _by_folder(folders: list[Path], scenarios: list[JudgedScenario]) -> Iterator[tuple[Path, list[JudgedScenario]]]:
     for folder in folders:
-        own = [scenario for scenario in scenarios if _lies_in(scenario.model, folder)]
-        scenarios = [scenario for scenario in scenarios if scenario not in own]
-        yield folder, own
+        inside = [_lies_in(scenario.model, folder) for scenario in scenarios]
+        yield folder, [scenario for scenario, within in zip(scenarios, inside, strict=True) if within]
+        scenarios = [scenario for scenario, within in zip(scenarios, inside, strict=True) if not within]
 
 
 def _lies_in(uri: str, folder: Path) -> bool:

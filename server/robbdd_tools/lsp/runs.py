@@ -258,7 +258,8 @@ class _Follower:
         self._progress.report(len(finished), failed, len(self._results.scenarios))
 
     def _told(self) -> str:
-        return f"{self._results.count(Outcome.HOLDS)} of {len(self._results.scenarios)} scenarios hold"
+        told = f"{self._results.count(Outcome.HOLDS)} of {len(self._results.scenarios)} scenarios hold"
+        return f"cancelled: {told}" if self._run.cancelled else told
 
 
 async def _record(ls: RobbddServer, place: StoredRun) -> list[str]:
