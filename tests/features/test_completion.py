@@ -211,6 +211,15 @@ def test_a_name_of_a_file_that_is_not_imported_brings_its_import() -> None:
     assert edit.text == '\nimport "cells/more.scene"'
 
 
+def test_values_of_a_file_that_is_not_imported_are_those_of_their_type() -> None:
+    other = "//- more.scene\nns x = 'https://example.org/x/'\nobj set (ns=x) tools { object saw }\n"
+    other += "agn set (ns=x) robots { agent r2 }\n"
+    text = edited("{ <arms.panda> }", "{ <$0").replace("scene: <bench_scene>", "scene: <gone>")
+    case = fixture("//- main.bdd\n" + text + other)
+    found = [entry for entry in complete(case.snapshot, case.uri, case.cursor) if entry.edits]
+    assert [(entry.label, entry.edits[0].text) for entry in found] == [("robots.r2", '\nimport "more.scene"')]
+
+
 def test_a_name_on_disk_that_nobody_has_loaded_brings_its_import(tmp_path: Path) -> None:
     (tmp_path / "lab.scene").write_text(SCENE, encoding="utf-8")
     uri = path_to_uri(tmp_path / "main.bdd")

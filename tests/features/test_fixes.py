@@ -14,7 +14,7 @@ from kit import DOCS, EVENTS, MODEL, SCENE, TEMPLATE, Fixture, fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.features.fixes import imports_from_disk
+from robbdd_tools.features.fixes import fixes_from_disk
 from robbdd_tools.names.project import Project
 
 
@@ -101,7 +101,21 @@ def test_a_file_that_nobody_opened_is_found_on_disk(tmp_path: Path) -> None:
     project.open(uri, 1, MODEL.replace('import "lab.scene"\n', ""))
     snapshot = project.snapshot()
     unknown = next(entry for entry in fast_diagnostics(snapshot, uri) if entry.code == "unknown-name")
-    assert [fix.title for fix in imports_from_disk(snapshot, uri, unknown)] == ["Import 'lab.scene'"]
+    assert [fix.title for fix in fixes_from_disk(snapshot, uri, unknown)] == ["Import 'lab.scene'"]
+
+
+def test_the_path_of_an_import_is_changed_to_one_that_leads_to_a_file(tmp_path: Path) -> None:
+    (tmp_path / "cells").mkdir()
+    for name in ("labs.scene", "cells/lab.scene", "other.scene", "lab.bddx"):
+        (tmp_path / name).write_text("", encoding="utf-8")
+    uri, project = path_to_uri(tmp_path / "main.bdd"), Project()
+    project.open(uri, 1, MODEL)
+    snapshot = project.snapshot()
+    missing = next(entry for entry in fast_diagnostics(snapshot, uri) if entry.code == "import")
+    found = fixes_from_disk(snapshot, uri, missing)
+    assert [fix.title for fix in found] == ["Change to 'cells/lab.scene'", "Change to 'labs.scene'"]
+    ((edit,), _) = (fix.edits for fix in found)
+    assert MODEL[: edit.span.start] + edit.text + MODEL[edit.span.end :] == MODEL.replace("lab.scene", edit.text, 1)
 
 
 @pytest.mark.parametrize(

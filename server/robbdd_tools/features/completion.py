@@ -14,10 +14,10 @@ from robbdd_tools.features.fixes import import_edit
 from robbdd_tools.features.quoted import quoted
 from robbdd_tools.features.snippets import declaration_snippets
 from robbdd_tools.features.unimported import beside, loaded
-from robbdd_tools.features.value_types import fits, kinds_in_text, scene_wanted, slot_wanted, values_wanted
+from robbdd_tools.features.value_types import fits, kinds_in_text, may_be, scene_wanted, slot_wanted, values_wanted
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
-from robbdd_tools.names.uses import ANYTHING
+from robbdd_tools.names.uses import ANYTHING, Kinds
 from robbdd_tools.syntax.chunk import Expectation, Parsed, grammar_text, parse_chunk
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.story import without_earlier_scenarios
@@ -155,8 +155,8 @@ class _Names:
                 known.add(name)
                 if fits(self.snapshot, definition, wanted, members):
                     yield self._proposal(name, definition.kind, (definition.uri, definition.symbol.path), bracket, rank)
-            if role != "Namespace" and members is None and wanted == ANYTHING:
-                yield from self._to_import(role, known, bracket)
+            if role != "Namespace" and members is None:
+                yield from self._to_import(role, known, bracket, wanted)
 
     def _in_scope(self, role: str) -> Iterator[tuple[str, Definition, int]]:
         scope = self.snapshot.scope(self.file.document.uri)
@@ -175,12 +175,12 @@ class _Names:
         forms = (path.removeprefix(f"{scope}.") for scope in (*self.cursor.scopes, ""))
         return next((form for form in forms if form.startswith(qualifier + dot)), name)
 
-    def _to_import(self, role: str, known: set[str], bracket: str) -> Iterator[Completion]:
+    def _to_import(self, role: str, known: set[str], bracket: str, wanted: Kinds) -> Iterator[Completion]:
         uri = self.file.document.uri
         for path, index in [*loaded(self.snapshot, uri), *beside(self.snapshot, uri)]:
             for name in sorted(index.names.kinds):
                 kind = next((kind for kind in index.names.kinds[name] if kind in ROLE_KINDS[role]), None)
-                if kind is not None and name not in known:
+                if kind is not None and name not in known and may_be(kind, wanted):
                     known.add(name)
                     found = self._proposal(name, kind, (index.document.uri, name), bracket, rank=2)
                     detail = f"{found.detail}, imports '{path}'"

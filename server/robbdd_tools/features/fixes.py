@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix
 from robbdd_tools.base.document import Document, Span
-from robbdd_tools.features.unimported import Importable, beside, loaded
+from robbdd_tools.features.unimported import Importable, beside, import_path, loaded
+from robbdd_tools.features.workspace_files import model_files_near
 from robbdd_tools.names.elements import Site
+from robbdd_tools.names.imports import IMPORTABLE
+from robbdd_tools.names.index import language_of
 from robbdd_tools.names.resolve import candidates
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.syntax import tree
@@ -30,6 +34,8 @@ _KEYWORDS: Mapping[SymbolKind, str] = {
     SymbolKind.WORKSPACE: "ws",
     SymbolKind.COMPOSITION: "ws comp",
 }
+LEAST_ALIKE = 0.6
+"""Share of common letters from which a file's name is a suggestion."""
 _SETS = (SymbolKind.OBJECT_SET, SymbolKind.WORKSPACE_SET, SymbolKind.AGENT_SET)
 
 
@@ -44,11 +50,34 @@ def with_fixes(snapshot: Snapshot, file: FileAnalysis, found: Iterable[Diagnosti
         yield replace(diagnostic, fixes=(*diagnostic.fixes, *fixes)) if fixes else diagnostic
 
 
-def imports_from_disk(snapshot: Snapshot, uri: str, diagnostic: Diagnostic) -> tuple[Fix, ...]:
-    """Return the imports of files beside a file that nobody has loaded yet and that declare an unknown name."""
+def fixes_from_disk(snapshot: Snapshot, uri: str, diagnostic: Diagnostic) -> tuple[Fix, ...]:
+    """Return the fixes that need a look at the disk: imports of an unknown name, files that an import may mean."""
     file = snapshot.file(uri)
-    used = None if file is None or diagnostic.code != "unknown-name" else _reference(file, diagnostic.span)
-    return () if file is None or used is None else tuple(_imports(file, used[1], beside(snapshot, uri)))
+    if file is None:
+        return ()
+    if diagnostic.code == "import":
+        return tuple(_existing_paths(file, diagnostic.span))
+    used = _reference(file, diagnostic.span) if diagnostic.code == "unknown-name" else None
+    return () if used is None else tuple(_imports(file, used[1], beside(snapshot, uri)))
+
+
+def _existing_paths(file: FileAnalysis, span: Span) -> Iterator[Fix]:
+    """Yield the paths of files around a file that are like the one of an import which leads nowhere."""
+    uri, text = file.document.uri, file.document.text
+    kinds = IMPORTABLE.get(language_of(uri), ())
+    near = [found for found in model_files_near(uri) if found != uri and language_of(found) in kinds]
+    paths = sorted(path for found in near if (path := import_path(uri, found)) is not None)
+    written = text[span.start : span.end]
+    alike = get_close_matches(_stem(written), list(dict.fromkeys(map(_stem, paths))), n=3, cutoff=LEAST_ALIKE)
+    for stem in alike:
+        for path in paths:
+            if _stem(path) == stem and path != written:
+                yield Fix(f"Change to '{path}'", (Edit(uri, span, path),))
+
+
+def _stem(path: str) -> str:
+    """Return the name of a file without its folder and ending."""
+    return path.rpartition("/")[2].partition(".")[0]
 
 
 def import_edit(file: FileAnalysis, path: str) -> Edit:

@@ -60,18 +60,22 @@ def fits(snapshot: Snapshot, definition: Definition, wanted: Kinds, members: fro
 
     With the ``members`` of a scene, an element of a kind that the scene has must be one of them.
     """
-    kind = _ELEMENT_KINDS.get(definition.kind)
     if definition.kind in _MEMBER_KINDS:
         elements = [Element(str(definition.kind), definition.symbol.path, (definition.uri, definition.symbol.path))]
     else:
         elements = list(elements_of(site_of(snapshot, definition)) or ())
     if definition.kind is SymbolKind.CONSTANT_SET and elements and all(one.kind not in wanted for one in elements):
         return False
-    if kind is not None and kind not in wanted:
+    if not may_be(definition.kind, wanted):
         return False
     present = {member.kind for member in members or ()}
     keys = {member.key for member in members or ()}
     return all(one.key in keys for one in elements if one.kind in present)
+
+
+def may_be(kind: SymbolKind, wanted: Kinds) -> bool:
+    """Tell whether a name of some kind, or a set of such, may be given where some kinds are wanted."""
+    return _ELEMENT_KINDS.get(kind) is None or _ELEMENT_KINDS[kind] in wanted
 
 
 def slot_wanted(before: str) -> Kinds:

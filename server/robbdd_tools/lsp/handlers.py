@@ -8,7 +8,7 @@ from typing import cast
 from lsprotocol import types
 
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.features.fixes import imports_from_disk
+from robbdd_tools.features.fixes import fixes_from_disk
 from robbdd_tools.lsp.commands import register_commands, step_fixes
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.editing import refactorings, register_editing
@@ -138,7 +138,7 @@ def _quick_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionP
     for diagnostic in fast_diagnostics(snapshot, uri):
         if diagnostic.span.start > span.end or diagnostic.span.end < span.start:
             continue
-        fixes = (*diagnostic.fixes, *imports_from_disk(snapshot, uri, diagnostic))
+        fixes = (*diagnostic.fixes, *fixes_from_disk(snapshot, uri, diagnostic))
         for position, fix in enumerate(fixes):
             found.append(
                 types.CodeAction(
