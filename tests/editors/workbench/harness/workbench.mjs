@@ -153,11 +153,13 @@ export class Workbench {
 
   /** The colour of the first verdict beside a clause and that of the ground it stands on. */
   async verdictColours() {
-    const hint = this.page.locator(`${EDITOR} .view-line span > span`, { hasText: /[✔✗]/ }).first();
-    return hint.evaluate((span) => {
-      const ground = span.closest(".monaco-editor-background, .monaco-editor");
-      return [getComputedStyle(span).color, getComputedStyle(ground).backgroundColor];
-    });
+    // In one go: the editor may draw its lines anew at any time.
+    const found = await this.page.waitForFunction((selector) => {
+      const hint = [...document.querySelectorAll(selector)].find((span) => /[✔✗]/.test(span.textContent));
+      const ground = hint?.closest(".monaco-editor-background, .monaco-editor");
+      return ground ? [getComputedStyle(hint).color, getComputedStyle(ground).backgroundColor] : undefined;
+    }, `${EDITOR} .view-line span > span`);
+    return found.jsonValue();
   }
 
   /** Wait for the toast with this text and return it. */
