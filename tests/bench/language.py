@@ -11,20 +11,26 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import pairwise
 from pathlib import Path
 
 from tests.bench.models import long_story, model
 
 from kit import FOLDER, SCENE
+from robbdd_tools.base.checkpoint import watched
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.memory import collect_rarely
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.hover import hover
+from robbdd_tools.features.references import references
 from robbdd_tools.features.rename import rename
 from robbdd_tools.features.rename_files import concerned, import_edits
+from robbdd_tools.features.semantic_tokens import coloured
 from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.features.workspace_symbols import workspace_symbols
-from robbdd_tools.names.project import Project
+from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.syntax.parse import forget_declarations, parse_declaration
 from robbdd_tools.syntax.split import split
 from robbdd_tools.syntax.textx import parse_with_textx
@@ -82,6 +88,25 @@ def _one_file(text: str, name: str, typing: Iterator[str]) -> Iterator[tuple[str
     project.open(uri, 1000, text)
     asked = [milliseconds(lambda: complete(project.snapshot(), uri, offset)) for _ in range(KEYSTROKES)]
     yield f"completion, {name}", _percentiles(asked)
+    project.open(uri, 1001, text + "// edited")
+    requests: list[Callable[[Snapshot], object]] = [
+        lambda snapshot: coloured(snapshot, uri),
+        lambda snapshot: complete(snapshot, uri, offset),
+        lambda snapshot: hover(snapshot, uri, offset + 1),
+        lambda snapshot: references(snapshot, uri, offset + 1, with_declaration=True),
+        lambda snapshot: fast_diagnostics(snapshot, uri),
+    ]
+    longest = max(_uninterrupted(partial(request, project.snapshot())) for request in requests)
+    yield f"a cancelled request stops within, {name}", f"{longest:.0f} ms"
+
+
+def _uninterrupted(work: Callable[[], object]) -> float:
+    """Return the longest processor time of some work between two places where it can be left."""
+    places = [time.process_time()]
+    with watched(lambda: places.append(time.process_time())):
+        work()
+    places.append(time.process_time())
+    return 1000.0 * max(later - earlier for earlier, later in pairwise(places))
 
 
 def _typed(project: Project, uri: str, version: int, text: str) -> None:

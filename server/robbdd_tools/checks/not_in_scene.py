@@ -26,8 +26,16 @@ _BROUGHT = ("ObjectSet", "WorkspaceSet", "AgentSet")
 
 def not_in_scene(site: Site) -> Iterator[Diagnostic]:
     """Report each element once per variant, where it is first written."""
+    known: dict[tuple[str, str], frozenset[Element] | None] = {}
     for scenario in scenarios(site):
-        members = scene_members(site.follow(scenario.variant.scene))
+        scene = site.target(scenario.variant.scene)
+        if scene is None:
+            continue
+        # The scenarios of a long story mostly share a few scenes.
+        key = (scene.uri, scene.symbol.path)
+        if key not in known:
+            known[key] = scene_members(site.follow(scenario.variant.scene))
+        members = known[key]
         if members is not None:
             yield from _strangers(scenario, members)
 

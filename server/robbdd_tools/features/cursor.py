@@ -41,7 +41,7 @@ def cursor_at(analysis: FileAnalysis, offset: int) -> Cursor:
     placed = next((entry for entry in reversed(analysis.declarations) if entry.offset <= offset), None)
     start = 0 if placed is None else placed.offset
     text = analysis.document.text[start:offset]
-    match = _WORD.search(text)
+    match = _WORD.search(text, text.rfind("\n") + 1)
     # A point behind a reference stands before a word of its own.
     word = match[0].lstrip(".") if match else ""
     before = text[: len(text) - len(word)]

@@ -23,14 +23,14 @@ def symbol_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definiti
         return None
     placed = next((entry for entry in reversed(analysis.declarations) if entry.offset <= offset), None)
     if placed is not None:
+        inside = offset - placed.offset
         for reference in placed.declaration.references:
-            if reference.ref in placed.targets and reference.ref.span.shifted(placed.offset).contains(offset):
+            if reference.ref.span.contains(inside) and reference.ref in placed.targets:
                 parts = parts_of(snapshot, uri, placed, reference)
                 return next((part for part in parts if part[0].contains(offset)), None)
         for symbol in placed.declaration.symbols:
-            span = symbol.span.shifted(placed.offset)
-            if span.contains(offset) and symbol.path in analysis.definitions:
-                return span, analysis.definitions[symbol.path]
+            if symbol.span.contains(inside) and symbol.path in analysis.definitions:
+                return symbol.span.shifted(placed.offset), analysis.definitions[symbol.path]
     return _in_broken_text(snapshot, analysis, offset)
 
 

@@ -13,7 +13,7 @@ from robbdd_tools.features.results import NOTHING
 from robbdd_tools.features.sentences import time_meaning, word_meaning, word_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
-from robbdd_tools.syntax.symbols import walk
+from robbdd_tools.syntax.symbols import walk_at
 
 if TYPE_CHECKING:
     from robbdd_tools.features.results import Findings, Judged
@@ -59,10 +59,8 @@ def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
         root = placed.declaration.tree
         if root is None or not placed.span.contains(offset):
             continue
-        for node in walk(root):
+        for node in walk_at(root, offset - placed.offset):
             span = node.span.shifted(placed.offset)
-            if not span.contains(offset):
-                continue
             if isinstance(node, tree.PhraseUse):
                 return Hover(word_meaning(word_of(node)), span)
             if isinstance(node, tree.During | tree.Before | tree.After):

@@ -144,6 +144,7 @@ class _Names:
         declaration = self.placed.declaration
         used = {reference.ref.span: reference for reference in declaration.references}
         for token in _own(language_of(self.file.document.uri), declaration):
+            checkpoint()
             if token.concept != NAME:
                 yield token
                 continue
@@ -221,6 +222,7 @@ def _concepts(declaration: Declaration) -> Iterator[tuple[int, Token]]:
     """Yield what the tree says of words, by where they start; what is told later wins."""
     nodes = list(walk(declaration.tree)) if declaration.tree is not None else []
     for node in nodes:
+        checkpoint()
         match node:
             case tree.PhraseUse():
                 concept = ACTION if node.word in load_catalog().behaviours else PREDICATE

@@ -185,6 +185,14 @@ def walk(node: tree.Node) -> Iterator[tree.Node]:
         yield from walk(child)
 
 
+def walk_at(node: tree.Node, offset: int) -> Iterator[tree.Node]:
+    """Yield those of a node and all below it, in the order of the grammar, that an offset is in or at an end of."""
+    if node.span.contains(offset):
+        yield node
+        for child in children(node):
+            yield from walk_at(child, offset)
+
+
 def _nodes(value: Any) -> Iterator[tree.Node]:
     if isinstance(value, tree.Node):
         yield value
