@@ -116,7 +116,6 @@ def _still_valid(scope: Scope, before: Scope | None, known: tuple[Resolution, ..
 
 
 def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
-    checkpoint()
     targets: dict[Ref, Target] = {}
     unresolved: list[Unresolved] = []
     looked_up: set[str] = set()
@@ -124,6 +123,7 @@ def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
     tables = scope.tables
     known = _known_lookups(tables)
     for reference in declaration.references:
+        checkpoint()
         ref = reference.ref
         key = (ref.role, ref.path, reference.scopes)
         if key not in known:
