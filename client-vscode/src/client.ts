@@ -10,6 +10,7 @@ import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
 import type { Setup } from "./setup/setup";
 import { surroundings } from "./surroundings";
+import { isMomentary, problemOf } from "./testing/answers";
 
 export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
 /** Commands of the server that run scenarios. */
@@ -137,6 +138,7 @@ export class Server implements vscode.Disposable {
       complain(problem, {
         "Manage Workspace Trust": () => void vscode.commands.executeCommand("workbench.trust.manage"),
       });
+      this.tellRefusal(argument, { problem });
       return { problem };
     }
     try {
@@ -144,6 +146,8 @@ export class Server implements vscode.Disposable {
       const result: unknown = await client.sendRequest("workspace/executeCommand", params);
       if (command === "robbdd.gherkin" || command === "robbdd.steps") {
         await openFiles(result);
+      } else if (RUNNING.has(command)) {
+        this.tellRefusal(argument, result);
       }
       return result;
     } catch (error) {
@@ -236,6 +240,14 @@ export class Server implements vscode.Disposable {
       execute: (name, argument) => this.execute(name, argument),
     });
     return client;
+  }
+
+  /** Let what was to be run show why it was not. */
+  private tellRefusal(target: unknown, answer: unknown): void {
+    const problem = problemOf(answer);
+    if (problem !== undefined && hasUri(target) && !isMomentary(answer)) {
+      this.runs.refuse({ ...target, problem });
+    }
   }
 
   private refused(command: string, error: unknown): string {

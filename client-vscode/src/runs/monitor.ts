@@ -5,13 +5,23 @@ import type { RunProgress } from "../presentation";
 import type { RunNotification } from "./messages";
 import { RunReport } from "./report";
 
+/** A run that was asked for and did not begin; `scenario` is the IRI of a variant, `token` what the run would be called. */
+export interface Refusal {
+  readonly uri: string;
+  readonly scenario?: string;
+  readonly token?: string;
+  readonly problem: string;
+}
+
 export class RunMonitor implements vscode.Disposable {
   private readonly channel = vscode.window.createOutputChannel("RobBDD Runs");
   private readonly reports = new Map<string, RunReport>();
   private summary = "";
   private readonly heard = new vscode.EventEmitter<RunNotification>();
+  private readonly refused = new vscode.EventEmitter<Refusal>();
   private readonly over = new vscode.EventEmitter<void>();
   readonly onMessage = this.heard.event;
+  readonly onRefused = this.refused.event;
   /** The server has nothing more to say about any run, whether they ended or not. */
   readonly onOver = this.over.event;
 
@@ -37,6 +47,11 @@ export class RunMonitor implements vscode.Disposable {
     }
   }
 
+  /** Nothing was run, for a reason that the scenarios should show. */
+  refuse(refusal: Refusal): void {
+    this.refused.fire(refusal);
+  }
+
   /** The server has nothing more to say about a run. */
   end(uri: string): void {
     this.interrupt(uri, "The run ended before it was complete.");
@@ -54,6 +69,7 @@ export class RunMonitor implements vscode.Disposable {
   dispose(): void {
     this.channel.dispose();
     this.heard.dispose();
+    this.refused.dispose();
     this.over.dispose();
   }
 

@@ -7,6 +7,11 @@ export function problemOf(answer: unknown): string | undefined {
   return typeof problem === "string" ? problem : undefined;
 }
 
+/** Whether that says nothing of the scenarios: another run is going on, nothing had failed. */
+export function isMomentary(answer: unknown): boolean {
+  return isRecord(answer) && answer["momentary"] === true;
+}
+
 /** Addresses of the moving pictures that were made of a run. */
 export function picturesOf(answer: unknown): string[] {
   const found: unknown = isRecord(answer) ? answer["pictures"] : undefined;

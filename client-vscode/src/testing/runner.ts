@@ -2,9 +2,9 @@
 import * as vscode from "vscode";
 import type { Server } from "../client";
 import type { RunNotification } from "../runs/messages";
-import type { RunMonitor } from "../runs/monitor";
+import type { Refusal, RunMonitor } from "../runs/monitor";
 import { picturesOf, problemOf, recordedIn } from "./answers";
-import { normalised, sinkOf, titleOf } from "./display";
+import { normal, normalised, sinkOf, titleOf } from "./display";
 import { RunFollower } from "./follower";
 import { type FileRun, fileRuns } from "./selection";
 import type { TestTree } from "./tree";
@@ -38,6 +38,7 @@ export class TestRunner implements vscode.Disposable {
         this.hear(message);
       }),
       monitor.onOver(() => void this.abandonOthers()),
+      monitor.onRefused((refusal) => void this.refuse(refusal)),
     ];
   }
 
@@ -153,6 +154,25 @@ export class TestRunner implements vscode.Disposable {
     if (message.message.type === "RunFinished" && !name.startsWith(OWN)) {
       this.followers.delete(name);
       void follower?.interrupt("");
+    }
+  }
+
+  /** Show at its variants why what was asked for elsewhere was not run. */
+  private async refuse({ uri, scenario, token, problem }: Refusal): Promise<void> {
+    if (token?.startsWith(OWN) === true) {
+      return;
+    }
+    const model = normal(uri);
+    if (!this.tree.knows(model)) {
+      await this.tree.load(model);
+    }
+    const variants = this.tree.variantsOf(model).filter((item) => {
+      return scenario === undefined || this.tree.about(item)?.variant === scenario;
+    });
+    if (variants.length > 0) {
+      const run = this.openRun(titleOf(uri));
+      new RunFollower(this.tree, sinkOf(run), titleOf(uri), now).refuse(variants, problem);
+      run.end();
     }
   }
 

@@ -35,6 +35,10 @@ class ModelError(Exception):
     """The model cannot be run as it is; the message says why, for the user."""
 
 
+class NothingFailed(ModelError):
+    """There is nothing to run again, which is no fault of the model."""
+
+
 @dataclass(frozen=True, slots=True)
 class RunOptions:
     """What a client asks for, everything but ``uri`` at will.
@@ -186,7 +190,7 @@ def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed
         return (numbered for numbered in selected.scenarios(variant) if is_wanted(variant, numbered[0]))
 
     if all(next(iter(scenarios(variant)), None) is None for variant in chosen):
-        raise ModelError("no scenario failed" if options.failed else "no scenario fits the selection")
+        raise NothingFailed("no scenario failed") if options.failed else ModelError("no scenario fits the selection")
     variants = {variant.iri for variant in chosen}
     request = RunRequest(model, options.uri, options.seed, variants, scenarios, executions, None, is_wanted_so)
     uris, places, rows = places_of(snapshot, convert, options.uri)

@@ -15,7 +15,7 @@ from robbdd_tools.lsp.kept_results import save_results
 from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.result_hover import picture_violations
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
-from robbdd_tools.lsp.run_plan import ModelError, RunOptions, RunPlan, plan_run
+from robbdd_tools.lsp.run_plan import ModelError, NothingFailed, RunOptions, RunPlan, plan_run
 from robbdd_tools.lsp.run_progress import RunProgress
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.pictures import NoPictures, render_moments
@@ -79,7 +79,7 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
     if not ls.trusted:
         return _refused(ls, UNTRUSTED)
     if ls.run is not None:
-        return _refused(ls, "a run is going on: cancel it first")
+        return _refused(ls, "a run is going on: cancel it first", momentary=True)
     try:
         options = RunOptions.of({**argument, **more})
         ls.run = run = ActiveRun(options, f"robbdd-run-{next(ls.run_numbers)}")
@@ -101,14 +101,15 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
         stored = {"run": place.number, "folder": path_to_uri(place.folder)}
         return {**follower.summary(), "stored": stored, "pictures": pictures}
     except (ModelError, OSError) as error:
-        return _refused(ls, str(error))
+        return _refused(ls, str(error), momentary=isinstance(error, NothingFailed))
     finally:
         ls.run = None
 
 
-def _refused(ls: RobbddServer, problem: str) -> dict[str, Any]:
+def _refused(ls: RobbddServer, problem: str, *, momentary: bool = False) -> dict[str, Any]:
+    """Tell why nothing was run; a ``momentary`` reason says nothing of the scenarios."""
     ls.tell(problem)
-    return {"problem": problem}
+    return {"problem": problem, "momentary": momentary}
 
 
 def cancel_run(ls: RobbddServer) -> None:

@@ -86,6 +86,24 @@ step("the menu of a clause's row opens the replay at this clause", async () => {
   await workbench.screenshot("testing-replay");
 });
 
+step("a run from the palette that is refused says why at the variant, until it is run again", async () => {
+  const path = join(session.workspace, ROWS_FILE);
+  const text = await readFile(path, "utf8");
+  await workbench.openFile(ROWS_FILE);
+  await workbench.goTo(text.slice(0, text.indexOf("Given:")).split("\n").length, 1);
+  await writeFile(path, text.replace("Given:", "Given"));
+  await workbench.lines(/^\s*Given\s*$/).waitFor();
+  await workbench.command("RobBDD: Run Scenarios of This File");
+  await tests.rowsThat("error", "by-rows").waitFor();
+  await workbench.page.locator(".part.panel", { hasText: /the\smodel\shas\serrors/ }).first().waitFor();
+  await workbench.screenshot("testing-refused-elsewhere");
+  await writeFile(path, text);
+  await workbench.lines(/^\s*Given:\s*$/).waitFor();
+  await workbench.command("RobBDD: Run Scenarios of This File");
+  await tests.rowsThat("failed", "by-rows").waitFor({ timeout: RUN_LIMIT });
+  assert.equal(await tests.rowsThat("error").count(), 0);
+});
+
 /** The icon in the margin beside a line. */
 async function clickIcon(line) {
   const number = workbench.page.locator(".editor-group-container.active .line-numbers", { hasText: new RegExp(`^${line}$`) });
