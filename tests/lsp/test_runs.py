@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import pytest
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
 from kit import schema_errors
@@ -287,3 +288,15 @@ async def test_two_servers_run_one_model_at_once(editor: Editor, tmp_path: Path)
     assert {plain(answer["stored"])["run"] for answer in answers} == {1, 2}
     assert {answer["holds"] for answer in answers} == {1}
     await other.client.shutdown_session()
+
+
+@pytest.mark.parametrize("command", ["run", "rerunFailed", "record", "gherkin", "steps"])
+@pytest.mark.parametrize("arguments", [None, ["a.bdd"], [{}], [{"uri": 1}]])
+async def test_a_command_that_names_no_model_is_told_what_it_takes(
+    editor: Editor, command: str, arguments: list[Any] | None
+) -> None:
+    params = types.ExecuteCommandParams(command=f"robbdd.{command}", arguments=arguments)
+    told = f"robbdd.{command} takes an object with the 'uri' of a model"
+    with pytest.raises(JsonRpcException, match=told) as refused:
+        await editor.client.workspace_execute_command_async(params)
+    assert refused.value.code == JsonRpcInvalidParams.CODE

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcInvalidParams
 
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.clause_results import clause_diagnostics
@@ -36,16 +37,16 @@ def register_commands(server: RobbddServer) -> None:
 
 def _register_runs(server: RobbddServer) -> None:
     @server.command(RUN)
-    async def run(ls: RobbddServer, target: dict[str, Any]) -> dict[str, Any]:
-        return await start_run(ls, target)
+    async def run(ls: RobbddServer, target: Any = None) -> dict[str, Any]:
+        return await start_run(ls, _checked(RUN, target))
 
     @server.command(RERUN)
-    async def rerun(ls: RobbddServer, target: dict[str, Any]) -> dict[str, Any]:
-        return await start_run(ls, target, failed=True)
+    async def rerun(ls: RobbddServer, target: Any = None) -> dict[str, Any]:
+        return await start_run(ls, _checked(RERUN, target), failed=True)
 
     @server.command(RECORD)
-    async def record(ls: RobbddServer, target: dict[str, Any]) -> dict[str, Any]:
-        return await start_run(ls, target, record=True)
+    async def record(ls: RobbddServer, target: Any = None) -> dict[str, Any]:
+        return await start_run(ls, _checked(RECORD, target), record=True)
 
     @server.command(CANCEL)
     def cancel(ls: RobbddServer, _: dict[str, Any] | None = None) -> None:
@@ -57,14 +58,23 @@ def _register_runs(server: RobbddServer) -> None:
             cancel_run(ls)
 
 
+def _checked(command: str, target: Any) -> dict[str, Any]:
+    """Return what a client sent as a command's argument; raises ``JsonRpcInvalidParams`` unless it names a model."""
+    match target:
+        case {"uri": str()}:
+            return target
+        case _:
+            raise JsonRpcInvalidParams(f"{command} takes an object with the 'uri' of a model")
+
+
 def _register_writing(server: RobbddServer) -> None:
     @server.command(GHERKIN)
-    async def gherkin(ls: RobbddServer, target: dict[str, Any]) -> dict[str, list[str]]:
-        return {"files": await _write_gherkin(ls, str(target["uri"]))}
+    async def gherkin(ls: RobbddServer, target: Any = None) -> dict[str, list[str]]:
+        return {"files": await _write_gherkin(ls, _checked(GHERKIN, target)["uri"])}
 
     @server.command(STEPS)
-    async def steps(ls: RobbddServer, target: dict[str, Any]) -> dict[str, list[str]]:
-        return {"files": await _write_steps(ls, str(target["uri"]))}
+    async def steps(ls: RobbddServer, target: Any = None) -> dict[str, list[str]]:
+        return {"files": await _write_steps(ls, _checked(STEPS, target)["uri"])}
 
 
 def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionParams) -> Iterator[types.CodeAction]:
