@@ -109,7 +109,7 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
 def _refused(ls: RobbddServer, problem: str, *, momentary: bool = False) -> dict[str, Any]:
     """Tell why nothing was run; a ``momentary`` reason says nothing of the scenarios."""
     ls.tell(problem)
-    return {"problem": problem, "momentary": momentary}
+    return {"problem": problem, "momentary": True} if momentary else {"problem": problem}
 
 
 def cancel_run(ls: RobbddServer) -> None:
