@@ -1,8 +1,9 @@
 """What the server and the validation process say to each other.
 
-Frames in both directions are a length (4 bytes, big endian) and a pickled ``Request``, ``Forget``, ``Begun`` or
-``Answer``; both ends are the same installation. A request replaces an older one for the same file, even while that is
-being worked on, but not endlessly.
+A frame is a length (4 bytes, big endian) and something pickled: towards the process a tuple of ``Request`` and
+``Forget``, in which a text stands once however many of them name it; from it a ``Begun`` or an ``Answer``. Both ends
+are the same installation. A request replaces an older one for the same file, even while that is being worked on, but
+not endlessly.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ class Answer:
     documents: dict[str, Document] = field(default_factory=dict[str, Document])
 
 
-def frame(message: Request | Forget | Begun | Answer) -> bytes:
-    """Return a message as it is sent."""
-    data = pickle.dumps(message)
+def frame(content: tuple[Request | Forget, ...] | Begun | Answer) -> bytes:
+    """Return messages as they are sent."""
+    data = pickle.dumps(content)
     return LENGTH.pack(len(data)) + data

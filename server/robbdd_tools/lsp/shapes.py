@@ -88,8 +88,7 @@ class ShapeValidator:
             assert process.stdin is not None
             # A process that is dead takes no more; what it owes is sent to its successor.
             with suppress(ConnectionError):
-                for message in messages.values():
-                    process.stdin.write(frame(message))
+                process.stdin.write(frame(tuple(messages.values())))
                 await process.stdin.drain()
 
     async def _start(self) -> Process:

@@ -51,8 +51,8 @@ class Inbox:
             body = self._stream.read(LENGTH.unpack(head)[0]) if len(head) == LENGTH.size else b""
             with self._changed:
                 if body:
-                    message: Request | Forget = pickle.loads(body)
-                    self._waiting[message.uri] = message
+                    messages: tuple[Request | Forget, ...] = pickle.loads(body)
+                    self._waiting |= {message.uri: message for message in messages}
                 self._ended = not body
                 self._changed.notify_all()
             if not body:
