@@ -149,8 +149,7 @@ step("a run that is cancelled ends at once", async () => {
 });
 
 step("a continuous run follows each save", async () => {
-  await tests.row("part-stays").first().hover();
-  await tests.row("part-stays").first().locator('[aria-label^="Turn on Continuous Run"]').click();
+  await tests.press("part-stays", '[aria-label^="Turn on Continuous Run"]');
   const { line, column } = await placeOf(FAILING_FILE, "before <evt-pick-start>)", "at-goal");
   await workbench.focusEditor();
   await workbench.goTo(line, column);

@@ -47,8 +47,27 @@ export class TestingView {
   }
 
   async runRow(text) {
-    await this.row(text).first().hover();
-    await this.row(text).first().locator(".codicon-testing-run-icon").first().click();
+    await this.press(text, ".codicon-testing-run-icon");
+  }
+
+  /** Press an icon of a row. It is there while the row is pointed at. */
+  async press(text, icon) {
+    const found = this.row(text).first();
+    const button = found.locator(icon).first();
+    await found.waitFor();
+    for (let tries = 1; ; tries += 1) {
+      try {
+        await found.hover({ timeout: PATIENCE / MOST_TRIES });
+        await button.click({ timeout: PATIENCE / MOST_TRIES });
+        return;
+      } catch (error) {
+        // While the tree is being filled its rows move away from under the pointer.
+        if (tries === MOST_TRIES) {
+          throw error;
+        }
+        await this.page.mouse.move(0, 0);
+      }
+    }
   }
 
   /** Choose an entry of a row's menu. */
