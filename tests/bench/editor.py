@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -24,6 +24,7 @@ from tests.bench.models import long_story, model
 from kit import EXAMPLES, SCENE
 
 COMMAND = (sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
+REFRESH = "workspace/inlayHint/refresh"
 STARTS = 5
 QUESTIONS = 60
 PEER = {
@@ -235,6 +236,26 @@ def _one_file(text: str, name: str, typed: str, place: Callable[[str], int]) -> 
         yield f"keystroke to all that VS Code asks for, {name}", str(session.measured(strokes))
 
 
+def _judged(message: Message) -> tuple[int, int] | None:
+    """Return the scenario and the line of the clause that a message brings the verdict of."""
+    if message.get("method") != "robbdd/runMessage":
+        return None
+    told: Message = message["params"]["message"]
+    return (told["index"], told["line"]) if told["type"] == "ClauseJudged" else None
+
+
+def _refresh_behind(clauses: Collection[tuple[int, int]]) -> Callable[[Message], bool]:
+    """Return what recognises the refresh of hints that follows the verdicts of all clauses."""
+    missing = set(clauses)
+
+    def is_wanted(message: Message) -> bool:
+        if (clause := _judged(message)) is not None:
+            missing.discard(clause)
+        return not missing and message.get("method") == REFRESH
+
+    return is_wanted
+
+
 def _status() -> Iterator[tuple[str, str]]:
     """Measure how soon a client hears of what a clause's simulation has shown."""
     with tempfile.TemporaryDirectory() as name:
@@ -248,14 +269,12 @@ def _status() -> Iterator[tuple[str, str]]:
             client.open(path.as_uri(), path.read_text(encoding="utf-8"))
             client.wait(lambda message: message.get("method") == "textDocument/publishDiagnostics")
             client.request("workspace/executeCommand", {"command": "robbdd.run", "arguments": [{"uri": path.as_uri()}]})
+            decided = {(int(index), int(line)): float(at) for index, line, at in map(str.split, stamps.open())}
+            # The answer may come before the last refresh.
+            client.wait(_refresh_behind(decided))
             heard = client.heard()
-        decided = {(int(index), int(line)): float(at) for index, line, at in map(str.split, stamps.open())}
-    told = {
-        (message["params"]["message"]["index"], message["params"]["message"]["line"]): came
-        for came, message in heard
-        if message.get("method") == "robbdd/runMessage" and message["params"]["message"]["type"] == "ClauseJudged"
-    }
-    refreshed = [came for came, message in heard if message.get("method") == "workspace/inlayHint/refresh"]
+    told = {clause: came for came, message in heard if (clause := _judged(message)) is not None}
+    refreshed = [came for came, message in heard if message.get("method") == REFRESH]
     messages = Times([told[clause] - at for clause, at in decided.items()], [])
     hints = Times([min(came for came in refreshed if came > told[clause]) - at for clause, at in decided.items()], [])
     yield f"event in simulation to the client's run message, {len(decided)} clauses", str(messages)
