@@ -82,6 +82,7 @@ def plant(module: ModuleType | type, name: str, change: Callable[..., Any], *mor
 
 def watch_the_loop() -> None:
     """Note each callback of the event loop that computes for too long; waiting for the processor does not count."""
+    # asyncio has no public place around its callbacks.
     run = asyncio.Handle._run  # pyright: ignore[reportPrivateUsage]
 
     def watched(self: asyncio.Handle) -> Any:
