@@ -18,10 +18,13 @@ export interface Owner {
   execute(command: string, argument: unknown): Promise<unknown>;
 }
 
-/** Logs its errors and leaves it to us to speak to the user: two messages for one failure are one too many. */
+/**
+ * Logs its errors and leaves it to us to speak to the user: two messages for one failure are one too many. Where in its
+ * library one arose is left out: it would push what the server said last out of sight.
+ */
 class DiscreetClient extends LanguageClient {
   override error(message: string, data?: unknown): void {
-    super.error(message, data, false);
+    super.error(message, data instanceof Error ? data.message : data, false);
   }
 }
 
