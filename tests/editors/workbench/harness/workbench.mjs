@@ -169,9 +169,9 @@ export class Workbench {
     return toast;
   }
 
-  /** The page of the one panel with a web view that is in front. */
+  /** The page of the panel with a web view that is in front: the last, since for a moment a panel stays in sight beside the one that takes its place. */
   webview() {
-    return this.page.frameLocator("iframe.webview.ready:visible").frameLocator("#active-frame");
+    return this.page.locator("iframe.webview.ready:visible").last().contentFrame().frameLocator("#active-frame");
   }
 
   /** Load the window again, as after a crash or an update, and wait until it can be used. */
