@@ -13,7 +13,7 @@ from robbdd_tools.commands import FAILED, OK
 def new_project(folder: Path, template: str) -> int:
     """Begin a project in ``folder``; returns the exit code."""
     try:
-        models = begin_project(folder, template)
+        begin_project(folder, template)
     except ScaffoldProblem as problem:
         print(f"robbdd: {problem}", file=sys.stderr)
         return FAILED
@@ -21,7 +21,7 @@ def new_project(folder: Path, template: str) -> int:
         print(f"robbdd: {error.filename or folder}: {error.strerror or error}", file=sys.stderr)
         return FAILED
     print(f"{folder}: {', '.join(path.name for path in sorted(folder.iterdir()) if path.name != '.gitignore')}")
-    print(f"Next: robbdd run {shlex.quote(str(models[0]))}")
+    print(f"Next: robbdd run {shlex.quote(str(folder))}")
     return OK
 
 
