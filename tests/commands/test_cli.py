@@ -44,6 +44,13 @@ def test_every_example_is_clean() -> None:
     assert {remark.rpartition(" ")[2] for remark in remarks} == {"[catalog-models]"}
 
 
+def test_a_model_above_the_working_folder_is_looked_at_once(folder: Path) -> None:
+    (folder / "below").mkdir()
+    shown = robbdd("check", "..", folder=folder / "below").stdout.splitlines()
+    assert [line.rpartition(" ")[2] for line in shown] == ["[catalog-models]", "remark"]
+    assert shown[-1] == "2 files: 0 errors, 1 other remark"
+
+
 def test_a_folder_is_read_without_what_is_installed_in_it(folder: Path) -> None:
     for name in (".robbdd", "node_modules", "venv"):
         (folder / name / "inner").mkdir(parents=True)

@@ -63,5 +63,16 @@ def test_the_store_lies_at_the_root_of_the_project(tmp_path: Path, mark: str) ->
     assert project_root(models) == tmp_path
 
 
+def test_a_path_by_way_of_another_project_leads_to_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("here", "there"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "here" / "pyproject.toml").touch()
+    (tmp_path / "there" / "m.bdd").touch()
+    monkeypatch.chdir(tmp_path / "here")
+    model = Path("..") / "there" / "m.bdd"
+    assert project_root(model) == tmp_path / "there"
+    assert shown_path(model) == "m.bdd"
+
+
 def test_without_a_project_it_lies_beside_the_model(tmp_path: Path) -> None:
     assert store_beside(tmp_path / "m.bdd").folder == tmp_path / ".robbdd" / "runs"

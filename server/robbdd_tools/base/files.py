@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -38,9 +39,14 @@ def file_state(uri: str) -> FileState | None:
     return None if path is None or status is None else FileState(uri, path, status.st_mtime_ns, status.st_size)
 
 
+def full_path(path: Path) -> Path:
+    """Return a path made absolute, without ``..`` (as imports are read), its links kept as the user wrote them."""
+    return Path(os.path.normpath(path.absolute()))
+
+
 def path_to_uri(path: Path) -> str:
-    """Return the ``file:`` URI of a path, made absolute but with its links kept as the user wrote them."""
-    return Path(path).absolute().as_uri()
+    """Return the ``file:`` URI of a path, see ``full_path``."""
+    return full_path(path).as_uri()
 
 
 def uri_to_path(uri: str) -> Path | None:

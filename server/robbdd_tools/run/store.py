@@ -14,6 +14,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
+from robbdd_tools.base.files import full_path
 from robbdd_tools.run.protocol import Manifest, read_manifest
 
 MARKS = ("pyproject.toml", "robbdd.toml", ".git")
@@ -149,13 +150,13 @@ class RunStore:
 
 def project_root(path: Path) -> Path:
     """Return the nearest folder above a model that is a project's root, else the model's own folder."""
-    here = path.absolute() if path.is_dir() else path.absolute().parent
+    here = full_path(path) if path.is_dir() else full_path(path).parent
     return next((folder for folder in (here, *here.parents) if any((folder / mark).exists() for mark in MARKS)), here)
 
 
 def origin(model: Path, folder: Path) -> str:
     """Return a model's path relative to the folder of its run: both may be moved together."""
-    return Path(os.path.relpath(model.absolute(), folder.absolute())).as_posix()
+    return Path(os.path.relpath(model, folder)).as_posix()
 
 
 def store_beside(path: Path) -> RunStore:
@@ -165,7 +166,7 @@ def store_beside(path: Path) -> RunStore:
 
 def shown_path(path: Path) -> str:
     """Return a model's path as records have it: relative to its project's root."""
-    return path.absolute().relative_to(project_root(path)).as_posix()
+    return full_path(path).relative_to(project_root(path)).as_posix()
 
 
 def _write(path: Path, document: object) -> None:
