@@ -181,10 +181,10 @@ def test_a_pass_rate_goes_stale_with_its_variant_and_its_template() -> None:
         assert found is not None
         return found.label
 
-    assert rate(MODEL) == "1/3 passed"
-    assert rate("// x\n" + MODEL) == "1/3 passed"
-    assert rate(edited("picks <part> and places at <goal>", "picks <part>")) == "1/3 passed (stale)"
-    assert rate(edited("{ <arms.panda> }", "{ <arms.ur10> }")) == "1/3 passed (stale)"
+    assert rate(MODEL) == "✗ 1/3 passed"
+    assert rate("// x\n" + MODEL) == "✗ 1/3 passed"
+    assert rate(edited("picks <part> and places at <goal>", "picks <part>")) == "✗ 1/3 passed (stale)"
+    assert rate(edited("{ <arms.panda> }", "{ <arms.ur10> }")) == "✗ 1/3 passed (stale)"
     (variant,) = variants_of(case.snapshot, case.uri)
     assert pass_rate(case.snapshot, variant, Results().findings()) is None
 

@@ -41,6 +41,16 @@ async def lenses(editor: Editor) -> list[types.Command]:
     return [lens.command for lens in found or [] if lens.command is not None]
 
 
+async def appearances(editor: Editor) -> dict[str, object]:
+    """What decides the colours of the results that are shown, by their words."""
+    document = types.TextDocumentIdentifier(uri=editor.uri)
+    params = types.InlayHintParams(text_document=document, range=editor.everything())
+    shown = {str(hint.label): hint.data for hint in await editor.client.text_document_inlay_hint_async(params) or []}
+    found = await editor.client.text_document_code_lens_async(types.CodeLensParams(text_document=document)) or []
+    shown |= {lens.command.title: lens.data for lens in found if lens.command is not None}
+    return {words: plain(data) for words, data in shown.items() if data is not None}
+
+
 async def another_client(folder: Path) -> LanguageClient:
     """A client of another server in the same workspace."""
     client = make_test_lsp_client()
@@ -109,7 +119,9 @@ async def test_results_survive_a_restart_and_are_stale_after_an_edit(editor: Edi
     editor.open(short(editor))
     await execute(editor, "run")
     before = await hints(editor)
-    assert [command.title for command in await lenses(editor)][-2:] == ["1 scenario", "1/1 passed"]
+    fresh = {"verdict": "holds", "stale": False}
+    assert await appearances(editor) == dict.fromkeys((*before.values(), "✔ 1/1 passed"), fresh)
+    assert [command.title for command in await lenses(editor)][-2:] == ["1 scenario", "✔ 1/1 passed"]
     restarted = await another_client(tmp_path)
     later = Editor(restarted, tmp_path)
     later.open(editor.text)
@@ -120,7 +132,9 @@ async def test_results_survive_a_restart_and_are_stale_after_an_edit(editor: Edi
     changed = await hints(later)
     assert changed.pop("at-goal") == f"{before['at-goal']} (stale)"
     assert changed == {name: label for name, label in before.items() if name != "at-goal"}
-    assert [command.title for command in await lenses(later)][-1] == "1/1 passed (stale)"
+    assert [command.title for command in await lenses(later)][-1] == "✔ 1/1 passed (stale)"
+    stale = {words for words, data in (await appearances(later)).items() if data == {"verdict": "holds", "stale": True}}
+    assert stale == {f"{before['at-goal']} (stale)", "✔ 1/1 passed (stale)"}
     await restarted.shutdown_session()
 
 
@@ -166,12 +180,13 @@ async def test_a_failed_scenario_is_run_again_alone_and_others_keep_their_result
     assert sum(not label.startswith("✔") for label in rows) == failed
     titles = [command.title for command in await lenses(editor)]
     assert (f"Rerun {failed} failed" in titles) == (failed > 0)
-    assert f"{answer['holds']}/2 passed" in titles
+    rate = f"{'✗' if failed else '✔'} {answer['holds']}/2 passed"
+    assert rate in titles
     run_messages.clear()
     again = await execute(editor, "run", variation=1)
     assert again["total"] == 1
     assert [entry.message.variation for entry in run_messages if entry.message.type == "ScenarioStarted"] == [1]
-    assert f"{answer['holds']}/2 passed" in [command.title for command in await lenses(editor)]
+    assert rate in [command.title for command in await lenses(editor)]
     repeated = await execute(editor, "rerunFailed")
     assert repeated.get("total", 0) == failed
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
 from robbdd_tools.features.results import digest, execution_digest, variant_digest
@@ -55,16 +55,27 @@ class ResultHint:
 
 @dataclass(frozen=True, slots=True)
 class PassRate:
-    """How many scenarios of a variant passed of those that were run."""
+    """How many scenarios of a variant passed of those that were run; ``outcome`` is the worst one."""
 
     passed: int
     run: int
+    outcome: str
     stale: bool
 
     @property
     def label(self) -> str:
         """The rate as it is shown."""
-        return f"{self.passed}/{self.run} passed" + (f" {STALE}" if self.stale else "")
+        return f"{SIGNS[self.outcome]} {self.passed}/{self.run} passed" + (f" {STALE}" if self.stale else "")
+
+
+def appearance(shown: ResultHint | PassRate) -> dict[str, Any]:
+    """Return what decides how a result is coloured, as clients get it beside its words."""
+    return {"verdict": verdict_of(shown.outcome), "stale": shown.stale}
+
+
+def verdict_of(outcome: str) -> str:
+    """Return the verdict behind an outcome: what no step can judge is unknown."""
+    return "unknown" if outcome == "undefined" else outcome
 
 
 def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHint]:
@@ -108,10 +119,12 @@ def execution_rate(snapshot: Snapshot, execution: PlacedExecution, findings: Fin
 
 def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
     """Return the pass rate of scenarios, each with whether it was judged by the text as it is now."""
-    finished = [(one.outcome == "holds", current) for one, current in scenarios if one.finished]
+    finished = [(one.outcome, current) for one, current in scenarios if one.finished]
     if not finished:
         return None
-    return PassRate(sum(holds for holds, _ in finished), len(finished), not all(current for _, current in finished))
+    outcomes = [outcome for outcome, _ in finished]
+    stale = not all(current for _, current in finished)
+    return PassRate(outcomes.count("holds"), len(outcomes), _worst(outcomes), stale)
 
 
 def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:

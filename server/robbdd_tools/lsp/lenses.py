@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 
-from robbdd_tools.features.clause_results import PassRate, execution_rate, pass_rate
+from robbdd_tools.features.clause_results import PassRate, appearance, execution_rate, pass_rate
 from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.lsp.commands import GHERKIN, RECORD, RERUN, RUN
@@ -58,11 +58,15 @@ def register_lenses(server: RobbddServer) -> None:
 
         def find(snapshot: Snapshot) -> list[types.CodeLens]:
             document = document_of(snapshot, uri)
-            return [
-                types.CodeLens(range=ls.convert.range(document, one.definition.span), command=command)
-                for one in _runnable(snapshot, uri, ls.findings)
-                for command in _lenses(one, one.variant in recorded)
-            ]
+            found: list[types.CodeLens] = []
+            for one in _runnable(snapshot, uri, ls.findings):
+                place = ls.convert.range(document, one.definition.span)
+                found += [types.CodeLens(place, command) for command in _lenses(one, one.variant in recorded)]
+                if one.rate is not None:
+                    # A lens without a command is but a text.
+                    words = types.Command(title=one.rate.label, command="")
+                    found.append(types.CodeLens(place, words, data=appearance(one.rate)))
+            return found
 
         return await ls.analyse(find)
 
@@ -100,11 +104,8 @@ def _lenses(one: _Runnable, recorded: bool) -> Iterator[types.Command]:
         yield types.Command(title="Replay", command=REPLAY, arguments=[target])
     if one.variant is not None:
         yield _gherkin(one.definition.uri)
-    # A lens without a command is but a text.
     if one.number is not None:
         yield types.Command(title=f"{one.number:,} scenario{'' if one.number == 1 else 's'}", command="")
-    if rate is not None:
-        yield types.Command(title=rate.label, command="")
 
 
 def _gherkin(uri: str) -> types.Command:

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from lsprotocol import types
 
-from robbdd_tools.features.clause_results import clause_hints, row_hints
+from robbdd_tools.features.clause_results import appearance, clause_hints, row_hints
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.describe import describe_path, describe_words
 from robbdd_tools.features.hover import Hover, hover
@@ -102,6 +102,7 @@ def _register_hints(server: RobbddServer) -> None:
                         label=hint.label,
                         tooltip=hint.tooltip,
                         padding_left=True,
+                        data=appearance(hint),
                     )
                     for find_hints in (clause_hints, row_hints)
                     for hint in find_hints(snapshot, document.uri, ls.findings)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.files import Unreadable, read_text, uri_to_path
+from robbdd_tools.features.clause_results import verdict_of
 from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.results import Digests, JudgedScenario, digests_of
 from robbdd_tools.features.stories import stories_in, story_files
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 KEPT = "robbdd/testResults"
 IMPORT = "robbdd/importResults"
-_NO_STEP = {"undefined": "unknown"}
 
 
 def register_test_results(server: RobbddServer) -> None:
@@ -70,7 +70,7 @@ def _kept_scenario(scenario: JudgedScenario, now: Digests) -> dict[str, Any]:
                 "clause": iri,
                 "position": None,
                 "sentence": "",
-                "verdict": _NO_STEP.get(judgement.outcome, judgement.outcome),
+                "verdict": verdict_of(judgement.outcome),
                 "margin": judgement.margin,
                 "said": judgement.said,
                 "stale": judgement.digest != now.clauses.get(iri),
