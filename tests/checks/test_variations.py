@@ -60,15 +60,15 @@ def test_a_second_line_for_one_variable_is_one_too_many() -> None:
 
 
 def test_a_second_column_for_one_variable_is_one_too_many() -> None:
-    (finding,) = found(
-        story(
-            TABLE.replace("| <fetch.robot> |", "| <fetch.robot> | <fetch.part> |").replace(
-                "| <arms.panda> |", "| <arms.panda> | <parts.bolt> |"
-            )
+    text = story(
+        TABLE.replace("| <fetch.robot> |", "| <fetch.robot> | <fetch.part> |").replace(
+            "| <arms.panda> |", "| <arms.panda> | <parts.bolt> |"
         )
     )
-    assert (finding.code, finding.fixes) == ("repeated-value", ())
+    (finding,) = found(text)
+    assert finding.code == "repeated-value"
     assert "remove this column" in finding.message
+    assert fixed(text, "repeated-value", "Remove this column") == story(TABLE)
 
 
 def test_the_repeated_line_is_removed() -> None:

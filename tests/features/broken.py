@@ -55,6 +55,13 @@ def _declared(line: str) -> str:
     return EVENTS + line + TEMPLATE + STORY
 
 
+def _paced(setting: str) -> str:
+    """A template that sets a configuration to the value of one more variable, ``pace``."""
+    return TEMPLATE.replace("    var goal\n", "    var goal\n    var pace\n").replace(
+        "    Then:\n", f"    Then:\n        slow: holds(<robot> has config {setting} = <pace>, after <end>)\n"
+    )
+
+
 BROKEN: dict[str, list[str]] = {
     "syntax": [
         _swapped("before <pick", "befor <pick"),
@@ -101,6 +108,14 @@ BROKEN: dict[str, list[str]] = {
         story(LINES + "                var <fetch.part>: { <parts.bolt> }\n"),
         story(LINES.rstrip() + " var <fetch.part>: { <parts.bolt> } // again\n"),
         story(LINES + "                var <fetch.part>: { <parts.bolt>,\n    <parts.nut> }\n"),
+        story(
+            _HEADER.replace("> |\n", "> | <fetch.part> |\n").replace("|---|", "|---|---|---|-----|")
+            + _ROW.replace("ws> |", "ws> | <parts.nut> |")
+        ),
+        story(
+            _HEADER.replace("| <fetch.robot>", "| <fetch.part> | <fetch.robot>")
+            + _ROW.replace("| <arms", "|\n { 3, 'a|b' }\n | <arms")
+        ),
     ],
     "foreign-variable": [
         _TWO_NAMESPACES + TEMPLATE + _OTHER + STORY.replace("<fetch.part>:", "<bring.part>:"),
@@ -117,19 +132,46 @@ BROKEN: dict[str, list[str]] = {
         story(_HEADER + _ROW + "                | <parts.nut>\n | <arms.ur10>\n |\n"),
         story(_HEADER + "                | <parts.nut> | <arms.ur10> | <places.tray_ws> | 3 | 4 |\n"),
         story(_HEADER + _LISTED.replace("} |", "} | 'a | b' |") + _ROW),
+        story(_HEADER + "                | <parts.nut> |\n"),
+    ],
+    "type-conflict": [
+        _swapped("in-tray: holds(<part>", "in-tray: holds(<robot>"),
+        _swapped("at <goal>, 0.5", "at <robot>, 0.5"),
+        _swapped("obj set <parts>", "{ <parts.bolt>, <arms.ur10> }"),
+        _swapped("obj set <parts>", "ws set <places>"),
+        _swapped("{ <arms.panda> }", "{ 3 }"),
+        _swapped("variation:", "Then: held: holds(<fetch.goal> is held by <fetch.robot>, after <end>)\n variation:"),
+        story(_HEADER + _ROW.replace("<parts.bolt>", "<arms.ur10>") + _ROW.replace("<parts.bolt>", "ws set <places>")),
+        story(LINES + "                set var <fetch.goals>: select 1 combinations from <arms>\n", SETS),
+    ],
+    "empty-set": [
+        _swapped("{ <arms.panda> }", "{ }"),
+        story(_HEADER + _ROW.replace("<arms.panda>", "{ }")),
+        story(LINES + "                set var <fetch.goals>: { }\n", SETS),
+        story(LINES + "                set var <fetch.goals>: { { <places.tray_ws> }, {} }\n", SETS),
+        _declared("const set (ns=t) none { }\n").replace("obj set <parts>", "set <none>"),
+    ],
+    "empty-duration": [
+        _swapped("0.5 seconds after <place-end>)", "from <place-end> until <place-end>)"),
+        _swapped("variation:", "Then: 'all is well' from <end>  until <end>\n variation:"),
+    ],
+    "distribution": [
+        _EXECUTABLE + "distrib (ns=x) d { uniform { dimension: 2 lower: (0, 0, 0) upper: (1, 1, 1) } }\n",
+        _EXECUTABLE + "distrib (ns=x) d { normal { dimension: 2 mean: (0, 0, 0) std-dev: 1 } }\n",
+        _EXECUTABLE + "distrib (ns=x) d { uniform { dimension: 2 lower: (0, 2) upper: (1, 1.5) } }\n",
+        _EXECUTABLE + "distrib (ns=x) d { uniform { dimension: 1 lower: 2 upper: 1e-1 } }\n",
     ],
     "selection-size": [
-        story(LINES + f"                set var <fetch.goals>: select 3 {kind} from <places>\n", SETS)
-        for kind in ("combinations", "permutations")
+        story(LINES + "                set var <fetch.goals>: select 0 permutations from <places>\n", SETS),
+        *(
+            story(LINES + f"                set var <fetch.goals>: select 3 {kind} from <places>\n", SETS)
+            for kind in ("combinations", "permutations")
+        ),
     ],
     "setting": [
-        story(
-            LINES + "                var <fetch.pace>: { 0.5 }\n",
-            TEMPLATE.replace("    var goal\n", "    var goal\n    var pace\n").replace(
-                "    Then:\n",
-                "    Then:\n        slow: holds(<robot> has config max_sped = <pace>, after <end>)\n",
-            ),
-        )
+        story(LINES + "                var <fetch.pace>: { 0.5 }\n", _paced("max_sped")),
+        story(LINES + "                var <fetch.pace>: { 0.5, 50 }\n", _paced("max_speed")),
+        story(LINES + "                var <fetch.pace>: { -1.5 }\n", _paced("seed")),
     ],
     "catalog-entry": [
         _EXECUTABLE
@@ -160,6 +202,13 @@ BROKEN: dict[str, list[str]] = {
             "                var <fetch.robot>: { <arms.panda> }\n",
             "                var <fetch.goal>: { <places.bench_ws>, <places.tray_ws> }\n",
         ),
+        story("                | <fetch.part> | <fetch.robot> |\n |---|\n | <parts.nut> | <arms.panda> |\n"),
+        story(
+            "                | <fetch.part>\n|\n |-----|\n | <parts.nut> | |\n<parts.bolt>\n |\n".replace(
+                "| |\n", "|\n|"
+            )
+        ),
+        story("                | <fetch.robot> | <fetch.part> | <fetch.goal> |\n |---|\n", SETS),
     ],
     "duplicate-name": [
         _declared("Event (ns=t) start\n"),

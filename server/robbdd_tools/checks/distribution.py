@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.diagnostic import Edit, Fix, Severity
 from robbdd_tools.catalog.executable import Law, law_fault, spherical
-from robbdd_tools.checks.finding import finding
+from robbdd_tools.checks.finding import change, finding
 from robbdd_tools.graph.rotations import numbers_of
 from robbdd_tools.syntax import tree
 
@@ -40,10 +40,39 @@ def distribution(site: Site) -> Iterator[Diagnostic]:
     fault = law_fault(law)
     if wrong is not None:
         text = f"the distribution '{name}' has dimension {wanted}, but this has {len(_numbers(wrong))}"
-        yield finding(site, wrong, Severity.WARNING, CODE, text)
+        fixes = _resized(site, dimension, sized)
+        yield finding(site, wrong, Severity.WARNING, CODE, text, fixes=fixes)
     elif fault:
         text = f"the distribution '{name}' {fault}: a run cannot draw from it"
-        yield finding(site, blamed, Severity.WARNING, CODE, text)
+        fixes = _ordered(site, declared.law) if isinstance(declared.law, tree.Uniform) else ()
+        yield finding(site, blamed, Severity.WARNING, CODE, text, fixes=fixes)
+
+
+def _resized(site: Site, dimension: tree.Number, sized: tuple[tree.Vector | tree.Number, ...]) -> tuple[Fix, ...]:
+    """Return the fix that states the dimension of the numbers, where these agree on one."""
+    sizes = {len(_numbers(part)) for part in sized}
+    if len(sizes) > 1:
+        return ()
+    (size,) = sizes
+    return (change(site, f"Change the dimension to {size}", dimension, str(size)),)
+
+
+def _ordered(site: Site, law: tree.Uniform) -> tuple[Fix, ...]:
+    """Return the fix that swaps each lower bound with its upper one where it lies above."""
+    swaps: list[Edit] = []
+    for low, high in zip(_parts(law.lower), _parts(law.upper), strict=True):
+        if low.value > high.value:
+            swaps += (Edit(site.uri, site.span(old), _written(site, new)) for old, new in ((low, high), (high, low)))
+    return (Fix("Swap the bounds that are the wrong way round", tuple(swaps)),) if swaps else ()
+
+
+def _parts(value: tree.Vector | tree.Number) -> list[tree.Number]:
+    return [value] if isinstance(value, tree.Number) else [part for inner in value.values for part in _parts(inner)]
+
+
+def _written(site: Site, node: tree.Node) -> str:
+    span = site.span(node)
+    return site.file.document.text[span.start : span.end]
 
 
 def drawn(law: tree.Uniform | tree.UniformRotation | tree.Normal) -> int:

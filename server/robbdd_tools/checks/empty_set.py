@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.checks.finding import finding, related_to
-from robbdd_tools.checks.variants import Column, scenarios
+from robbdd_tools.checks.finding import change, finding, related_to
+from robbdd_tools.checks.variants import Column, Scenario, scenarios
 from robbdd_tools.names.elements import elements_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.base.diagnostic import Diagnostic, Fix
     from robbdd_tools.names.elements import Site
 
 
@@ -26,28 +26,43 @@ def empty_set(site: Site) -> Iterator[Diagnostic]:
         is_product = isinstance(scenario.variant.variation, tree.Product)
         for column in scenario.columns:
             for written in column.written:
-                yield from _line(site, column, written) if is_product else _cell(site, written)
+                yield from _line(scenario, column, written) if is_product else _cell(scenario, column, written)
 
 
-def _line(site: Site, column: Column, written: tree.Node) -> Iterator[Diagnostic]:
+def _line(scenario: Scenario, column: Column, written: tree.Node) -> Iterator[Diagnostic]:
     """A line without values leaves nothing to combine; an inner set without elements may be meant."""
+    site = scenario.site
+    related = (related_to(site, column.ref, "the variable"),)
     match written:
         case tree.ValueList(values=()) | tree.SetList(sets=()):
             message = f"'{column.ref.path}' has no value to choose from, so there is no scenario: add a value"
-            related = (related_to(site, column.ref, "the variable"),)
-            yield finding(site, written, Severity.ERROR, "empty-set", message, related)
+            fixes = _filled(scenario, column, written)
+            yield finding(site, written, Severity.ERROR, "empty-set", message, related, fixes)
         case tree.SetList():
             for values in written.sets:
-                yield from _cell(site, values)
+                yield from _cell(scenario, column, values)
         case tree.Link() if elements_of(site.follow(written.reference)) == ():
             path = written.reference.path
             message = f"the set '{path}' is empty, so there is no scenario: add an element to it"
-            related = (related_to(site, column.ref, "the variable"),)
-            yield finding(site, written.reference, Severity.ERROR, "empty-set", message, related)
+            fixes = _filled(scenario, column, written)
+            yield finding(site, written.reference, Severity.ERROR, "empty-set", message, related, fixes)
         case _:
             pass
 
 
-def _cell(site: Site, written: tree.Node) -> Iterator[Diagnostic]:
+def _cell(scenario: Scenario, column: Column, written: tree.Node) -> Iterator[Diagnostic]:
     if isinstance(written, tree.ValueList) and not written.values:
-        yield finding(site, written, Severity.WARNING, "empty-set", "this set is empty: write its elements")
+        message = "this set is empty: write its elements"
+        fixes = _filled(scenario, column, written)
+        yield finding(scenario.site, written, Severity.WARNING, "empty-set", message, fixes=fixes)
+
+
+def _filled(scenario: Scenario, column: Column, written: tree.Node) -> tuple[Fix, ...]:
+    """Return the fix that writes all that the scene has for a variable in the place of an empty set."""
+    values = () if column.variable is None else scenario.fitting_for(column.variable)
+    if not values:
+        return ()
+    text = f"{{ {', '.join(values)} }}"
+    if isinstance(written, tree.SetList):
+        text = f"{{ {text} }}"
+    return (change(scenario.site, "Write all that fits in the scene", written, text),)

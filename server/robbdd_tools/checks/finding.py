@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from robbdd_tools.names.elements import Site
     from robbdd_tools.syntax.tree import Node
 
+MOST_OFFERED = 3
+"""Names or values of which each has a fix of its own, where several fit."""
+
 
 def finding(
     site: Site,

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit, Fix, Related, Severity
 from robbdd_tools.base.document import Span
-from robbdd_tools.checks.finding import finding, listed
+from robbdd_tools.checks.finding import MOST_OFFERED, finding, listed
+from robbdd_tools.checks.tables import columns_added
 from robbdd_tools.checks.variants import Scenario, scenarios
-from robbdd_tools.names.elements import scene_members
-from robbdd_tools.names.types import variable_key, variable_type
-from robbdd_tools.names.uses import ELEMENTS
+from robbdd_tools.names.types import variable_key
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -48,22 +47,41 @@ def _report(scenario: Scenario, missing: list[Definition]) -> Diagnostic:
 
 
 def _filled(scenario: Scenario, missing: list[Definition]) -> Iterator[Fix]:
-    """Yield the lines of a product that give each variable all that its scene has for it."""
-    site, variation = scenario.site, scenario.variant.variation
-    members = scene_members(site.follow(scenario.variant.scene))
-    if not isinstance(variation, tree.Product) or not variation.assignments or members is None:
-        return
-    document, end = site.file.document, site.span(variation.assignments[-1]).end
+    """Yield the lines or columns that give each variable what its scene has for it."""
+    variation = scenario.variant.variation
+    names = listed([variable.symbol.name for variable in missing])
+    if isinstance(variation, tree.Table):
+        yield from _columns(scenario, variation, missing)
+    elif variation.assignments:
+        fitting = [scenario.fitting_for(variable) for variable in missing]
+        if all(fitting):
+            edit = _lines(scenario, variation, missing, fitting)
+            yield Fix(f"Give {names} all that fits in the scene", (edit,))
+
+
+def _lines(scenario: Scenario, product: tree.Product, missing: list[Definition], fitting: list[list[str]]) -> Edit:
+    site = scenario.site
+    document, end = site.file.document, site.span(product.assignments[-1]).end
     line = document.line_text(document.position(end).line)
     lines: list[str] = []
-    for variable in missing:
-        kinds = variable_type(site.snapshot, variable, from_values=False).kinds & ELEMENTS
-        fitting = sorted((member for member in members if member.kind in kinds), key=lambda member: member.key)
-        if not fitting:
-            return
-        values = f"{{ {', '.join(f'<{member.name}>' for member in fitting)} }}"
+    for variable, found in zip(missing, fitting, strict=True):
+        values = f"{{ {', '.join(found)} }}"
         is_set = variable.kind is SymbolKind.SET_VARIABLE
         words, values = ("set var", f"{{ {values} }}") if is_set else ("var", values)
         lines.append(f"\n{line[: len(line) - len(line.lstrip())]}{words} <{variable.symbol.path}>: {values}")
-    names = listed([variable.symbol.name for variable in missing])
-    yield Fix(f"Give {names} all that fits in the scene", (Edit(site.uri, Span(end, end), "".join(lines)),))
+    return Edit(site.uri, Span(end, end), "".join(lines))
+
+
+def _columns(scenario: Scenario, table: tree.Table, missing: list[Definition]) -> Iterator[Fix]:
+    """Yield columns with a value for every row: one variable may have any of the first that fit, several the first."""
+    if len(missing) == 1 and missing[0].kind is SymbolKind.VARIABLE:
+        choices = [[value] for value in scenario.fitting_for(missing[0])[:MOST_OFFERED]]
+    else:
+        cells = [scenario.cell_for(variable) for variable in missing]
+        choices = [[cell for cell in cells if cell is not None]]
+    heads = [f"<{variable.symbol.path}>" for variable in missing]
+    for values in choices:
+        edits = columns_added(scenario.site, table, heads, values) if len(values) == len(heads) else ()
+        if edits:
+            columns = "column" if len(heads) == 1 else "columns"
+            yield Fix(f"Add the {columns} {' and '.join(heads)} with {' and '.join(values)}", edits)

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.diagnostic import Fix, Severity
 from robbdd_tools.checks.finding import finding, related_to, removal
+from robbdd_tools.checks.tables import column_removed
 from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.names.types import variable_key
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.diagnostic import Diagnostic, Fix
+    from robbdd_tools.base.diagnostic import Diagnostic
     from robbdd_tools.names.elements import Site
 
 
@@ -38,9 +39,10 @@ def repeated_value(site: Site) -> Iterator[Diagnostic]:
 
 
 def _removals(scenario: Scenario, ref: tree.Ref) -> tuple[Fix, ...]:
-    variation = scenario.variant.variation
-    lines = variation.assignments if isinstance(variation, tree.Product) else ()
-    document = scenario.site.file.document
-    return tuple(
-        removal(document, "Remove this line", scenario.site.span(line)) for line in lines if line.variable is ref
-    )
+    site, variation = scenario.site, scenario.variant.variation
+    if isinstance(variation, tree.Table):
+        number = next(number for number, column in enumerate(variation.header) if column is ref)
+        edits = column_removed(site, variation, number)
+        return (Fix("Remove this column", edits),) if edits else ()
+    lines = (line for line in variation.assignments if line.variable is ref)
+    return tuple(removal(site.file.document, "Remove this line", site.span(line)) for line in lines)

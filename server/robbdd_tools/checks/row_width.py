@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Edit, Fix, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks.finding import finding, related_to
-from robbdd_tools.checks.variants import scenarios
+from robbdd_tools.checks.tables import cell_span
+from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -17,15 +18,16 @@ if TYPE_CHECKING:
 
 
 def row_width(site: Site) -> Iterator[Diagnostic]:
-    """Report each row of the wrong width; a short one may be completed with the cells of a row beside it."""
+    """Report each row of the wrong width; a short one may be completed as a row beside it, or from the scene."""
     for scenario in scenarios(site):
         table = scenario.variant.variation
         for row in table.rows if isinstance(table, tree.Table) else ():
             if isinstance(table, tree.Table) and len(row.cells) != len(table.header):
-                yield _report(site, table, row)
+                yield _report(scenario, table, row)
 
 
-def _report(site: Site, table: tree.Table, row: tree.TableRow) -> Diagnostic:
+def _report(scenario: Scenario, table: tree.Table, row: tree.TableRow) -> Diagnostic:
+    site = scenario.site
     cells, columns = len(row.cells), len(table.header)
     if cells < columns:
         mend = "add a value for " + ", ".join(f"'{ref.path}'" for ref in table.header[cells:])
@@ -33,32 +35,29 @@ def _report(site: Site, table: tree.Table, row: tree.TableRow) -> Diagnostic:
         mend = "remove what is too much"
     message = f"this row has {_counted(cells, 'cell')}, but the table has {_counted(columns, 'column')}: {mend}"
     header = related_to(site, table.header[0], "the columns")
-    return finding(site, row, Severity.ERROR, "row-width", message, (header,), tuple(_fixes(site, table, row)))
+    return finding(site, row, Severity.ERROR, "row-width", message, (header,), tuple(_fixes(scenario, table, row)))
 
 
-def _fixes(site: Site, table: tree.Table, row: tree.TableRow) -> Iterator[Fix]:
+def _fixes(scenario: Scenario, table: tree.Table, row: tree.TableRow) -> Iterator[Fix]:
+    site = scenario.site
     cells, columns = len(row.cells), len(table.header)
     document = site.file.document
     if cells > columns:
-        end = _cell_span(site, row.cells[columns - 1]).end
-        yield Fix("Remove the surplus cells", (Edit(site.uri, Span(end, site.span(row).end), " |"),))
+        start = cell_span(site, row.cells[columns - 1]).end
+        yield Fix("Remove the surplus cells", (Edit(site.uri, Span(start, site.span(row).end), " |"),))
         return
+    end = site.span(row).end
     complete = [other for other in table.rows if len(other.cells) == columns]
     if complete:
         nearest = min(complete, key=lambda other: (abs(other.span.start - row.span.start), other.span))
-        missing = [_cell_span(site, cell) for cell in nearest.cells[cells:]]
+        missing = [cell_span(site, cell) for cell in nearest.cells[cells:]]
         text = "".join(f" {document.text[span.start : span.end]} |" for span in missing)
-        end = site.span(row).end
         yield Fix("Complete the row as the one beside it", (Edit(site.uri, Span(end, end), text),))
-
-
-def _cell_span(site: Site, cell: tree.Node) -> Span:
-    """Return the span of all that is written in a cell; that of a reference leaves its brackets out."""
-    span = site.span(cell)
-    if not isinstance(cell, tree.Ref):
-        return span
-    text = site.file.document.text
-    return Span(text.rindex("<", 0, span.start), text.index(">", span.end) + 1)
+    given = [scenario.cell_for(column.variable) for column in scenario.columns[cells:] if column.variable is not None]
+    filled = [cell for cell in given if cell is not None]
+    if len(filled) == columns - cells:
+        text = "".join(f" {cell} |" for cell in filled)
+        yield Fix(f"Complete the row with {' and '.join(filled)}", (Edit(site.uri, Span(end, end), text),))
 
 
 def _counted(number: int, noun: str) -> str:

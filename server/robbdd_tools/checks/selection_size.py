@@ -32,7 +32,8 @@ def _checked(site: Site, selection: tree.Selection) -> Iterator[Diagnostic]:
     related = (related_to(site, source, "the set"),)
     if not isinstance(count, int) or count < 1:
         message = f"'select {count}' selects nothing: write a whole number of at least 1"
-        yield finding(site, selection.count, Severity.ERROR, "selection-size", message)
+        fix = change(site, "Select 1", selection.count, "1")
+        yield finding(site, selection.count, Severity.ERROR, "selection-size", message, fixes=(fix,))
     elif elements and not selection.repeated and count > len(elements):
         size = len(elements)
         message = f"'{source.path}' has only {size} element{'' if size == 1 else 's'}: select {size} or fewer"

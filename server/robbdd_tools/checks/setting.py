@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.catalog.settings import SETTINGS, SettingError, setting_of
+from robbdd_tools.catalog.settings import SETTINGS, Setting, SettingError, setting_of
 from robbdd_tools.checks.finding import change, finding, related_to
 from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.names.types import Written, variable_key, written_elements
@@ -19,7 +19,7 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.base.diagnostic import Diagnostic, Fix
     from robbdd_tools.names.elements import Site
 
 CODE = "setting"
@@ -82,7 +82,17 @@ def _misfits(scenario: Scenario) -> Iterator[Diagnostic]:
                     setting_of(known[1].text).read(text)
                 except SettingError as error:
                     related = (related_to(*known, "the configuration"),)
-                    yield finding(scenario.site, node, Severity.WARNING, CODE, str(error), related)
+                    fixes = _within_bounds(scenario.site, node, setting_of(known[1].text))
+                    yield finding(scenario.site, node, Severity.WARNING, CODE, str(error), related, fixes)
+
+
+def _within_bounds(site: Site, node: tree.Node, setting: Setting) -> tuple[Fix, ...]:
+    """Return the fix that writes the nearest number which a configuration can have."""
+    if not isinstance(node, tree.Number) or setting.count > 1:
+        return ()
+    nearest = min(max(node.value, setting.low), setting.high)
+    text = f"{round(nearest) if setting.whole else nearest:g}"
+    return (change(site, f"Change to {text}", node, text),)
 
 
 def _texts(site: Site, written: Written, is_set: bool) -> Iterator[tuple[tree.Node, str]]:

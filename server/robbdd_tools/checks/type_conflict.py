@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping
 from itertools import chain
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.checks.finding import article, finding, related_to
-from robbdd_tools.checks.variants import Scenario, scenarios
-from robbdd_tools.names.elements import Element, Site, elements_of
+from robbdd_tools.checks.fitting import other_values, other_variables, variables_with_kinds
+from robbdd_tools.checks.variants import Column, Scenario, scenarios
+from robbdd_tools.names.elements import Site, elements_of
 from robbdd_tools.names.types import kind_words, narrowed, uses_by_variable, variable_key, written_elements
 from robbdd_tools.names.uses import ANYTHING, Clauses, Kinds, Use, clauses_of
 from robbdd_tools.syntax import tree
@@ -26,8 +27,10 @@ def type_conflict(site: Site) -> Iterator[Diagnostic]:
     for clauses in clauses_of(site.placed.declaration):
         yield from _quantified(site, clauses)
         if isinstance(clauses.node, tree.Template):
-            for uses in uses_by_variable(site, clauses).values():
-                yield from _between_phrases([(site, use) for use in uses], site)
+            by_variable = uses_by_variable(site, clauses)
+            others = {path.rpartition(".")[2]: kinds for path, kinds in variables_with_kinds(site, by_variable)}
+            for uses in by_variable.values():
+                yield from _between_phrases([(site, use) for use in uses], site, clauses, others)
     for scenario in scenarios(site):
         yield from _in_scenario(scenario)
 
@@ -38,21 +41,24 @@ def _in_scenario(scenario: Scenario) -> Iterator[Diagnostic]:
     outer: dict[str, list[Use]] = {}
     if template is not None and scenario.outer is not None:
         outer = uses_by_variable(template, scenario.outer)
+    merged = {key: [*outer.get(key, ()), *own.get(key, ())] for key in (*outer, *own)}
+    others = {} if template is None else dict(variables_with_kinds(template, merged))
     for key, uses in own.items():
         inherited = [(template, use) for use in outer.get(key, ()) if template is not None]
-        yield from _between_phrases([*inherited, *((site, use) for use in uses)], site)
+        yield from _between_phrases([*inherited, *((site, use) for use in uses)], site, scenario.clauses, others)
     for column in scenario.columns:
         if column.variable is None:
             continue
         key = variable_key(column.variable)
         placed = [(template, use) for use in outer.get(key, ()) if template is not None]
         placed += [(site, use) for use in own.get(key, ())]
-        values = chain.from_iterable(written_elements(site, written) for written in column.written)
-        yield from _values(scenario, column.ref, values, placed)
+        yield from _values(scenario, column, placed)
 
 
-def _between_phrases(uses: list[Placed], own: Site) -> Iterator[Diagnostic]:
-    """Report the uses of ``own`` that no kind fits which the uses before them leave."""
+def _between_phrases(
+    uses: list[Placed], own: Site, clauses: Clauses, others: Mapping[str, Kinds]
+) -> Iterator[Diagnostic]:
+    """Report the uses of ``own`` that no kind fits which the uses before leave; ``others`` may stand there instead."""
     left: Kinds = ANYTHING
     seen: list[Placed] = []
     for site, use in uses:
@@ -68,7 +74,8 @@ def _between_phrases(uses: list[Placed], own: Site) -> Iterator[Diagnostic]:
             f"so it cannot be {article(kind_words(use.kinds))} in '{use.phrase}': use two variables"
         )
         related = (related_to(other[0], other[1].ref, f"here it is {article(kind_words(other[1].kinds))}"),)
-        yield finding(site, use.ref, Severity.ERROR, CODE, message, related)
+        fixes = tuple(other_variables(site, use, clauses, others))
+        yield finding(site, use.ref, Severity.ERROR, CODE, message, related, fixes)
         yield from _other_place(other, site, use.ref, f"elsewhere it is {article(kind_words(use.kinds))}")
 
 
@@ -81,10 +88,9 @@ def _other_place(other: Placed, own: Site, node: tree.Node, words: str) -> Itera
         yield finding(site, use.ref, Severity.HINT, CODE, message, related)
 
 
-def _values(
-    scenario: Scenario, variable: tree.Ref, values: Iterable[tuple[tree.Node, Element]], uses: list[Placed]
-) -> Iterator[Diagnostic]:
+def _values(scenario: Scenario, column: Column, uses: list[Placed]) -> Iterator[Diagnostic]:
     """Report each value that a phrase cannot take, once for each set that is named."""
+    values = list(chain.from_iterable(written_elements(scenario.site, written) for written in column.written))
     kinds = narrowed(use for _, use in uses)
     told: set[tree.Node] = set()
     for node, element in values:
@@ -94,11 +100,12 @@ def _values(
         other = next(entry for entry in uses if element.kind not in entry[1].kinds)
         wanted = kind_words(kinds)
         message = (
-            f"'{element.name}' is {article(element.kind)}, but '{variable.path}' stands for {article(wanted)} "
+            f"'{element.name}' is {article(element.kind)}, but '{column.ref.path}' stands for {article(wanted)} "
             f"in '{other[1].phrase}': give it {article(wanted)}"
         )
         related = (related_to(other[0], other[1].ref, f"here it is {article(kind_words(other[1].kinds))}"),)
-        yield finding(scenario.site, node, Severity.ERROR, CODE, message, related)
+        fixes = tuple(other_values(scenario, column, node, kinds, {element.name for _, element in values}))
+        yield finding(scenario.site, node, Severity.ERROR, CODE, message, related, fixes)
         if len(told) == 1:
             words = f"scenario '{scenario.variant.name.text}' gives it {article(element.kind)}"
             yield from _other_place(other, scenario.site, node, words)

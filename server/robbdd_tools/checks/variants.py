@@ -6,15 +6,17 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from robbdd_tools.names.types import columns_of, variable_key
-from robbdd_tools.names.uses import Clauses, clauses_of
+from robbdd_tools.names.elements import scene_members
+from robbdd_tools.names.types import columns_of, variable_key, variable_type
+from robbdd_tools.names.uses import ELEMENTS, Clauses, clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import Definition
-    from robbdd_tools.names.elements import Site
+    from robbdd_tools.names.elements import Element, Site
     from robbdd_tools.names.types import Written
+    from robbdd_tools.names.uses import Kinds
 
 VARIABLES = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
 
@@ -52,6 +54,23 @@ class Scenario:
         paths = (f"{root.name.text}.{variable.name.text}" for variable in root.variables)
         found = (site.file.definitions.get(path) for path in paths)
         return {variable_key(variable): variable for variable in found if variable is not None}
+
+    def members(self, kinds: Kinds) -> list[Element]:
+        """Return the members of the scene of some kinds, sorted; none while the scene is not known."""
+        found = scene_members(self.site.follow(self.variant.scene)) or frozenset()
+        return sorted((member for member in found if member.kind in kinds), key=lambda member: member.key)
+
+    def fitting_for(self, variable: Definition) -> list[str]:
+        """Return the values that the scene has for a variable of the template, as its phrases take them."""
+        kinds = variable_type(self.site.snapshot, variable, from_values=False).kinds & ELEMENTS
+        return [f"<{member.name}>" for member in self.members(kinds)]
+
+    def cell_for(self, variable: Definition) -> str | None:
+        """Return a cell with the first value that the scene has for a variable, or with all for one of a set."""
+        values = self.fitting_for(variable)
+        if not values:
+            return None
+        return f"{{ {', '.join(values)} }}" if variable.kind is SymbolKind.SET_VARIABLE else values[0]
 
 
 @lru_cache(maxsize=2)

@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Edit, Fix
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks.variants import Scenario, scenarios
-from robbdd_tools.names.elements import Element, Site, element_of, elements_of, scene_members
-from robbdd_tools.names.types import variable_type
-from robbdd_tools.names.uses import ELEMENTS
+from robbdd_tools.names.elements import Site, element_of, elements_of, scene_members
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -77,17 +75,15 @@ def _as_product(scenario: Scenario) -> Iterator[Fix]:
 def _filled(scenario: Scenario) -> Iterator[Fix]:
     """Add the rows that a table lacks of all that the scene has for its columns; this makes new scenarios."""
     site, variation = scenario.site, scenario.variant.variation
-    members = scene_members(site.follow(scenario.variant.scene))
-    if not isinstance(variation, tree.Table) or members is None or _has_sets(variation):
+    is_known = scene_members(site.follow(scenario.variant.scene)) is not None
+    if not isinstance(variation, tree.Table) or not is_known or _has_sets(variation):
         return
     columns: list[list[str]] = []
     for position, column in enumerate(scenario.columns):
         if column.variable is None or column.variable.kind is not SymbolKind.VARIABLE:
             return
-        kinds = variable_type(site.snapshot, column.variable, from_values=False).kinds & ELEMENTS
         written = [_text(site, row.cells[position]) for row in variation.rows if position < len(row.cells)]
-        fitting = [member for member in _in_order(members) if member.kind in kinds]
-        columns.append(list(dict.fromkeys([f"<{member.name}>" for member in fitting] or written)))
+        columns.append(list(dict.fromkeys(scenario.fitting_for(column.variable) or written)))
     rows = [tuple(_text(site, cell) for cell in row.cells) for row in variation.rows]
     new = [row for row in islice(product(*columns), MOST_ROWS + 1) if row not in rows]
     if new and len(rows) + len(new) <= MOST_ROWS:
@@ -138,10 +134,6 @@ def _text(site: Site, node: tree.Node) -> str:
 
 def _has_sets(table: tree.Table) -> bool:
     return any(isinstance(cell, tree.Link | tree.ValueList) for row in table.rows for cell in row.cells)
-
-
-def _in_order(members: frozenset[Element]) -> list[Element]:
-    return sorted(members, key=lambda member: member.key)
 
 
 def _table(scenario: Scenario, header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

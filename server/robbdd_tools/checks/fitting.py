@@ -1,0 +1,62 @@
+"""What may take the place of a variable or a value that is of the wrong type."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from robbdd_tools.checks.finding import MOST_OFFERED, change
+from robbdd_tools.names.types import narrowed, variable_key
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Fix
+    from robbdd_tools.checks.variants import Column, Scenario
+    from robbdd_tools.names.elements import Site
+    from robbdd_tools.names.uses import Clauses, Kinds, Use
+
+_SET_WORDS = {"object": "obj set", "workspace": "ws set", "agent": "agn set"}
+
+
+def variables_with_kinds(template: Site, uses: Mapping[str, list[Use]]) -> Iterator[tuple[str, Kinds]]:
+    """Yield the paths of a template's variables that are no sets, with what they may stand for by some uses."""
+    root = template.tree
+    paths = (
+        [f"{root.name.text}.{entry.name.text}" for entry in root.variables] if isinstance(root, tree.Template) else []
+    )
+    for path in paths:
+        found = template.file.definitions.get(path)
+        if found is not None and found.kind is SymbolKind.VARIABLE:
+            yield path, narrowed(uses.get(variable_key(found), ()))
+
+
+def other_variables(site: Site, use: Use, clauses: Clauses, others: Mapping[str, Kinds]) -> Iterator[Fix]:
+    """Yield the variables that may take the place of one and are not in its phrase already."""
+    if use.bound is not None:
+        return
+    phrase = next((phrase for phrase in clauses.phrases if phrase.span.contains(use.ref.span.start)), None)
+    taken = {value.path for _, value in phrase.arguments if isinstance(value, tree.Ref)} if phrase is not None else ()
+    fitting = [name for name, kinds in others.items() if kinds & use.kinds and name not in taken]
+    yield from (change(site, f"Change to '{name}'", use.ref, name) for name in fitting[:MOST_OFFERED])
+
+
+def other_values(scenario: Scenario, column: Column, node: tree.Node, kinds: Kinds, written: set[str]) -> Iterator[Fix]:
+    """Yield what the scene has of some kinds for the place of a value, or its sets for that of a set.
+
+    What is ``written`` for the variable already is not said again.
+    """
+    site, members = scenario.site, scenario.members(kinds)
+    link = next((one for one in column.written if isinstance(one, tree.Link) and one.reference is node), None)
+    is_source = any(isinstance(one, tree.Selection) and one.source is node for one in column.written)
+    if link is None and not is_source:
+        names = [member.name for member in members if member.name not in written]
+        for name in names[:MOST_OFFERED]:
+            yield change(site, f"Change to '<{name}>'", node, name if isinstance(node, tree.Ref) else f"<{name}>")
+        return
+    sets = dict.fromkeys((_SET_WORDS[member.kind], member.name.rpartition(".")[0]) for member in members)
+    for words, name in list(sets)[:MOST_OFFERED]:
+        if link is None:
+            yield change(site, f"Change to '{name}'", node, name)
+        else:
+            yield change(site, f"Change to '{words} <{name}>'", link, f"{words} <{name}>")
