@@ -91,4 +91,17 @@ def test_a_narrow_terminal_breaks_lines_between_words() -> None:
     erased_before = (line.rpartition("\x1b[2K")[2] for line in written.split("\n"))
     lines = [line for line in (CONTROL.sub("", line) for line in erased_before) if "━" not in line]
     assert max(map(len, lines)) <= 60
-    assert without_times(" ".join(" ".join(lines).split())) == without_times(" ".join(elsewhere().split()))
+    shown, expected = (without_times(" ".join(text.split())) for text in (" ".join(lines), elsewhere()))
+    assert sorted(shown.split()) == sorted(expected.split())
+    margins = re.findall(r"[+−]\d+ mm$", elsewhere(), re.MULTILINE)
+    assert margins
+    assert re.findall(r"[+−]\d+ mm(?= *$)", "\n".join(lines), re.MULTILINE) == margins
+
+
+def test_a_reason_that_several_clauses_share_is_told_once_below_them() -> None:
+    command = [*COMMAND, "--timeout", "0.001"]
+    lines = subprocess.run(command, capture_output=True, encoding="utf-8", env=environment()).stdout.splitlines()
+    clauses = [line for line in lines if line.startswith("  ? ")]
+    assert len(clauses) == 5
+    assert lines[lines.index(clauses[-1]) + 1] == "      timed out after 0.001 s"
+    assert sum("timed out" in line for line in lines) == 1

@@ -52,7 +52,8 @@ def load(source: ModelSource) -> Any:
     try:
         spec = _read(str(path)).copy()
     except (ValueError, OSError) as error:
-        raise SceneError(f"{at(source.origin)}the model file {path} cannot be read: {error}") from error
+        words = " ".join(str(error).split())  # the engine's come in several lines
+        raise SceneError(f"{at(source.origin)}the model file {path} cannot be read: {words}") from error
     # Links that are fixed to others keep their names: they may be the tool, or what a body is mapped to.
     spec.compiler.fusestatic = False
     return spec

@@ -98,7 +98,10 @@ def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
 
 def _no_model(kind: str, name: str, prefixes: Iterable[tuple[str, ...]]) -> str:
     known = ", ".join(sorted(prefix for group in prefixes for prefix in group))
-    return f"there is no model for {kind} '{name}': its name would have to begin with one of {known}"
+    return (
+        f"there is no model for {kind} '{name}': its name would have to begin with one of {known}; "
+        "or run a .bddx whose .scenex gives it a model"
+    )
 
 
 def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, tuple[tuple[str, Region], ...]]:

@@ -100,7 +100,6 @@ class ScenarioRun:
                 self._show(self._execution)
             except SceneError as error:
                 self._broken = str(error)
-                self._channel.send(LogLine("error", f"{self._spec.name}: {error}"))
                 raise
 
     def _show(self, execution: Execution) -> None:

@@ -6,7 +6,9 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.padding import Padding
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Column, Table
 from rich.text import Text
 
 from robbdd_tools.monitor.verdict import Outcome
@@ -20,6 +22,10 @@ if TYPE_CHECKING:
 
 BESIDE = len("  ✔   +1000.0 mm  at 10.00 s")
 """Columns that a clause's sign, margin and instant take beside its sentence."""
+NARROWEST = 10
+"""Columns that a sentence has at least, however narrow the terminal."""
+INDENT = (0, 0, 0, 6)
+"""What a reason has around it: it is set in below its clauses."""
 STYLES = {Outcome.HOLDS: "green", Outcome.VIOLATED: "bold red", Outcome.UNKNOWN: "yellow"}
 
 
@@ -131,10 +137,16 @@ class Display:
             if (judged := scenario.judged.get(clause.line)) is not None
         ]
         width = max((len(sentence) for _, sentence in rows), default=0)
-        if self._drawn:
-            width = min(width, self._console.width - BESIDE)
-        for judged, sentence in rows:
-            self._console.print(_clause_line(judged, sentence, width))
+        for number, (judged, sentence) in enumerate(rows):
+            if self._drawn:
+                fitting = max(self._console.width - BESIDE, NARROWEST)
+                self._console.print(_clause_cells(judged, sentence, min(width, fitting)))
+            else:
+                self._console.print(_clause_line(judged, sentence, width))
+            below = rows[number + 1][0].reason if number + 1 < len(rows) else ""
+            if judged.verdict != Outcome.HOLDS and judged.reason not in ("", below):
+                reason = Text(judged.reason, STYLES[Outcome(judged.verdict)])
+                self._console.print(Padding(reason, INDENT) if self._drawn else Text("      ").append(reason))
 
 
 def _executions(finished: Iterable[ScenarioResult]) -> list[ScenarioResult]:
@@ -149,17 +161,25 @@ def _executions(finished: Iterable[ScenarioResult]) -> list[ScenarioResult]:
 
 
 def _clause_line(judged: ClauseJudged, sentence: str, width: int) -> Text:
+    sign, shown = _verdict(judged)
+    return Text.assemble("  ", sign, " ", sentence.ljust(width) if shown else sentence, shown)
+
+
+def _clause_cells(judged: ClauseJudged, sentence: str, width: int) -> Table:
+    """Lay a clause out where lines break: a long sentence goes on below itself, margin and instant stay whole."""
+    cells = Table.grid(Column(width=4), Column(width=width), Column(no_wrap=True))
+    sign, shown = _verdict(judged)
+    cells.add_row(Text("  ").append(sign), sentence, shown)
+    return cells
+
+
+def _verdict(judged: ClauseJudged) -> tuple[Text, Text]:
+    """Return a clause's sign, and its margin and instant where it has them."""
     outcome = Outcome(judged.verdict)
     style = STYLES[outcome]
-    line = Text(f"  {SIGNS[outcome]} ", style)
-    line.append(sentence.ljust(width), "default")
-    line.append(f"  {margin(judged.robustness, judged.unit):>9}".rstrip())
-    if outcome is Outcome.VIOLATED and judged.at is not None:
-        line.append(f"  at {judged.at:.2f} s")
-    line.rstrip()
-    if judged.reason and outcome is not Outcome.HOLDS:
-        line.append(f"\n      {judged.reason}")
-    return line
+    shown = margin(judged.robustness, judged.unit)
+    instant = f"  at {judged.at:.2f} s" if outcome is Outcome.VIOLATED and judged.at is not None else ""
+    return Text(SIGNS[outcome], style), Text(f"  {shown:>9}{instant}" if shown or instant else "", style)
 
 
 def _counted(number: int, what: str) -> str:
