@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from dataclasses import fields, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -107,8 +109,24 @@ def test_a_file_that_is_no_trace_is_explained(tmp_path: Path, data: bytes) -> No
     path.write_bytes(data)
     with pytest.raises(UnreadableTrace, match=r"a\.mcap"):
         read_trace(path)
-    with pytest.raises(UnreadableTrace, match="cannot be read"):
+    with pytest.raises(UnreadableTrace, match=r"none\.mcap is gone"):
         read_trace(tmp_path / "none.mcap")
+    with pytest.raises(UnreadableTrace, match="cannot be read: Is a directory"):
+        read_trace(tmp_path)
+
+
+@given(place=st.floats(0, 1, exclude_max=True), change=st.integers(1, 255), is_cut=st.booleans())
+def test_a_damaged_trace_is_found_out(place: float, change: int, is_cut: bool) -> None:
+    evidence = Evidence(still(200), REGIONS)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "traces" / "a.mcap"
+        write_trace(path, evidence, ())
+        data = bytearray(path.read_bytes())
+        at = int(place * len(data))
+        data[at] ^= change
+        path.write_bytes(data[:at] if is_cut else data)
+        with suppress(UnreadableTrace):
+            assert pack(read_trace(path)) == pack(evidence)
 
 
 @pytest.mark.physics

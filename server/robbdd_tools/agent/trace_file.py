@@ -14,7 +14,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
@@ -103,10 +102,10 @@ def read_trace(path: Path) -> Evidence:
     """Restore a trace; raises ``UnreadableTrace``."""
     try:
         with path.open("rb") as file:
-            for _, _, message in make_reader(file).iter_messages(topics=[TRACE]):
+            for _, _, message in make_reader(file, validate_crcs=True).iter_messages(topics=[TRACE]):
                 return unpack(message.data)
-    except (OSError, McapError, ValueError, KeyError, TypeError) as error:
-        raise UnreadableTrace(f"{path} cannot be read: {error}") from error
+    except Exception as error:  # in damaged bytes each decoder finds faults of types of its own
+        raise UnreadableTrace(f"{path} {_wrong_with_it(error)}") from error
     raise UnreadableTrace(f"{path} holds no trace")
 
 
@@ -115,11 +114,19 @@ def read_views(path: Path, topics: Sequence[str]) -> Mapping[str, list[tuple[flo
     found: dict[str, list[tuple[float, Any]]] = {topic: [] for topic in topics}
     try:
         with path.open("rb") as file:
-            for _, channel, message in make_reader(file).iter_messages(topics=list(topics)):
+            for _, channel, message in make_reader(file, validate_crcs=True).iter_messages(topics=list(topics)):
                 found[channel.topic].append((message.log_time / 1e9, json.loads(message.data)))
-    except (OSError, McapError, ValueError, KeyError, TypeError) as error:
-        raise UnreadableTrace(f"{path} cannot be read: {error}") from error
+    except Exception as error:  # in damaged bytes each decoder finds faults of types of its own
+        raise UnreadableTrace(f"{path} {_wrong_with_it(error)}") from error
     return found
+
+
+def _wrong_with_it(error: Exception) -> str:
+    if isinstance(error, FileNotFoundError):
+        return "is gone"
+    if isinstance(error, OSError):
+        return f"cannot be read: {error.strerror or error}"
+    return "is damaged, or another version wrote it: run the scenario again"
 
 
 def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:
