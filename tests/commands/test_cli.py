@@ -110,7 +110,8 @@ def test_diagnostics_as_json_follow_their_schema(folder: Path) -> None:
         ("binary.bdd", b"\0\1", "is a binary file"),
         ("latin.bdd", b"ns a = '\xff'", "is not UTF-8"),
         ("huge.bdd", b"a" * 10 * 1024 * 1024, "split the model"),
-        ("notes.txt", b"hello", "is not a model"),
+        ("notes.txt", b"hello", "its name must end in one of .bdd, .scene, .scenex, .ktree, .bddx, .ttl"),
+        ("notes", None, "there is no file or folder notes"),
     ],
 )
 @pytest.mark.parametrize("command", ["check", "run", "graph"])

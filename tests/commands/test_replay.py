@@ -87,6 +87,10 @@ def test_a_changed_model_is_refused_but_not_a_reformatted_one(folder: Path) -> N
 def test_what_is_not_there_is_explained(folder: Path) -> None:
     assert "there is no run '9' in " in robbdd(folder, "replay", "9").stderr
     assert "keeps no trace of nothing" in robbdd(folder, "replay", "1", "--scenario", "nothing").stderr
+    (folder / ".robbdd" / "runs" / "1" / "traces" / "000000.mcap").unlink()
+    shown = robbdd(folder, "replay", "1").stdout.splitlines()
+    assert "crit:part-to-bin -- 1: the run kept no trace of it" in shown
+    assert shown[-1] == "1 of 1 traces are the same"
     (folder / "m.bdd").unlink()
     assert robbdd(folder, "replay", "1").stderr == "robbdd: the model of the run, m.bdd, is gone\n"
 

@@ -60,8 +60,11 @@ def render(folder: Path, what: str, output: Path, chosen: Sequence[str] = ()) ->
             pictures = _scene(manifest, int(what), output)
         for picture in pictures:
             print(picture, flush=True)
-    except (SceneError, NoVideo, OSError) as error:
+    except (SceneError, NoVideo) as error:
         print(error, file=sys.stderr)
+        return FAILED
+    except OSError as error:
+        print(f"{error.filename or output}: {error.strerror or error}", file=sys.stderr)
         return FAILED
     except NoPicture as error:
         print(error, file=sys.stderr)

@@ -16,7 +16,7 @@ def check(paths: Sequence[Path], as_json: bool) -> int:
     """Print the findings about files and folders; returns the exit code."""
     files = model_files(paths)
     if not files:
-        print(f"robbdd: there is no .bdd or .scene file in {', '.join(map(str, paths))}", file=sys.stderr)
+        print(f"robbdd: there is no model in {', '.join(map(str, paths))}", file=sys.stderr)
         return FAILED
     stranger = not_a_model(files)
     if stranger is not None:

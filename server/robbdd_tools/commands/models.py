@@ -57,7 +57,9 @@ def not_a_model(paths: Iterable[Path]) -> str | None:
     """Return what to say when one of some files cannot be a model by its name; ``None`` when all can."""
     for path in paths:
         if not (language_of(path.name) or graph_format(path.name) or path.is_dir()):
-            endings = ", ".join(f".{ending}" for ending in ("bdd", "scene", *GRAPH_FORMATS))
+            if not path.exists():
+                return f"robbdd: there is no file or folder {path}"
+            endings = ", ".join(f".{ending}" for ending in (*LANGUAGES, *GRAPH_FORMATS))
             return f"robbdd: {path} is not a model: its name must end in one of {endings}"
     return None
 

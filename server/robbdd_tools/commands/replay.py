@@ -52,12 +52,12 @@ def replay(options: ReplayOptions) -> int:
     refusal = "" if options.force else _refusal(stored, record)
     if refusal:
         return _failed(refusal)
-    indices = [
+    wanted = [
         index
         for index, spec in enumerate(manifest.scenarios)
-        if (not options.names or {spec.name, _local(spec.name), _local(spec.variant)} & set(options.names))
-        and trace_file(stored.folder, index).is_file()
+        if not options.names or {spec.name, _local(spec.name), _local(spec.variant)} & set(options.names)
     ]
+    indices = [index for index in wanted if trace_file(stored.folder, index).is_file()]
     if not indices:
         return _failed(f"run {options.run} keeps no trace of {' or '.join(options.names) or 'any scenario'}")
     with tempfile.TemporaryDirectory(prefix="robbdd-") as name:
@@ -69,6 +69,8 @@ def replay(options: ReplayOptions) -> int:
             return INTERRUPTED
         if record.simulator != simulator:
             print(f"robbdd: the run was made with {record.simulator}, this is {simulator}", file=sys.stderr)
+        for index in sorted({*wanted}.difference(indices)):
+            print(f"{manifest.scenarios[index].name}: the run kept no trace of it")
         return _compare(stored, folder, manifest, indices)
 
 
