@@ -5,6 +5,7 @@ from __future__ import annotations
 from kit import EVENTS, STORY, TEMPLATE, Fixture, assert_diagnostics, fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Fix, Severity
 from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.fixes_on_demand import fixes_on_demand
 
 LINES = STORY[STORY.index("                var ") : STORY.index("        }\n}")]
 SETS = TEMPLATE.replace("var goal\n", "var goal\n    set var goals\n").replace(
@@ -52,8 +53,8 @@ def fixed(text: str, code: str, title: str = "") -> str:
     """
     case = fixture(text)
     before = fast_diagnostics(case.snapshot, case.uri)
-    finding = next(entry for entry in before if entry.code == code and _fixes(entry, title))
-    fix = _fixes(finding, title)[0]
+    offered = (fix for entry in before if entry.code == code for fix in fixes_of(case, entry))
+    fix = next(fix for fix in offered if fix.title.startswith(title))
     apply(case, fix)
     after = fast_diagnostics(case.snapshot, case.uri)
     assert sum(entry.code == code for entry in after) < sum(entry.code == code for entry in before), after
@@ -61,16 +62,19 @@ def fixed(text: str, code: str, title: str = "") -> str:
     return text_of(case)
 
 
-def _fixes(finding: Diagnostic, title: str) -> list[Fix]:
-    return [fix for fix in finding.fixes if fix.title.startswith(title)]
-
-
 def _errors(findings: list[Diagnostic]) -> set[tuple[str, str]]:
     return {(entry.code, entry.message) for entry in findings if entry.severity is Severity.ERROR}
 
 
+def fixes_of(case: Fixture, finding: Diagnostic) -> tuple[Fix, ...]:
+    """Return all fixes of a finding, as an editor is offered them."""
+    return (*finding.fixes, *fixes_on_demand(case.snapshot, finding.uri, finding))
+
+
 def apply(case: Fixture, fix: Fix) -> None:
-    """Apply the edits of a fix to the project of a fixture, as an editor would."""
+    """Make the file and apply the edits of a fix to the project of a fixture, as an editor would."""
+    if fix.new_file is not None:
+        case.project.open(fix.new_file.uri, 1, fix.new_file.text)
     for edit in sorted(fix.edits, key=lambda edit: edit.span, reverse=True):
         text = case.project.texts()[edit.uri][1]
         case.project.open(edit.uri, 2, text[: edit.span.start] + edit.text + text[edit.span.end :])

@@ -19,6 +19,14 @@ _OTHER = (
 _HEADER = "                | <fetch.part> | <fetch.robot> | <fetch.goal> |\n                |---|\n"
 _ROW = "                | <parts.bolt> | <arms.panda> | <places.tray_ws> |\n"
 _LISTED = "                | <parts.bolt> | <arms.panda> | { <places.tray_ws>,\n                <places.bench_ws> } |\n"
+_SPARE = TEMPLATE.replace("    var goal\n", "    var goal\n    var spare\n")
+_SHELF = (
+    "//- lab.scene\n"
+    + SCENE.replace("object bench,", "object bench, object shelf,").replace(
+        "tray_ws }", "tray_ws, workspace shelf_ws }", 1
+    )
+    + "scene (ns=env) inner_scene {\n    obj set <parts>\n    agn set <arms>\n    ws set <places>  // all of them\n}\n"
+)
 _ELSEWHERE = "//- more.scene\nns x = 'https://example.org/x/'\nagn set (ns=x) robots { agent r2 }\n"
 _EXECUTABLE = "//- main.scenex\nimport \"lab.scene\"\nns x = 'https://example.org/x/'\n"
 
@@ -92,6 +100,7 @@ BROKEN: dict[str, list[str]] = {
         "Scenario Template (ns=t) x { duration: from <go> until <stop> var a var b When: <a> picks <b> }\n",
     ],
     "wrong-kind": [
+        _swapped("<arms.panda>", "<arms>"),
         _swapped("obj set <parts>", "ws set <parts>"),
         "//- lab.scene\n" + SCENE.replace("agn set <arms> }", "obj set <arms> }"),
         "//- lab.scene\n" + SCENE.replace("ws comp <tray_comp> }\nscene", "ws <tray_comp> }\nscene"),
@@ -143,6 +152,34 @@ BROKEN: dict[str, list[str]] = {
         _swapped("variation:", "Then: held: holds(<fetch.goal> is held by <fetch.robot>, after <end>)\n variation:"),
         story(_HEADER + _ROW.replace("<parts.bolt>", "<arms.ur10>") + _ROW.replace("<parts.bolt>", "ws set <places>")),
         story(LINES + "                set var <fetch.goals>: select 1 combinations from <arms>\n", SETS),
+        EVENTS + SETS.replace("in <goals>", "in <arms>"),
+    ],
+    "not-in-scene": [
+        "//- main.bdd\n" + _swapped("<places.tray_ws>", "<places.shelf_ws>") + _SHELF,
+        "//- main.bdd\n"
+        + _swapped("obj set <parts>", "{ <furniture.shelf> }").replace("bench_scene", "inner_scene")
+        + _SHELF,
+        "//- main.bdd\n"
+        + _swapped("obj set <parts>", "set <things>")
+        .replace("Event", "const set (ns=t) things { <tools.saw> }\nEvent", 1)
+        .replace("import", 'import "more.scene"\nimport', 1)
+        + _SHELF
+        + "//- more.scene\nns m = 'https://example.org/m/'\nobj set (ns=m) tools { object saw }\n",
+    ],
+    "duplicate-iri": [
+        _TWO_NAMESPACES + TEMPLATE + _OTHER.replace("at-b:", "on-bench:").replace("(ns=o)", "(ns=t)") + STORY,
+        "//- main.bdd\nimport 'm.bdd'\n" + MODEL + "//- m.bdd\nns m = 'https://example.org/t/'\nEvent (ns=m) end\n",
+    ],
+    "cyclic-import": [
+        "//- main.bdd\nimport 'm.bdd'\n" + MODEL + "//- m.bdd\nimport 'main.bdd'\n",
+        "//- main.bdd\nimport 'm.bdd'\n"
+        + MODEL.replace("task: <task>", "task: <idle>")
+        + "//- m.bdd\nimport 'main.bdd'\nns m = 'https://example.org/m/'\nTask (ns=m) idle\n",
+    ],
+    "import": [
+        "//- main.bdd\nimport 'm.bdd'\n" + MODEL,
+        "//- main.bdd\nimport 'main.bdd'\n" + MODEL,
+        "//- lab.scene\nimport 'main.bdd'\n" + SCENE + "//- main.bdd\n" + MODEL,
     ],
     "empty-set": [
         _swapped("{ <arms.panda> }", "{ }"),
@@ -154,6 +191,8 @@ BROKEN: dict[str, list[str]] = {
     "empty-duration": [
         _swapped("0.5 seconds after <place-end>)", "from <place-end> until <place-end>)"),
         _swapped("variation:", "Then: 'all is well' from <end>  until <end>\n variation:"),
+        _swapped("from <pick-start> until <place-end>", "from <end> until <end>"),
+        _swapped("from <start> until <end>", "from <start> until <start>"),
     ],
     "distribution": [
         _EXECUTABLE + "distrib (ns=x) d { uniform { dimension: 2 lower: (0, 0, 0) upper: (1, 1, 1) } }\n",
@@ -227,6 +266,13 @@ BROKEN: dict[str, list[str]] = {
     "unused-variable": [
         EVENTS + TEMPLATE.replace("    var goal\n", "    var goal\n    var spare\n") + STORY,
         EVENTS + TEMPLATE.replace("    var goal\n", "    var goal set var spare var more\n") + STORY,
+        story(LINES + "                var <fetch.spare>: { 1, 2 }\n", _SPARE),
+        story("                var <fetch.spare>: { 1 } var <fetch.robot>: obj set <arms>\n", _SPARE),
+        story(
+            _HEADER.replace("| <fetch.part>", "| <fetch.spare> | <fetch.part>")
+            + _ROW.replace("| <parts", "| 1 | <parts"),
+            _SPARE,
+        ),
     ],
 }
 """Diagnostic code → fixtures (see ``kit.fixture``) that have at least one such finding with a fix."""

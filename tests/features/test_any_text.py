@@ -17,6 +17,7 @@ from robbdd_tools.features.completion import complete
 from robbdd_tools.features.definition import definition
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.document_links import document_links
+from robbdd_tools.features.fixes_on_demand import fixes_on_demand
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.format_range import format_on_type, format_range
 from robbdd_tools.features.hover import hover
@@ -81,6 +82,7 @@ def ask_everything(snapshot: Snapshot, uri: str, places: list[int]) -> None:
     whole = Span(0, len(document.text))
     for found in fast_diagnostics(snapshot, uri):
         assert 0 <= found.span.start <= found.span.end <= len(document.text)
+        fixes_on_demand(snapshot, uri, found)
     semantic_tokens(snapshot, uri)
     document_links(snapshot, uri)
     folds(snapshot, uri)

@@ -8,20 +8,24 @@ from pathlib import Path
 
 import pytest
 
-from checks.models import apply, fixed, found
+from checks.models import apply, fixed, fixes_of, found
 from features.broken import BROKEN
 from kit import DOCS, EVENTS, MODEL, SCENE, TEMPLATE, Fixture, fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.features.fixes import fixes_from_disk
+from robbdd_tools.features.diagnostics import all_diagnostics, fast_diagnostics
+from robbdd_tools.features.fixes_on_demand import fixes_on_demand
 from robbdd_tools.names.project import Project
 
 
 def titles(text: str) -> list[str]:
-    return [fix.title for entry in found(text) for fix in entry.fixes]
+    case = fixture(text)
+    found = fast_diagnostics(case.snapshot, case.uri)
+    return [fix.title for entry in found for fix in fixes_of(case, entry)]
 
 
+TRIED = {*BROKEN, "model-file", "clause-undefined"}
+"""Codes with a fix; that of a clause without a step is a command, which writes a file that is no model."""
 LAYOUTS: dict[str, Callable[[str], str]] = {
     "as written": lambda text: text,
     "crlf": lambda text: text.replace("\n", "\r\n"),
@@ -50,13 +54,19 @@ def laid_out(text: str, layout: Callable[[str], str]) -> str:
 @pytest.mark.parametrize(("code", "number"), CASES)
 def test_each_fix_mends_its_finding_and_adds_no_error(code: str, number: int, layout: Callable[[str], str]) -> None:
     text = laid_out(BROKEN[code][number], layout)
-    before = everything(fixture(text))
-    offered = [(at, nth) for at, entry in enumerate(before) if entry.code == code for nth in range(len(entry.fixes))]
+    planted = fixture(text)
+    before = everything(planted)
+    offered = [
+        (at, nth)
+        for at, entry in enumerate(before)
+        if entry.code == code
+        for nth in range(len(fixes_of(planted, entry)))
+    ]
     assert offered, before
     for at, nth in offered:
         case = fixture(text)
         finding = everything(case)[at]
-        fix = finding.fixes[nth]
+        fix = fixes_of(case, finding)[nth]
         apply(case, fix)
         after = everything(case)
         assert (finding.uri, finding.code) in counted(before) - counted(after), (fix, after)
@@ -64,11 +74,75 @@ def test_each_fix_mends_its_finding_and_adds_no_error(code: str, number: int, la
         assert not added, (fix, after)
 
 
-def test_each_code_whose_page_names_a_quick_fix_is_tried() -> None:
-    pages = (DOCS / "diagnostics").glob("*.md")
-    named = {page.stem for page in pages if "quick fix" in page.read_text(encoding="utf-8").lower()}
-    # The fix of a clause without a step is a command of the server: it writes into a file that is no model.
-    assert named - {"clause-undefined"} == set(BROKEN)
+def test_every_finding_has_a_tried_quick_fix_or_its_page_says_why_there_is_none() -> None:
+    pages = {page.stem: page.read_text(encoding="utf-8") for page in (DOCS / "diagnostics").glob("*.md")}
+    del pages["README"]
+    without = {code for code, page in pages.items() if "\nThere is no quick fix: " in page}
+    assert {code for code, page in pages.items() if "quick fix" in page.lower()} == set(pages)
+    assert without.isdisjoint(TRIED)
+    assert without | TRIED == set(pages)
+
+
+def test_a_model_file_is_changed_to_one_of_a_like_name_or_made(tmp_path: Path) -> None:
+    (tmp_path / "models").mkdir()
+    for name in ("models/bench2.xml", "models/bench.usda", "arm.xml"):
+        (tmp_path / name).write_text("", encoding="utf-8")
+    uri = path_to_uri(tmp_path / "main.scenex")
+    text = "ns x = 'http://x/'\nscene inst (ns=x) s { scene: <s> model world as mjcf { sys path = 'bench.xml' } }\n"
+    project = Project()
+    project.open(uri, 1, text)
+    snapshot = project.snapshot()
+    finding = next(entry for entry in fast_diagnostics(snapshot, uri) if entry.code == "model-file")
+    renamed, made = fixes_on_demand(snapshot, uri, finding)
+    assert (renamed.title, made.title) == ("Change to 'models/bench2.xml'", "Create 'bench.xml' with an empty model")
+    (edit,) = renamed.edits
+    changed = text[: edit.span.start] + edit.text + text[edit.span.end :]
+    assert changed == text.replace("bench.xml", "models/bench2.xml")
+    assert made.new_file is not None
+    (tmp_path / "bench.xml").write_text(made.new_file.text, encoding="utf-8")
+    assert made.new_file.uri == path_to_uri(tmp_path / "bench.xml")
+    for after in (changed, text):
+        project.open(uri, 2, after)
+        assert not [entry for entry in fast_diagnostics(project.snapshot(), uri) if entry.code == "model-file"]
+
+
+def scene_after(text: str) -> str:
+    case = fixture(text)
+    (finding,) = (entry for entry in everything(case) if entry.code == "not-in-scene")
+    (fix,) = fixes_of(case, finding)
+    apply(case, fix)
+    assert not [
+        entry
+        for uri in case.project.texts()
+        for entry in all_diagnostics(case.snapshot, uri)
+        if entry.code in ("not-in-scene", "shacl") or entry.severity is Severity.ERROR
+    ]
+    return case.project.texts()["file:///fixture/lab.scene"][1]
+
+
+def test_the_set_of_an_element_is_added_to_the_scene_as_its_entries_are_laid_out() -> None:
+    inline, lines, imported = (scene_after(text) for text in BROKEN["not-in-scene"])
+    assert "agn set <arms> ws set <places> }\n" in inline
+    assert "    ws set <places>\n    obj set <furniture>  // all of them\n" in lines
+    assert imported.startswith('import "more.scene"\n')
+    assert "agn set <arms> obj set <tools> }\n" in imported
+
+
+def test_what_has_the_iri_of_something_else_is_renamed_with_its_uses() -> None:
+    other = "//- m.bdd\nns m = 'https://example.org/t/'\nEvent (ns=m) end\n"
+    text = "//- main.bdd\nimport 'm.bdd'\n" + MODEL + other
+    fresh = fixed(text, "duplicate-iri", "Rename to 'end-2'")
+    assert fresh == "import 'm.bdd'\n" + MODEL.replace("<end>", "<end-2>").replace("t) end\n", "t) end-2\n")
+
+
+def test_an_import_of_a_circle_is_removed_where_nothing_needs_it() -> None:
+    both = "//- main.bdd\nimport 'm.bdd'\n" + MODEL.replace("task: <task>", "task: <idle>").replace(
+        "t) task", "t) busy"
+    )
+    other = "//- m.bdd\nimport 'main.bdd'\nns m = 'https://example.org/m/'\nTask (ns=m) idle\n"
+    assert titles(both + other)[:1] == ["Remove the import of 'main.bdd' from 'm.bdd', which does not need it"]
+    needing = other + "Scenario Template (ns=m) x { task: <busy> var a var b When: <a> picks <b> }\n"
+    assert not [title for title in titles(both + needing) if "import of" in title]
 
 
 def test_a_name_of_a_file_beside_is_imported() -> None:
@@ -101,7 +175,7 @@ def test_a_file_that_nobody_opened_is_found_on_disk(tmp_path: Path) -> None:
     project.open(uri, 1, MODEL.replace('import "lab.scene"\n', ""))
     snapshot = project.snapshot()
     unknown = next(entry for entry in fast_diagnostics(snapshot, uri) if entry.code == "unknown-name")
-    assert [fix.title for fix in fixes_from_disk(snapshot, uri, unknown)] == ["Import 'lab.scene'"]
+    assert [fix.title for fix in fixes_on_demand(snapshot, uri, unknown)] == ["Import 'lab.scene'"]
 
 
 def test_the_path_of_an_import_is_changed_to_one_that_leads_to_a_file(tmp_path: Path) -> None:
@@ -112,9 +186,10 @@ def test_the_path_of_an_import_is_changed_to_one_that_leads_to_a_file(tmp_path: 
     project.open(uri, 1, MODEL)
     snapshot = project.snapshot()
     missing = next(entry for entry in fast_diagnostics(snapshot, uri) if entry.code == "import")
-    found = fixes_from_disk(snapshot, uri, missing)
-    assert [fix.title for fix in found] == ["Change to 'cells/lab.scene'", "Change to 'labs.scene'"]
-    ((edit,), _) = (fix.edits for fix in found)
+    found = fixes_on_demand(snapshot, uri, missing)
+    titles = ["Change to 'cells/lab.scene'", "Change to 'labs.scene'", "Create 'lab.scene'"]
+    assert [fix.title for fix in found] == titles
+    ((edit,), *_) = (fix.edits for fix in found)
     assert MODEL[: edit.span.start] + edit.text + MODEL[edit.span.end :] == MODEL.replace("lab.scene", edit.text, 1)
 
 

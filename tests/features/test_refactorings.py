@@ -91,9 +91,10 @@ def test_a_table_is_filled_with_what_the_scene_has() -> None:
 def test_a_scene_moves_to_a_file_of_its_own_and_the_graph_stays() -> None:
     case = fixture(f"//- main.bdd\n{MODEL}//- lab.scene\n{SCENE.replace('scene (ns=env)', 'sce$0ne (ns=env)')}")
     before = build_graph(case.snapshot, case.uri).graph
-    found = split_scene(case.snapshot, "file:///fixture/lab.scene", case.cursor)
-    assert found is not None
-    fix, new = found
+    fix = split_scene(case.snapshot, "file:///fixture/lab.scene", case.cursor)
+    assert fix is not None
+    new = fix.new_file
+    assert new is not None
     assert (fix.title, new.uri) == ("Move the scene to 'bench_scene.scene'", "file:///fixture/bench_scene.scene")
     project = Project()
     for uri, text in {**applied(case, fix), new.uri: new.text}.items():

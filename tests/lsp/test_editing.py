@@ -61,6 +61,16 @@ async def test_a_scene_is_split_off_into_a_new_file(editor: Editor) -> None:
     assert len(changes) == 4
 
 
+async def test_the_file_of_an_import_is_made_where_the_client_makes_files(editor: Editor) -> None:
+    editor.open(editor.text.replace('import "bench.scene"', 'import "cell.scene"'))
+    found = await actions(editor, "cell.scene", ["quickfix"])
+    edit = found["Create 'cell.scene'"].edit
+    assert edit is not None
+    made = next(iter(edit.document_changes or ()))
+    assert isinstance(made, types.CreateFile)
+    assert made.uri == editor.path.with_name("cell.scene").as_uri()
+
+
 @CLIENTS
 async def test_imports_follow_a_renamed_file(editor: Editor) -> None:
     old = editor.path.with_name("bench.scene").as_uri()

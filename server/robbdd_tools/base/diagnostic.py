@@ -36,11 +36,20 @@ class Edit:
 
 
 @dataclass(frozen=True, slots=True)
+class NewFile:
+    """A file that a change makes, with all its text."""
+
+    uri: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Fix:
-    """A change that is known to mend a diagnostic."""
+    """A change that is known to mend a diagnostic, with the file that it makes, if any."""
 
     title: str
     edits: tuple[Edit, ...]
+    new_file: NewFile | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from robbdd_tools.names.elements import Site
     from robbdd_tools.names.uses import Clauses, Kinds, Use
 
-_SET_WORDS = {"object": "obj set", "workspace": "ws set", "agent": "agn set"}
+SET_WORDS = {"object": "obj set", "workspace": "ws set", "agent": "agn set"}
+"""Kind of an element → how a set of such is named in a scene or a variation."""
 
 
 def variables_with_kinds(template: Site, uses: Mapping[str, list[Use]]) -> Iterator[tuple[str, Kinds]]:
@@ -54,7 +55,7 @@ def other_values(scenario: Scenario, column: Column, node: tree.Node, kinds: Kin
         for name in names[:MOST_OFFERED]:
             yield change(site, f"Change to '<{name}>'", node, name if isinstance(node, tree.Ref) else f"<{name}>")
         return
-    sets = dict.fromkeys((_SET_WORDS[member.kind], member.name.rpartition(".")[0]) for member in members)
+    sets = dict.fromkeys((SET_WORDS[member.kind], member.name.rpartition(".")[0]) for member in members)
     for words, name in list(sets)[:MOST_OFFERED]:
         if link is None:
             yield change(site, f"Change to '{name}'", node, name)

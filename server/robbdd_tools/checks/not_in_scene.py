@@ -9,10 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Related, Severity
+from robbdd_tools.base.diagnostic import Edit, Fix, Related, Severity
+from robbdd_tools.base.document import Span
 from robbdd_tools.checks.finding import finding
+from robbdd_tools.checks.fitting import SET_WORDS
+from robbdd_tools.checks.lines import import_edit
 from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.names.elements import Element, elements_of, scene_members
+from robbdd_tools.names.imports import import_path
 from robbdd_tools.names.types import written_elements
 from robbdd_tools.names.uses import ELEMENTS
 from robbdd_tools.syntax import tree
@@ -56,7 +60,34 @@ def _strangers(scenario: Scenario, members: frozenset[Element]) -> Iterator[Diag
                     "add it to the scene if it is always there"
                 )
                 related = (Related(definition.uri, definition.span, "the scene"),)
-                yield finding(site, node, Severity.INFORMATION, "not-in-scene", message, related)
+                fixes = tuple(_extended(site.follow(scene), element))
+                yield finding(site, node, Severity.INFORMATION, "not-in-scene", message, related, fixes)
+
+
+def _extended(site: Site | None, element: Element) -> Iterator[Fix]:
+    """Yield the entry that adds the set of an element to a scene, with the import of the set where that is missing."""
+    scene = None if site is None else site.tree
+    if site is None or not isinstance(scene, tree.Scene):
+        return
+    source, words = element.key[0], f"{SET_WORDS[element.kind]} <{element.name.rpartition('.')[0]}>"
+    edits: list[Edit] = []
+    if all(index.document.uri != source for index in site.snapshot.scope(site.uri).files):
+        path = import_path(site.uri, source)
+        if path is None or site.uri in site.snapshot.scope(source).uris:
+            return
+        edits.append(import_edit(site.file, path))
+    document = site.file.document
+    if scene.entries:
+        end = site.span(scene.entries[-1]).end
+        start = document.text[document.line_starts[document.position(site.span(scene.entries[-1]).start).line] : end]
+        indent = start[: len(start) - len(start.lstrip())]
+        is_below = start.lstrip() == document.text[site.span(scene.entries[-1]).start : end]
+        text = f"\n{indent}{words}" if is_below else f" {words}"
+    else:
+        end = document.text.index("{", site.span(scene.name).end) + 1
+        text = f" {words}"
+    edits.append(Edit(site.uri, Span(end, end), text))
+    yield Fix(f"Add '{words}' to the scene '{scene.name.text}'", tuple(edits))
 
 
 def _brought(scenario: Scenario) -> Iterator[Element]:

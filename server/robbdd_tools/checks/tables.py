@@ -42,12 +42,12 @@ def columns_added(site: Site, table: tree.Table, names: Sequence[str], cells: Se
 
 
 def column_removed(site: Site, table: tree.Table, number: int) -> tuple[Edit, ...]:
-    """Return the edits that remove a column behind the first; none where rows are of different widths."""
+    """Return the edits that remove one of several columns; none where rows are of different widths."""
     header = _header_end(site, table)
-    if header is None or not _is_even(table):
+    if header is None or not _is_even(table) or len(table.header) == 1:
         return ()
     cells = (row.cells for row in table.rows)
-    spans = [_with_bar_before(site, row, number) for row in (table.header, *cells)]
+    spans = [_with_bar(site, row, number) for row in (table.header, *cells)]
     rule = _rule(site, header, len(table.header))
     if rule is not None:
         bars = list(_bars(site.file.document.text, rule))
@@ -55,7 +55,9 @@ def column_removed(site: Site, table: tree.Table, number: int) -> tuple[Edit, ..
     return tuple(Edit(site.uri, span, "") for span in sorted(spans))
 
 
-def _with_bar_before(site: Site, cells: tuple[tree.Node, ...], number: int) -> Span:
+def _with_bar(site: Site, cells: tuple[tree.Node, ...], number: int) -> Span:
+    if number == 0:
+        return Span(cell_span(site, cells[0]).start, cell_span(site, cells[1]).start)
     return Span(cell_span(site, cells[number - 1]).end, cell_span(site, cells[number]).end)
 
 

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
-from robbdd_tools.checks.finding import removal
+from robbdd_tools.checks.lines import import_removal
 from robbdd_tools.checks.usage import has_story, used_names
-from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis, ImportLink
@@ -25,12 +24,7 @@ def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
         return
     for link in found:
         name = link.uri.rsplit("/", 1)[-1]
-        spans = [
-            placed.declaration.tree.span.shifted(placed.offset)
-            for placed in file.declarations
-            if isinstance(placed.declaration.tree, tree.Import) and placed.span.contains(link.span.start)
-        ]
-        fixes = tuple(removal(file.document, f"Remove the import of '{name}'", span) for span in spans[:1])
+        fixes = tuple(import_removal(file, link, f"Remove the import of '{name}'"))
         message = f"nothing of '{name}' is used: remove this import"
         yield Diagnostic(file.document.uri, link.span, Severity.HINT, "unused-import", message, fixes=fixes)
 

@@ -9,8 +9,8 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.checks.lines import import_edit
 from robbdd_tools.features.cursor import Cursor, cursor_at
-from robbdd_tools.features.fixes import import_edit
 from robbdd_tools.features.quoted import quoted
 from robbdd_tools.features.snippets import declaration_snippets
 from robbdd_tools.features.unimported import beside, loaded

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix
-from robbdd_tools.base.document import Document, Span
-from robbdd_tools.features.unimported import Importable, beside, import_path, loaded
-from robbdd_tools.features.workspace_files import model_files_near
+from robbdd_tools.base.document import Span
+from robbdd_tools.checks.lines import below, import_edit, line_end
+from robbdd_tools.features.unimported import Importable, loaded
 from robbdd_tools.names.elements import Site
-from robbdd_tools.names.imports import IMPORTABLE
-from robbdd_tools.names.index import language_of
 from robbdd_tools.names.resolve import candidates
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.syntax import tree
@@ -34,8 +31,6 @@ _KEYWORDS: Mapping[SymbolKind, str] = {
     SymbolKind.WORKSPACE: "ws",
     SymbolKind.COMPOSITION: "ws comp",
 }
-LEAST_ALIKE = 0.6
-"""Share of common letters from which a file's name is a suggestion."""
 _SETS = (SymbolKind.OBJECT_SET, SymbolKind.WORKSPACE_SET, SymbolKind.AGENT_SET)
 
 
@@ -45,44 +40,11 @@ def with_fixes(snapshot: Snapshot, file: FileAnalysis, found: Iterable[Diagnosti
         if diagnostic.code not in ("unknown-name", "wrong-kind"):
             yield diagnostic
             continue
-        used = _reference(file, diagnostic.span)
+        used = reference_at(file, diagnostic.span)
         fixes = () if used is None else _fixes(snapshot, file, *used, diagnostic.code)
-        yield replace(diagnostic, fixes=(*diagnostic.fixes, *fixes)) if fixes else diagnostic
-
-
-def fixes_from_disk(snapshot: Snapshot, uri: str, diagnostic: Diagnostic) -> tuple[Fix, ...]:
-    """Return the fixes that need a look at the disk: imports of an unknown name, files that an import may mean."""
-    file = snapshot.file(uri)
-    if file is None:
-        return ()
-    if diagnostic.code == "import":
-        return tuple(_existing_paths(file, diagnostic.span))
-    used = _reference(file, diagnostic.span) if diagnostic.code == "unknown-name" else None
-    return () if used is None else tuple(_imports(file, used[1], beside(snapshot, uri)))
-
-
-def _existing_paths(file: FileAnalysis, span: Span) -> Iterator[Fix]:
-    """Yield the paths of files around a file that are like the one of an import which leads nowhere."""
-    uri, text = file.document.uri, file.document.text
-    kinds = IMPORTABLE.get(language_of(uri), ())
-    near = [found for found in model_files_near(uri) if found != uri and language_of(found) in kinds]
-    paths = sorted(path for found in near if (path := import_path(uri, found)) is not None)
-    written = text[span.start : span.end]
-    alike = get_close_matches(_stem(written), list(dict.fromkeys(map(_stem, paths))), n=3, cutoff=LEAST_ALIKE)
-    for stem in alike:
-        for path in paths:
-            if _stem(path) == stem and path != written:
-                yield Fix(f"Change to '{path}'", (Edit(uri, span, path),))
-
-
-def _stem(path: str) -> str:
-    """Return the name of a file without its folder and ending."""
-    return path.rpartition("/")[2].partition(".")[0]
-
-
-def import_edit(file: FileAnalysis, path: str) -> Edit:
-    """Return the edit that adds an import to a file."""
-    return _below(file, (tree.Import,), f'import "{path}"')
+        # Another keyword is surer than another name, a like name surer than a new declaration.
+        every = (*fixes, *diagnostic.fixes) if diagnostic.code == "wrong-kind" else (*diagnostic.fixes, *fixes)
+        yield replace(diagnostic, fixes=every)
 
 
 def _fixes(
@@ -91,10 +53,10 @@ def _fixes(
     if code == "wrong-kind":
         return tuple(_other_role(snapshot, file, placed, reference))
     others = loaded(snapshot, file.document.uri)
-    return (*_imports(file, reference, others), *_declarations(snapshot, file, placed, reference))
+    return (*imports_of(file, reference, others), *_declarations(snapshot, file, placed, reference))
 
 
-def _reference(file: FileAnalysis, span: Span) -> tuple[PlacedDeclaration, Reference] | None:
+def reference_at(file: FileAnalysis, span: Span) -> tuple[PlacedDeclaration, Reference] | None:
     """Return the reference that stands at a place."""
     for placed in file.declarations:
         if placed.span.contains(span.start):
@@ -104,7 +66,7 @@ def _reference(file: FileAnalysis, span: Span) -> tuple[PlacedDeclaration, Refer
     return None
 
 
-def _imports(file: FileAnalysis, reference: Reference, others: Iterable[Importable]) -> Iterator[Fix]:
+def imports_of(file: FileAnalysis, reference: Reference, others: Iterable[Importable]) -> Iterator[Fix]:
     """Yield an import of each file that declares a name as it is used."""
     kinds = ROLE_KINDS[reference.ref.role]
     for path, index in others:
@@ -120,7 +82,7 @@ def _declarations(
     namespace = placed.declaration.symbols[0].namespace if placed.declaration.symbols else None
     argument = "" if namespace == FILE_NAMESPACE else f"(ns={namespace}) "
     if role in ("Event", "Task") and "." not in path and namespace is not None:
-        edit = _below(file, (tree.Event, tree.Task, tree.Namespace, tree.Import), f"{role} {argument}{path}")
+        edit = below(file, (tree.Event, tree.Task, tree.Namespace, tree.Import), f"{role} {argument}{path}")
         yield Fix(f"Declare the {role.lower()} '{path}'", (edit,))
     if role in ("Variable", "AnySet"):
         owner, _, name = path.rpartition(".")
@@ -149,7 +111,7 @@ def _variable(site: Site, template: tree.Template, name: str, words: str) -> Ite
     end = site.span(last).end
     if isinstance(last, tree.Ref):
         end = document.text.index(">", end) + 1
-    end = _line_end(document, end)
+    end = line_end(document, end)
     edit = Edit(site.uri, Span(end, end), f"\n    {words} {name}")
     yield Fix(f"Declare '{words} {name}' in '{template.name.text}'", (edit,))
 
@@ -178,27 +140,3 @@ def _other_role(
     if kind in allowed and end >= 0:
         edit = Edit(file.document.uri, Span(start, end), f"{_KEYWORDS[kind]} ")
         yield Fix(f"Change to '{_KEYWORDS[kind]} <{reference.ref.path}>'", (edit,))
-
-
-def _below(file: FileAnalysis, kinds: tuple[type[tree.Node], ...], line: str) -> Edit:
-    """Return the edit that adds a line below the last declaration of the first kind of which there is one."""
-    document = file.document
-    for kind in kinds:
-        ends = [
-            placed.declaration.tree.span.end + placed.offset
-            for placed in file.declarations
-            if isinstance(placed.declaration.tree, kind)
-        ]
-        if ends:
-            end = _line_end(document, ends[-1])
-            return Edit(document.uri, Span(end, end), f"\n{line}")
-    start = 1 if document.text.startswith("\ufeff") else 0
-    return Edit(document.uri, Span(start, start), f"{line}\n")
-
-
-def _line_end(document: Document, offset: int) -> int:
-    """Return the end of the line of an offset if only white space and a comment follow there, else the offset."""
-    place = document.position(offset)
-    rest = document.line_text(place.line)[place.column :]
-    is_last = not rest.strip() or rest.lstrip().startswith("//")
-    return offset + len(rest) if is_last else offset

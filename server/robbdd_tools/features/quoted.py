@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from urllib.parse import quote, urljoin
 
@@ -15,7 +15,12 @@ from robbdd_tools.names.index import language_of
 _IMPORT = re.compile(r"import\s*[\"']([^\"']*)\Z")
 _MODEL = re.compile(r"\bsys\s+path\s*=\s*[\"']([^\"']*)\Z")
 _ENTRY = re.compile(r"\bcatalog\s*[\"']([^\"']*)\Z")
-_MODEL_ENDINGS = frozenset({".xml", ".mjcf", ".urdf", ".usd", ".usda", ".usdc"})
+MODEL_ENDINGS: Mapping[str, frozenset[str]] = {
+    "mjcf": frozenset({".xml", ".mjcf"}),
+    "urdf": frozenset({".urdf", ".xml"}),
+    "usd": frozenset({".usd", ".usda", ".usdc"}),
+}
+"""How the files of each kind of model end."""
 
 
 def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str]]:
@@ -26,7 +31,7 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str]]:
     wanted = frozenset(f".{kind}" for kind in IMPORTABLE.get(language_of(uri), ()))
     match = _IMPORT.search(line)
     if match is None:
-        match, wanted = _MODEL.search(line), _MODEL_ENDINGS
+        match, wanted = _MODEL.search(line), frozenset[str]().union(*MODEL_ENDINGS.values())
     if match is not None:
         folder, _, last = match[1].rpartition("/")
         for name, kind in _entries(uri, folder and f"{folder}/", wanted):

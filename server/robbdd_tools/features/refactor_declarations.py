@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Edit, Fix
+from robbdd_tools.base.diagnostic import Edit, Fix, NewFile
 from robbdd_tools.base.document import Span
+from robbdd_tools.checks.lines import import_edit
 from robbdd_tools.checks.published_form import published_form
-from robbdd_tools.features.fixes import import_edit
 from robbdd_tools.features.references import uses
-from robbdd_tools.features.unimported import import_path
+from robbdd_tools.names.imports import import_path
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
-
-
-@dataclass(frozen=True, slots=True)
-class NewFile:
-    """A file that a refactoring makes."""
-
-    uri: str
-    text: str
 
 
 def modernised(snapshot: Snapshot, uri: str) -> Fix | None:
@@ -35,7 +26,7 @@ def modernised(snapshot: Snapshot, uri: str) -> Fix | None:
     return Fix("Write the whole file in the current form", edits) if edits else None
 
 
-def split_scene(snapshot: Snapshot, uri: str, offset: int) -> tuple[Fix, NewFile] | None:
+def split_scene(snapshot: Snapshot, uri: str, offset: int) -> Fix | None:
     """Return how the scene at a cursor moves into a file of its own; every graph that has it stays the same.
 
     The new file imports the one that the scene came from; the files that use the scene import the new one.
@@ -57,7 +48,7 @@ def split_scene(snapshot: Snapshot, uri: str, offset: int) -> tuple[Fix, NewFile
         if importing is not None and path is not None:
             edits.append(import_edit(importing, path))
     text = f'import "{back}"\n\n{placed.declaration.text.rstrip()}\n'
-    return Fix(f"Move the scene to '{root.name.text}.scene'", tuple(edits)), NewFile(target, text)
+    return Fix(f"Move the scene to '{root.name.text}.scene'", tuple(edits), NewFile(target, text))
 
 
 def _declaration_at(file: FileAnalysis, offset: int) -> PlacedDeclaration | None:

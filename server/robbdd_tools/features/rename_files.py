@@ -9,7 +9,7 @@ from robbdd_tools.base.diagnostic import Edit
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import read_text, uri_to_path
 from robbdd_tools.features.import_graph import imports_on_disk
-from robbdd_tools.features.unimported import import_path
+from robbdd_tools.names.imports import import_path
 from robbdd_tools.names.index import FileIndex, ImportPath, imports_of
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import posixpath
 from collections.abc import Iterable
 from functools import lru_cache
 from typing import TYPE_CHECKING
-from urllib.parse import unquote, urlsplit
 
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import FileState, file_state, path_to_uri, read_text, uri_to_path
-from robbdd_tools.names.imports import IMPORTABLE
+from robbdd_tools.names.imports import IMPORTABLE, import_path
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 
 if TYPE_CHECKING:
@@ -42,14 +40,6 @@ def _importable(uri: str, indices: Iterable[FileIndex]) -> list[Importable]:
     fitting = (index for index in indices if language_of(index.document.uri) in kinds)
     named = ((import_path(uri, index.document.uri), index) for index in fitting)
     return sorted(((path, index) for path, index in named if path is not None), key=lambda entry: entry[0])
-
-
-def import_path(importer: str, imported: str) -> str | None:
-    """Return how a file is named in an import: relative to its importer; ``None`` where no such path leads to it."""
-    here, there = urlsplit(importer), urlsplit(imported)
-    if (here.scheme, here.netloc) != (there.scheme, there.netloc) or not there.path.startswith("/"):
-        return None
-    return unquote(posixpath.relpath(there.path, posixpath.dirname(here.path)))
 
 
 def _beside(uri: str) -> list[str]:

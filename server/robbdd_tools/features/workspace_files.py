@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 from pathlib import Path
 
@@ -22,7 +22,7 @@ def model_files(folders: Iterable[str]) -> list[str]:
     found: dict[str, None] = {}
     for folder in folders:
         path = uri_to_path(folder)
-        for uri in _below(path) if path is not None else ():
+        for uri in _below(path, language_of) if path is not None else ():
             found.setdefault(uri)
             if len(found) == MOST_FILES:
                 return sorted(found)
@@ -31,13 +31,18 @@ def model_files(folders: Iterable[str]) -> list[str]:
 
 def model_files_near(uri: str) -> list[str]:
     """Return the model files in a file's own folder and those below, as far as ``MOST_FOLDERS`` go, sorted."""
+    return files_near(uri, language_of)
+
+
+def files_near(uri: str, wanted: Callable[[str], object]) -> list[str]:
+    """Return the files whose names are wanted in a file's folder and those below, see ``model_files_near``."""
     path = uri_to_path(uri)
-    return sorted(_below(path.parent, MOST_FOLDERS)) if path is not None else []
+    return sorted(_below(path.parent, wanted, MOST_FOLDERS)) if path is not None else []
 
 
-def _below(folder: Path, most_folders: int | None = None) -> Iterator[str]:
+def _below(folder: Path, wanted: Callable[[str], object], most_folders: int | None = None) -> Iterator[str]:
     for place, inner, names in islice(os.walk(folder), most_folders):
         inner[:] = sorted(name for name in inner if not name.startswith(".") and name not in _PASSED_OVER)
         for name in sorted(names):
-            if language_of(name):
+            if wanted(name):
                 yield path_to_uri(Path(place) / name)

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 from lsprotocol import types
 
-from robbdd_tools.base.diagnostic import Edit, Fix
+from robbdd_tools.base.diagnostic import Edit, Fix, NewFile
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.features.format_range import format_on_type, format_range
 from robbdd_tools.features.refactor_clauses import extracted_clauses
-from robbdd_tools.features.refactor_declarations import NewFile, modernised, split_scene
+from robbdd_tools.features.refactor_declarations import modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.rename import linked_places
 from robbdd_tools.features.rename_files import ImportLines, concerned, import_edits
@@ -32,21 +32,27 @@ def register_editing(server: RobbddServer) -> None:
 
 def refactorings(ls: RobbddServer, snapshot: Snapshot, uri: str, span: Span) -> Iterator[types.CodeAction]:
     """Yield the refactorings at a selection."""
+    kinds = types.CodeActionKind
+    found: list[tuple[Fix | None, types.CodeActionKind]] = []
     for fix in variation_refactorings(snapshot, uri, span):
         inline = fix.title.startswith("Write the values")
-        kind = types.CodeActionKind.RefactorInline if inline else types.CodeActionKind.RefactorRewrite
-        yield _action(ls, snapshot, fix, kind)
-    extracted = extracted_clauses(snapshot, uri, span)
-    if extracted is not None:
-        yield _action(ls, snapshot, extracted, types.CodeActionKind.RefactorExtract)
-    current = modernised(snapshot, uri)
-    if current is not None:
-        yield _action(ls, snapshot, current, types.CodeActionKind.RefactorRewrite)
-    split = split_scene(snapshot, uri, span.start)
-    if split is not None and _creates_files(ls):
-        edit = _with_new_file(ls, snapshot, *split)
-        kind = types.CodeActionKind.RefactorExtract
-        yield types.CodeAction(title=split[0].title, kind=kind, edit=edit)
+        found.append((fix, kinds.RefactorInline if inline else kinds.RefactorRewrite))
+    found += [
+        (extracted_clauses(snapshot, uri, span), kinds.RefactorExtract),
+        (modernised(snapshot, uri), kinds.RefactorRewrite),
+        (split_scene(snapshot, uri, span.start), kinds.RefactorExtract),
+    ]
+    for fix, kind in found:
+        edit = None if fix is None else edit_of(ls, snapshot, fix)
+        if fix is not None and edit is not None:
+            yield types.CodeAction(title=fix.title, kind=kind, edit=edit)
+
+
+def edit_of(ls: RobbddServer, snapshot: Snapshot, fix: Fix) -> types.WorkspaceEdit | None:
+    """Return the change of a fix or refactoring; ``None`` where it makes a file and the client cannot."""
+    if fix.new_file is None:
+        return ls.convert.workspace_edit(snapshot, fix.edits)
+    return _with_new_file(ls, snapshot, fix, fix.new_file) if _creates_files(ls) else None
 
 
 def _register_formatting(server: RobbddServer) -> None:
@@ -121,10 +127,6 @@ def _register_moves(server: RobbddServer) -> None:
 
 def _edits(ls: RobbddServer, document: Document, edits: list[Edit]) -> list[types.TextEdit]:
     return [ls.convert.edit(document, edit) for edit in edits]
-
-
-def _action(ls: RobbddServer, snapshot: Snapshot, fix: Fix, kind: types.CodeActionKind) -> types.CodeAction:
-    return types.CodeAction(title=fix.title, kind=kind, edit=ls.convert.workspace_edit(snapshot, fix.edits))
 
 
 def _creates_files(ls: RobbddServer) -> bool:

@@ -8,10 +8,10 @@ from typing import cast
 from lsprotocol import types
 
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.features.fixes import fixes_from_disk
+from robbdd_tools.features.fixes_on_demand import fixes_on_demand
 from robbdd_tools.lsp.commands import register_commands, step_fixes
 from robbdd_tools.lsp.convert import Converter, document_of
-from robbdd_tools.lsp.editing import refactorings, register_editing
+from robbdd_tools.lsp.editing import edit_of, refactorings, register_editing
 from robbdd_tools.lsp.graph_picture import register_graph
 from robbdd_tools.lsp.lenses import register_lenses, source_actions
 from robbdd_tools.lsp.navigation import register_navigation
@@ -138,15 +138,12 @@ def _quick_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionP
     for diagnostic in fast_diagnostics(snapshot, uri):
         if diagnostic.span.start > span.end or diagnostic.span.end < span.start:
             continue
-        fixes = (*diagnostic.fixes, *fixes_from_disk(snapshot, uri, diagnostic))
-        for position, fix in enumerate(fixes):
-            found.append(
-                types.CodeAction(
-                    title=fix.title,
-                    kind=types.CodeActionKind.QuickFix,
-                    diagnostics=[ls.convert.diagnostic(snapshot, diagnostic)],
-                    edit=ls.convert.workspace_edit(snapshot, fix.edits),
-                    is_preferred=position == 0,
-                )
-            )
+        fixes = (*diagnostic.fixes, *fixes_on_demand(snapshot, uri, diagnostic))
+        shown = ls.convert.diagnostic(snapshot, diagnostic)
+        edits = ((fix.title, edit) for fix in fixes if (edit := edit_of(ls, snapshot, fix)) is not None)
+        for position, (title, edit) in enumerate(edits):
+            kind = types.CodeActionKind.QuickFix
+            is_first = position == 0
+            action = types.CodeAction(title=title, kind=kind, diagnostics=[shown], edit=edit, is_preferred=is_first)
+            found.append(action)
     return found

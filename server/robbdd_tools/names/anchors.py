@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.diagnostic import Edit, Fix, Related
+from robbdd_tools.base.diagnostic import Edit, Related
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
@@ -85,7 +85,7 @@ def _moved(diagnostic: Diagnostic, move: Callable[[str, Span], Span]) -> Diagnos
         span=move(diagnostic.uri, diagnostic.span),
         related=tuple(Related(place.uri, move(place.uri, place.span), place.message) for place in diagnostic.related),
         fixes=tuple(
-            Fix(fix.title, tuple(Edit(edit.uri, move(edit.uri, edit.span), edit.text) for edit in fix.edits))
+            replace(fix, edits=tuple(Edit(edit.uri, move(edit.uri, edit.span), edit.text) for edit in fix.edits))
             for fix in diagnostic.fixes
         ),
     )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterable, Mapping
 from importlib.machinery import PathFinder
 from pathlib import Path
-from urllib.parse import quote, urljoin
+from urllib.parse import quote, unquote, urljoin, urlsplit
 
 from robbdd_tools.base.files import path_to_uri
 
@@ -33,6 +34,14 @@ def import_uri(importer: str, path: str) -> str:
     if folder is None:
         return f"{_PACKAGE}{quote(package)}/{quote(inside)}"
     return path_to_uri(folder / inside.lstrip("/"))
+
+
+def import_path(importer: str, imported: str) -> str | None:
+    """Return how a file is named in an import: relative to its importer; ``None`` where no such path leads to it."""
+    here, there = urlsplit(importer), urlsplit(imported)
+    if (here.scheme, here.netloc) != (there.scheme, there.netloc) or not there.path.startswith("/"):
+        return None
+    return unquote(posixpath.relpath(there.path, posixpath.dirname(here.path)))
 
 
 def missing_package(uri: str) -> str | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import count
 from typing import TYPE_CHECKING
 
@@ -52,10 +52,15 @@ def repeated(scope: Scope) -> Iterator[Diagnostic]:
 def _renamed(file: FileIndex, path: str, place: Span) -> Iterator[Fix]:
     """Yield a new name for what is declared again; what refers to the name means the first one."""
     name = path.rpartition(".")[2]
-    taken = {known.rpartition(".")[2] for known in file.names.entries}
-    free = next(found for number in count(2) if (found := f"{name}-{number}") not in taken)
+    free = free_name(name, file.names.entries)
     if file.document.text[place.start : place.end] == name:
         yield Fix(f"Change to '{free}'", (Edit(file.document.uri, place, free),))
+
+
+def free_name(name: str, paths: Iterable[str]) -> str:
+    """Return a name like another one that ends none of some qualified names."""
+    taken = {path.rpartition(".")[2] for path in paths}
+    return next(found for number in count(2) if (found := f"{name}-{number}") not in taken)
 
 
 def _same_variable(first: Declared, second: Declared) -> bool:
@@ -81,6 +86,7 @@ def _wrong_kind(scope: Scope, problem: Unresolved, offset: int) -> Diagnostic:
         "wrong-kind",
         f"'{ref.path}' is {_a(found.kind)}, but {_wanted(ref.role)} belongs here",
         (Related(found.uri, found.span, f"'{ref.path}' is declared here"),),
+        _renamings(scope, ref.span.shifted(offset), nearest(scope, problem.reference, ROLE_KINDS[ref.role])[0]),
     )
 
 
@@ -94,8 +100,13 @@ def _unknown(scope: Scope, reference: Reference, offset: int) -> Diagnostic:
         message += f"; did you mean '{close[0]}'?"
     elif not any_known:
         message += ": none is declared here or in an imported file"
-    fixes = tuple(Fix(f"Change to '{name}'", (Edit(uri, span, name),)) for name in close)
+    fixes = _renamings(scope, span, close)
     return Diagnostic(uri, span, Severity.ERROR, "unknown-name", message, fixes=fixes)
+
+
+def _renamings(scope: Scope, span: Span, names: Iterable[str]) -> tuple[Fix, ...]:
+    uri = scope.files[0].document.uri
+    return tuple(Fix(f"Change to '{name}'", (Edit(uri, span, name),)) for name in names)
 
 
 def _wanted(role: str, article: bool = True) -> str:

@@ -1,0 +1,133 @@
+"""Fixes of findings about other files: imports and models that are not there, imports in a circle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, NewFile
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.checks.finding import MOST_OFFERED
+from robbdd_tools.checks.lines import import_removal
+from robbdd_tools.features.quoted import MODEL_ENDINGS
+from robbdd_tools.features.workspace_files import files_near, model_files_near
+from robbdd_tools.names.imports import IMPORTABLE, import_path, reached
+from robbdd_tools.names.index import FileIndex, language_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.analysis import FileAnalysis, ImportLink
+    from robbdd_tools.names.project import Snapshot
+
+LEAST_ALIKE = 0.6
+"""Share of common letters from which a file's name is a suggestion."""
+_EMPTY_MODELS: Mapping[str, str] = {
+    "mjcf": '<mujoco model="{name}">\n  <worldbody/>\n</mujoco>\n',
+    "urdf": '<robot name="{name}">\n  <link name="base"/>\n</robot>\n',
+    "usd": "#usda 1.0\n",
+}
+
+
+def import_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
+    """Yield the paths that an import may mean and the file that it lacks, or its removal where nothing can be meant."""
+    link = _link(file, diagnostic.span)
+    if link is None:
+        return
+    uri, span = file.document.uri, diagnostic.span
+    kinds = IMPORTABLE.get(language_of(uri), ())
+    if link.uri == uri or (language_of(link.uri) not in kinds and uri_to_path(link.uri) is not None):
+        yield from import_removal(file, link, "Remove this import")
+        return
+    near = (found for found in model_files_near(uri) if found != uri and language_of(found) in kinds)
+    written = file.document.text[span.start : span.end]
+    for path in _alike(written, uri, near):
+        yield Fix(f"Change to '{path}'", (Edit(uri, span, path),))
+    unreadable = snapshot.unreadable(link.uri)
+    if unreadable is not None and unreadable.code == "file-missing" and uri_to_path(link.uri) is not None:
+        yield Fix(f"Create '{written}'", (), NewFile(link.uri, ""))
+
+
+def model_file_fixes(_: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
+    """Yield the files that a model may be in, and an empty model where it should be."""
+    uri, own = file.document.uri, uri_to_path(file.document.uri)
+    model = _model(file, diagnostic.span)
+    if model is None or own is None or not isinstance(model.source, tree.SystemPath):
+        return
+    path, endings = model.source.path.value, MODEL_ENDINGS[model.kind]
+    quote = file.document.text[diagnostic.span.start]
+    for found in _alike(path, uri, files_near(uri, lambda name: Path(name).suffix.lower() in endings)):
+        yield Fix(f"Change to '{found}'", (Edit(uri, diagnostic.span, f"{quote}{found}{quote}"),))
+    place = own.parent / path
+    if place.suffix.lower() in endings and not path.startswith("~"):
+        text = _EMPTY_MODELS[model.kind].format(name=place.stem)
+        yield Fix(f"Create '{path}' with an empty model", (), NewFile(path_to_uri(place), text))
+
+
+def cycle_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
+    """Yield the imports of a circle that nobody needs: this one, or those by which other files lead back here."""
+    link = _link(file, diagnostic.span)
+    if link is None:
+        return
+    if _is_needless(snapshot, file.document.uri, link.uri):
+        yield from import_removal(file, link, "Remove this import, which nothing needs")
+    own = file.document.uri
+    for other in snapshot.closure(link.uri):
+        for back in other.imports:
+            uri = other.document.uri
+            if back.uri == own != uri and _is_needless(snapshot, uri, own):
+                title = f"Remove the import of '{_name(own)}' from '{_name(uri)}', which does not need it"
+                yield from import_removal(other, back, title)
+
+
+def _is_needless(snapshot: Snapshot, importer: str, imported: str) -> bool:
+    """Tell whether all that is used in a file and in those that import it is reached without one import too."""
+    edges = {
+        uri: [link.uri for link in source.imports if (uri, link.uri) != (importer, imported)]
+        for uri, source in snapshot.sources.items()
+        if isinstance(source, FileIndex)
+    }
+    for uri in (importer, *snapshot.importers(importer)):
+        file = snapshot.file(uri)
+        left = {uri, *reached(edges, uri)}
+        for placed in file.declarations if file is not None else ():
+            if any(target not in left for target, _ in placed.targets.declarations()):
+                return False
+    return True
+
+
+def _link(file: FileAnalysis, span: Span) -> ImportLink | None:
+    return next((link for link in file.imports if link.span == span), None)
+
+
+def _model(file: FileAnalysis, span: Span) -> tree.Model | None:
+    """Return the model whose file's path stands at a place."""
+    for placed in file.declarations:
+        root = placed.declaration.tree
+        nodes = walk(root) if root is not None and placed.span.contains(span.start) else ()
+        for node in nodes:
+            if not isinstance(node, tree.Model) or not isinstance(node.source, tree.SystemPath):
+                continue
+            if node.source.path.span.shifted(placed.offset) == span:
+                return node
+    return None
+
+
+def _alike(written: str, uri: str, files: Iterable[str]) -> Iterator[str]:
+    """Yield the paths, as one file writes them, of those files whose names are like what is written."""
+    paths = sorted(path for found in files if (path := import_path(uri, found)) is not None)
+    stems = list(dict.fromkeys(map(_stem, paths)))
+    for stem in get_close_matches(_stem(written), stems, n=MOST_OFFERED, cutoff=LEAST_ALIKE):
+        yield from (path for path in paths if _stem(path) == stem and path != written)
+
+
+def _stem(path: str) -> str:
+    """Return the name of a file without its folder and ending."""
+    return _name(path).partition(".")[0]
+
+
+def _name(path: str) -> str:
+    return path.rpartition("/")[2]

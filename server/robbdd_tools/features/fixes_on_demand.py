@@ -1,0 +1,148 @@
+"""Fixes that are looked for only when somebody asks: they need the disk, or a look through all names and uses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix
+from robbdd_tools.checks.finding import MOST_OFFERED, change, removal
+from robbdd_tools.checks.tables import column_removed
+from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.features.fixes import imports_of, reference_at
+from robbdd_tools.features.fixes_of_files import cycle_fixes, import_fixes, model_file_fixes
+from robbdd_tools.features.rename import RenameRefused, rename
+from robbdd_tools.features.unimported import beside
+from robbdd_tools.names.elements import Site, elements_of, site_of
+from robbdd_tools.names.index import FileIndex
+from robbdd_tools.names.problems import free_name
+from robbdd_tools.names.roles import ROLE_KINDS
+from robbdd_tools.names.types import narrowed, variable_key, variable_type
+from robbdd_tools.names.uses import clauses_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import Definition, FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.names.uses import Kinds
+
+Finder = Callable[["Snapshot", "FileAnalysis", Diagnostic], Iterator[Fix]]
+
+
+def fixes_on_demand(snapshot: Snapshot, uri: str, diagnostic: Diagnostic) -> tuple[Fix, ...]:
+    """Return the fixes of a finding that it does not bring with it; all files that import its own must be there."""
+    file, find = snapshot.file(uri), _FINDERS.get(diagnostic.code)
+    return () if file is None or find is None else tuple(find(snapshot, file, diagnostic))
+
+
+def _imports(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
+    """Yield imports of files that nobody has loaded yet and that declare an unknown name."""
+    used = reference_at(file, diagnostic.span)
+    if used is not None:
+        yield from imports_of(file, used[1], beside(snapshot, file.document.uri))
+
+
+def _another_name(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
+    """Yield another name for what has the IRI of something else, wherever it is used."""
+    span = diagnostic.span
+    tables = (source.names.entries for source in snapshot.sources.values() if isinstance(source, FileIndex))
+    name = free_name(file.document.text[span.start : span.end], (path for table in tables for path in table))
+    try:
+        yield Fix(f"Rename to '{name}'", tuple(rename(snapshot, file.document.uri, span.start, name)))
+    except RenameRefused:
+        return
+
+
+def _another_end(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
+    """Yield events that a duration may end with, those first that are declared behind the one it begins with."""
+    site = _site(snapshot, file, diagnostic)
+    for clauses in clauses_of(site.placed.declaration) if site is not None else ():
+        for during in clauses.durations:
+            if site is None or site.span(during) != diagnostic.span:
+                continue
+            ordered = {(other.start.path, other.end.path) for other in clauses.durations}
+            start = during.start.path
+            names = _visible(snapshot, file, "Event")
+            behind = (names[names.index(start) + 1 :] + names[: names.index(start)]) if start in names else names
+            fitting = [name for name in behind if name != start and (name, start) not in ordered]
+            for name in fitting[:MOST_OFFERED]:
+                yield change(site, f"End with '{name}'", during.end, name)
+
+
+def _visible(snapshot: Snapshot, file: FileAnalysis, role: str) -> list[str]:
+    """Return the names of a role in the order of the files and of their texts."""
+    scope = snapshot.scope(file.document.uri)
+    found = scope.visible(ROLE_KINDS[role], ())
+    order = {index.document.uri: number for number, index in enumerate(scope.files)}
+    return sorted(found, key=lambda name: (order[found[name][0].document.uri], found[name][1].offset))
+
+
+def _another_set(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
+    """Yield the sets that a quantified variable may run over instead."""
+    site = _site(snapshot, file, diagnostic)
+    for clauses in clauses_of(site.placed.declaration) if site is not None else ():
+        for use in clauses.uses:
+            if site is None or use.bound is None or site.span(use.ref) != diagnostic.span:
+                continue
+            kinds = narrowed(other for other in clauses.uses if other.bound == use.bound)
+            written = reference_at(file, site.span(use.bound.in_set))
+            scope = snapshot.scope(site.uri)
+            visible = scope.visible(ROLE_KINDS["AnySet"], written[1].scopes if written is not None else ())
+            fitting = [name for name, found in visible.items() if _has_only(snapshot, scope.define(*found), kinds)]
+            for name in [name for name in fitting if name != use.bound.in_set.path][:MOST_OFFERED]:
+                yield change(site, f"Change the set to '{name}'", use.bound.in_set, name)
+
+
+def _has_only(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> bool:
+    """Tell whether a set has elements and these are of some kinds; a variable's type may still be open."""
+    if definition.kind is SymbolKind.SET_VARIABLE:
+        return bool(variable_type(snapshot, definition).kinds & kinds)
+    elements = elements_of(site_of(snapshot, definition))
+    return bool(elements) and all(element.kind in kinds for element in elements or ())
+
+
+def _without_values(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
+    """Yield the removal of a variable together with the values that the scenarios of its file give it."""
+    found = next((one for one in file.definitions.values() if one.span == diagnostic.span), None)
+    if found is None or diagnostic.fixes or found.symbol.path.count(".") != 1:
+        return
+    edits = [*removal(file.document, "", found.extent).edits]
+    for placed in file.declarations:
+        if not isinstance(placed.declaration.tree, tree.Story):
+            continue
+        for scenario in scenarios(Site(snapshot, file, placed)):
+            for number, column in enumerate(scenario.columns):
+                if column.variable is not None and variable_key(column.variable) == variable_key(found):
+                    removed = _column_removed(scenario, number)
+                    if not removed:
+                        return
+                    edits += removed
+    yield Fix(f"Remove the variable '{found.symbol.name}' and its values", tuple(edits))
+
+
+def _column_removed(scenario: Scenario, number: int) -> tuple[Edit, ...]:
+    """Return the edits that remove a line or a column of a variation; none where it is the only one."""
+    variation = scenario.variant.variation
+    if isinstance(variation, tree.Table):
+        return column_removed(scenario.site, variation, number)
+    if len(variation.assignments) == 1:
+        return ()
+    return removal(scenario.site.file.document, "", scenario.site.span(variation.assignments[number])).edits
+
+
+def _site(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Site | None:
+    placed = next((one for one in reversed(file.declarations) if one.offset <= diagnostic.span.start), None)
+    return None if placed is None else Site(snapshot, file, placed)
+
+
+_FINDERS: Mapping[str, Finder] = {
+    "import": import_fixes,
+    "unknown-name": _imports,
+    "model-file": model_file_fixes,
+    "cyclic-import": cycle_fixes,
+    "duplicate-iri": _another_name,
+    "empty-duration": _another_end,
+    "type-conflict": _another_set,
+    "unused-variable": _without_values,
+}
