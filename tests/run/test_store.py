@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,15 @@ def test_an_unknown_run_is_answered_with_the_known_ones(tmp_path: Path) -> None:
     store.begin()
     with pytest.raises(NoSuchRun, match=r"there is no run '7' in .*; it has 1"):
         store.find("7")
+
+
+def test_a_reader_meets_no_document_that_is_half_written(tmp_path: Path) -> None:
+    run = RunStore(tmp_path).begin()
+    run.write_results({"number": 1})
+    with (run.folder / "results.json").open(encoding="utf-8") as reader:
+        run.write_results({"number": 2})
+        assert json.load(reader) == {"number": 1}
+    assert run.results() == {"number": 2}
 
 
 def test_what_is_not_whole_is_explained(tmp_path: Path) -> None:

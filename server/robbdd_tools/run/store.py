@@ -170,4 +170,7 @@ def shown_path(path: Path) -> str:
 
 
 def _write(path: Path, document: object) -> None:
-    path.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8", newline="\n")
+    """Write a document as a whole: who reads meanwhile, an editor that follows the runs, gets the old one or this."""
+    fresh = path.with_suffix(".new")
+    fresh.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8", newline="\n")
+    fresh.replace(path)
