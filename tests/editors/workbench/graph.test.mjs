@@ -1,6 +1,7 @@
 // The graph of a model beside its text: it follows edits and the cursor, leads to the text, and comes back.
 import assert from "node:assert/strict";
 import { contrast } from "./harness/contrast.mjs";
+import { eventually } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
@@ -31,10 +32,9 @@ step("the command shows the graph beside the model", async () => {
   await workbench.openFile(FILE);
   await workbench.codeLens("Run").first().waitFor({ state: "attached" });
   await workbench.command("RobBDD: Show Graph");
-  page = workbench.webview();
-  await node("at-goal").waitFor();
-  assert.equal(await page.locator("[data-iri]").count(), 16);
-  assert.match(await node("at-goal").textContent(), /part is located at goal/);
+  page = workbench.webview("Graph heights.bdd");
+  await node("at-goal").filter({ hasText: "part is located at goal" }).waitFor();
+  await eventually(async () => assert.equal(await page.locator("[data-iri]").count(), 16));
 });
 
 step("the node of what the cursor is in is marked and in view", async () => {
@@ -44,8 +44,10 @@ step("the node of what the cursor is in is marked and in view", async () => {
   await current("evt-end").waitFor();
   await cursorAt("User Story");
   await current("fill-tall-bins").waitFor();
-  assert.ok(await inWindow("fill-tall-bins"));
-  assert.equal(await page.locator("[data-iri].current").count(), 1);
+  await eventually(async () => {
+    assert.ok(await inWindow("fill-tall-bins"));
+    assert.equal(await page.locator("[data-iri].current").count(), 1);
+  });
 });
 
 step("a click on a node selects its text", async () => {
@@ -53,8 +55,7 @@ step("a click on a node selects its text", async () => {
   await node("goal-untouched").click();
   await workbench.page.locator(".view-overlays .selected-text").first().waitFor();
   await current("goal-untouched").waitFor();
-  const line = (await session.text(FILE)).split("\n").findIndex((text) => text.includes("goal-untouched:")) + 1;
-  await workbench.page.locator(".statusbar-item", { hasText: new RegExp(`Ln ${line}, Col`) }).waitFor();
+  await workbench.cursorAt((await session.placeOf(FILE, "goal-untouched:")).line);
 });
 
 step("an edit redraws the picture and leaves it where it is", async () => {
@@ -65,22 +66,25 @@ step("an edit redraws the picture and leaves it where it is", async () => {
   assert.ok(await node("at-goal").isVisible(), "the last good picture stays");
   await workbench.screenshot("graph-out-of-date");
   await workbench.undo();
+  await page.locator(".problem:not(:empty)").waitFor({ state: "detached" });
   await cursorAt('"the cell does not', 1);
   await workbench.type("really, ");
   await node("fill-tall-bins").filter({ hasText: "really," }).waitFor();
-  assert.equal(await page.locator(".problem:not(:empty)").count(), 0);
+  await page.locator(".problem:not(:empty)").waitFor({ state: "detached" });
   assert.equal(await place(), before);
 });
 
 step("the keyboard moves, zooms and opens", async () => {
   const before = await place();
   await page.locator(".canvas").press("ArrowRight");
-  assert.notEqual(await place(), before);
-  await page.locator(".canvas").press("+");
-  await page.locator(".canvas").press("+");
-  const percent = Number.parseInt(await page.locator(".percent").textContent());
+  await eventually(async () => assert.notEqual(await place(), before));
   await page.locator(".canvas").press("0");
-  assert.ok(Number.parseInt(await page.locator(".percent").textContent()) < percent);
+  const whole = await percent();
+  await page.locator(".canvas").press("+");
+  await page.locator(".canvas").press("+");
+  await eventually(async () => assert.ok((await percent()) > whole));
+  await page.locator(".canvas").press("0");
+  await eventually(async () => assert.equal(await percent(), whole));
   await node("in-hand").press("Enter");
   await current("in-hand").waitFor();
 });
@@ -88,6 +92,7 @@ step("the keyboard moves, zooms and opens", async () => {
 step("it can be read in a dark and in a light theme", async () => {
   for (const scheme of Object.keys(SCHEMES)) {
     await workbench.changeScheme(scheme);
+    await workbench.themed(page, SCHEMES[scheme]);
     const [text, ground] = await node("in-hand").evaluate((group) => [
       getComputedStyle(group.querySelector("text")).fill,
       getComputedStyle(group.querySelector("rect")).fill,
@@ -105,19 +110,22 @@ step("a page that was hidden shows what it showed before", async () => {
   await workbench.page.locator("iframe.webview.ready").waitFor({ state: "hidden" });
   await workbench.page.locator(".tab", { hasText: "Graph heights.bdd" }).click();
   await current("in-hand").waitFor();
-  assert.equal(await place(), before);
+  await eventually(async () => assert.equal(await place(), before));
 });
 
 step("the panel comes back with the window", async () => {
   await workbench.reload();
   // Which tab was in front VS Code writes down now and then only.
   await workbench.page.locator(".tab", { hasText: "Graph heights.bdd" }).click();
-  page = workbench.webview();
   await node("at-goal").waitFor();
 });
 
 function place() {
   return page.locator(".canvas > g").getAttribute("transform");
+}
+
+async function percent() {
+  return Number.parseInt(await page.locator(".percent").textContent());
 }
 
 /** Whether a node is within the window of its page. */
@@ -130,9 +138,7 @@ function inWindow(name) {
 
 /** Put the cursor into the first line of the model on disk with a text, so many signs behind its beginning. */
 async function cursorAt(text, behind = 1) {
-  const lines = (await session.text(FILE)).split("\n");
-  const line = lines.findIndex((entry) => entry.includes(text));
-  assert.ok(line >= 0, text);
+  const { line, column } = await session.placeOf(FILE, text);
   await workbench.command("View: Focus First Editor Group");
-  await workbench.goTo(line + 1, lines[line].indexOf(text) + 1 + behind);
+  await workbench.goTo(line, column + behind);
 }

@@ -1,10 +1,9 @@
 // The views in high contrast, by the keyboard alone, and in a narrow window.
 import assert from "node:assert/strict";
-import { execFile } from "node:child_process";
-import { dirname, join } from "node:path";
-import { promisify } from "node:util";
-import { LANGUAGE_SERVER } from "./harness/checkout.mjs";
+import { join } from "node:path";
 import { contrast } from "./harness/contrast.mjs";
+import { execute } from "./harness/models.mjs";
+import { eventually } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
 import { HIGH_CONTRAST } from "./harness/workbench.mjs";
 
@@ -40,10 +39,10 @@ step("a model can be read in high contrast, and a run of the command line be rep
 
 step("the graph can be read in high contrast, and followed by the keyboard", async () => {
   await workbench.command("RobBDD: Show Graph");
-  page = workbench.webview();
+  page = workbench.webview("Graph");
   await page.locator('[data-iri$="/at-goal"]').waitFor();
   await inBoth("graph", page.locator(".canvas text, .legend li, header button, .percent"));
-  await workbench.page.keyboard.press("Control+2");
+  await workbench.focusPanel(page);
   await tabTo('[data-iri$="/into-bin"]');
   await workbench.page.keyboard.press("Enter");
   await page.locator('.current[data-iri$="/into-bin"]').waitFor();
@@ -52,10 +51,10 @@ step("the graph can be read in high contrast, and followed by the keyboard", asy
 step("the study can be read in high contrast, and the keyboard leads from a cell to its replay", async () => {
   await workbench.command("View: Focus First Editor Group");
   await workbench.command("RobBDD: Show Study…");
-  page = workbench.webview();
+  page = workbench.webview("Study");
   await page.getByRole("heading", { name: "3 hold, 1 violated" }).waitFor();
   await inBoth("study", page.locator("main h1, main h2, th, td button, td small, .clause span, .none, svg text, label"));
-  await workbench.page.keyboard.press("Control+2");
+  await workbench.focusPanel(page);
   await tabTo(".margins rect.violated");
   await tabTo("td:last-child button", "Shift+Tab");
   await workbench.page.keyboard.press("Enter");
@@ -63,10 +62,10 @@ step("the study can be read in high contrast, and the keyboard leads from a cell
 });
 
 step("the replay can be read in high contrast, and is played by the keyboard", async () => {
-  page = workbench.webview();
+  page = workbench.webview("Replay");
   await page.locator(".label", { hasText: "ball" }).waitFor();
   await inBoth("replay", page.locator(".title, .label, .row .text, .row .sign, .caption p, .tracks text, header button:enabled, .readout"));
-  await workbench.page.keyboard.press("Control+2");
+  await workbench.focusPanel(page);
   await tabTo("header button");
   await workbench.page.keyboard.press("Space");
   await page.getByRole("button", { name: "Play or pause" }).filter({ hasText: "⏸" }).waitFor();
@@ -94,7 +93,7 @@ step("in a narrow window nothing is cut off, and no name covers another", async 
   await workbench.screenshot("narrow-replay");
   for (const [tab, name] of [["Study run", "study"], ["Graph heights.bdd", "graph"]]) {
     await workbench.page.locator(".tab", { hasText: tab }).click();
-    page = workbench.webview();
+    page = workbench.webview(tab);
     await page.locator("header").waitFor();
     await noneCut("header button, header select, .legend li");
     await workbench.screenshot(`narrow-${name}`);
@@ -106,28 +105,32 @@ step("in a narrow window nothing is cut off, and no name covers another", async 
 async function inBoth(name, texts) {
   for (const scheme of Object.keys(HIGH_CONTRAST.schemes)) {
     await workbench.changeScheme(scheme, HIGH_CONTRAST.schemes);
-    // A page gets its colours a moment later.
-    const themed = scheme === "dark" ? ":not(.vscode-high-contrast-light)" : ".vscode-high-contrast-light";
-    await page?.locator(`body.vscode-high-contrast${themed}`).waitFor();
-    await workbench.screenshot(`contrast-${name}-${scheme}`);
-    const found = await texts.evaluateAll((elements) =>
-      elements
-        .filter((element) => element.textContent.trim() !== "" && element.getClientRects().length > 0)
-        .map((element) => {
-          const { fill, color } = getComputedStyle(element);
-          let behind = element;
-          while (behind.parentElement !== null && /^rgba\(.*, 0(\.\d+)?\)$/.test(getComputedStyle(behind).backgroundColor)) {
-            behind = behind.parentElement;
-          }
-          const ground = getComputedStyle(behind).backgroundColor;
-          return { text: element.textContent, colour: element instanceof SVGElement ? fill : color, ground };
-        }),
-    );
-    assert.ok(found.length > 0);
-    for (const { text, colour, ground } of found) {
-      const measured = contrast(colour, ground);
-      assert.ok(measured >= READABLE, `${scheme}: "${text}" has ${measured.toFixed(1)}: ${colour} on ${ground}`);
+    if (page !== undefined) {
+      await workbench.themed(page, HIGH_CONTRAST.schemes[scheme]);
     }
+    await eventually(() => areReadable(scheme, texts));
+    await workbench.screenshot(`contrast-${name}-${scheme}`);
+  }
+}
+
+async function areReadable(scheme, texts) {
+  const found = await texts.evaluateAll((elements) =>
+    elements
+      .filter((element) => element.textContent.trim() !== "" && element.getClientRects().length > 0)
+      .map((element) => {
+        const { fill, color } = getComputedStyle(element);
+        let behind = element;
+        while (behind.parentElement !== null && /^rgba\(.*, 0(\.\d+)?\)$/.test(getComputedStyle(behind).backgroundColor)) {
+          behind = behind.parentElement;
+        }
+        const ground = getComputedStyle(behind).backgroundColor;
+        return { text: element.textContent, colour: element instanceof SVGElement ? fill : color, ground };
+      }),
+  );
+  assert.ok(found.length > 0);
+  for (const { text, colour, ground } of found) {
+    const measured = contrast(colour, ground);
+    assert.ok(measured >= READABLE, `${scheme}: "${text}" has ${measured.toFixed(1)}: ${colour} on ${ground}`);
   }
 }
 
@@ -136,7 +139,7 @@ async function tabTo(selector, key = "Tab") {
   const focused = page.locator(":focus");
   for (let presses = 0; presses < 60; presses += 1) {
     await workbench.page.keyboard.press(key);
-    if ((await focused.count()) > 0 && (await focused.evaluate((element, wanted) => element.matches(wanted), selector))) {
+    if ((await page.locator(selector).and(focused).count()) > 0) {
       const shown = await focused.evaluate((element) => {
         const style = getComputedStyle(element.querySelector(":scope > rect, :scope > polygon") ?? element);
         return (style.outlineStyle !== "none" && style.outlineWidth !== "0px") || style.strokeDasharray !== "none";
@@ -149,33 +152,35 @@ async function tabTo(selector, key = "Tab") {
 }
 
 async function noneCut(selector) {
-  const cut = await page.locator(selector).evaluateAll((elements) =>
-    elements
-      .filter((element) => {
-        const { left, right } = element.getBoundingClientRect();
-        return left < 0 || right > innerWidth || element.scrollWidth > element.clientWidth + 1;
-      })
-      .map((element) => element.textContent),
-  );
-  assert.deepEqual(cut, []);
+  await eventually(async () => {
+    const cut = await page.locator(selector).evaluateAll((elements) =>
+      elements
+        .filter((element) => {
+          const { left, right } = element.getBoundingClientRect();
+          return left < 0 || right > innerWidth || element.scrollWidth > element.clientWidth + 1;
+        })
+        .map((element) => element.textContent),
+    );
+    assert.deepEqual(cut, []);
+  });
 }
 
 async function noneCovered(selector) {
-  const covered = await page.locator(selector).evaluateAll((elements) => {
-    const boxes = elements.map((element) => ({ name: element.textContent, box: element.getBoundingClientRect() }));
-    return boxes.flatMap(({ name, box }, index) =>
-      boxes
-        .slice(index + 1)
-        .filter(({ box: other }) => box.left < other.right - 1 && other.left < box.right - 1 && box.top < other.bottom - 1 && other.top < box.bottom - 1)
-        .map((other) => `${name} and ${other.name}`),
-    );
+  await eventually(async () => {
+    const covered = await page.locator(selector).evaluateAll((elements) => {
+      const boxes = elements.map((element) => ({ name: element.textContent, box: element.getBoundingClientRect() }));
+      return boxes.flatMap(({ name, box }, index) =>
+        boxes
+          .slice(index + 1)
+          .filter(({ box: other }) => box.left < other.right - 1 && other.left < box.right - 1 && box.top < other.bottom - 1 && other.top < box.bottom - 1)
+          .map((other) => `${name} and ${other.name}`),
+      );
+    });
+    assert.deepEqual(covered, []);
   });
-  assert.deepEqual(covered, []);
 }
 
 /** Execute four scenarios, of which physics lets one fail: the ball under the suction cup meets the rim of the bin. */
-async function run(workspace) {
-  const robbdd = join(dirname(LANGUAGE_SERVER), "robbdd");
-  const { stdout } = await promisify(execFile)(robbdd, ["run", join(workspace, FILE), "--where", 'scale = "1.1"']).catch((error) => error);
-  assert.match(stdout, /3 hold, 1 violated/);
+function run(workspace) {
+  return execute(join(workspace, FILE), 'scale = "1.1"', /3 hold, 1 violated/);
 }

@@ -1,5 +1,4 @@
 // The Gherkin of a model beside its text: it follows every edit and the cursor, and outlives a mistake.
-import assert from "node:assert/strict";
 import { story } from "./harness/story.mjs";
 
 const FILE = "pickplace/pickplace.bdd";
@@ -23,12 +22,12 @@ step("the command opens the feature beside the model", async () => {
   await workbench.openFile(FILE);
   await workbench.codeLens("Run").first().waitFor();
   await workbench.command("RobBDD: Preview Gherkin");
-  await shown(/Feature:\s/).waitFor();
-  await shown(/#\s4\sscenarios/).waitFor();
+  await shown(/Feature:\s/).first().waitFor();
+  await shown(/#\s4\sscenarios/).first().waitFor();
 });
 
 step("the cursor in a clause shows its step", async () => {
-  const { line, column } = await placeOf("is held by");
+  const { line, column } = await session.placeOf(FILE, "is held by");
   await workbench.goTo(line, column);
   await shown(/is\sheld\sby/).first().waitFor();
   await workbench.page.locator(".editor-group-container:not(.active) .cdr[class*=ced-]").first().waitFor();
@@ -36,26 +35,18 @@ step("the cursor in a clause shows its step", async () => {
 });
 
 step("an edit changes the feature, unsaved", async () => {
-  const { line, column } = await placeOf("So That");
+  const { line, column } = await session.placeOf(FILE, "So That");
   await workbench.goTo(line, column + 'So That "'.length);
   await workbench.type("quickly ");
   await workbench.goTo(1, 1);
-  await shown(/So\sthat\squickly/).waitFor();
+  await shown(/So\sthat\squickly/).first().waitFor();
 });
 
 step("a mistake keeps the last good feature and says so", async () => {
   await workbench.type("oops");
-  await shown(/#\sout\sof\sdate/).waitFor();
-  assert.ok((await shown(/So\sthat\squickly/).count()) > 0);
+  await shown(/#\sout\sof\sdate/).first().waitFor();
+  await shown(/So\sthat\squickly/).first().waitFor();
   await workbench.screenshot("preview-out-of-date");
   await workbench.undo();
-  await shown(/#\s4\sscenarios/).waitFor();
+  await shown(/#\s4\sscenarios/).first().waitFor();
 });
-
-/** Line and column, from 1, of a text in the model on disk. */
-async function placeOf(text) {
-  const lines = (await session.text(FILE)).split("\n");
-  const line = lines.findIndex((entry) => entry.includes(text));
-  assert.ok(line >= 0);
-  return { line: line + 1, column: lines[line].indexOf(text) + 1 };
-}

@@ -2,9 +2,8 @@
 import assert from "node:assert/strict";
 import { chmod, readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { EXAMPLES, LANGUAGE_SERVER, required } from "./harness/checkout.mjs";
-import { Session } from "./harness/session.mjs";
+import { LANGUAGE_SERVER } from "./harness/checkout.mjs";
+import { story } from "./harness/story.mjs";
 
 /** Milliseconds that activation may take of the extension host, as the editor itself counts them. */
 const LONGEST = 100;
@@ -12,29 +11,22 @@ const LONGEST = 100;
 const STARTS = 5;
 const STARTED = "started.txt";
 
-/** @type {Session} */
+/** @type {import("./harness/session.mjs").Session} */
 let session;
-let passed = false;
 
-before(async () => {
-  const server = required(LANGUAGE_SERVER, "install robbdd-tools, or name its robbdd-lsp in ROBBDD_LSP");
-  session = await Session.open({
-    workspace: EXAMPLES,
-    settings: { "robbdd.server.path": "${workspaceFolder}/server.sh" },
-    prepare: async (workspace) => {
-      // Tells of each start of the server.
-      const program = join(workspace, "server.sh");
-      await writeFile(program, `#!/bin/sh\necho started >> "${join(workspace, STARTED)}"\nexec "${server}" "$@"\n`);
-      await chmod(program, 0o755);
-    },
-  });
+const step = story("start", (opened) => {
+  session = opened;
+}, {
+  settings: { "robbdd.server.path": "${workspaceFolder}/server.sh" },
+  prepare: async (workspace) => {
+    // Tells of each start of the server.
+    const program = join(workspace, "server.sh");
+    await writeFile(program, `#!/bin/sh\necho started >> "${join(workspace, STARTED)}"\nexec "${LANGUAGE_SERVER}" "$@"\n`);
+    await chmod(program, 0o755);
+  },
 });
 
-after(async () => {
-  await session?.close(passed ? undefined : "start-failed");
-});
-
-test("in a folder with models the extension is active soon, and starts no server before one is shown", async (context) => {
+step("in a folder with models the extension is active soon, and starts no server before one is shown", async (context) => {
   const { workbench, workspace } = session;
   const times = [];
   while (times.length < STARTS && Math.min(...times) >= LONGEST) {
@@ -55,7 +47,7 @@ test("in a folder with models the extension is active soon, and starts no server
   assert.equal(await readFile(join(workspace, STARTED), "utf8"), "started\n");
 });
 
-test("a new line goes on with a table", async () => {
+step("a new line goes on with a table", async () => {
   const { workbench } = session;
   await workbench.openFile("sorting/sorting.bdd");
   const last = (await session.text("sorting/sorting.bdd")).split("\n").findLastIndex((line) => line.includes("| obj set"));
@@ -64,7 +56,6 @@ test("a new line goes on with a table", async () => {
   await workbench.page.keyboard.press("Enter");
   await workbench.type("NEXT");
   await workbench.lines("| NEXT").first().waitFor();
-  passed = true;
 });
 
 /** What the editor says that loading and activating the extension took of the extension host, in milliseconds. */

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { EXAMPLES } from "./harness/checkout.mjs";
+import { TRY, eventually, timed } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
 import { TestingView } from "./harness/testingView.mjs";
 
@@ -36,9 +37,8 @@ step("the first scenarios are listed at once, with what lists more", async () =>
   await tests.show();
   await tests.expand("tidy-bench");
   await tests.row(new RegExp(`part-to-bin.*${COUNT.toLocaleString("en")} scenarios`)).waitFor();
-  await timed("the first", async () => {
-    await tests.row("part-to-bin").first().click();
-    await workbench.page.keyboard.press("ArrowRight");
+  await told("the first", async () => {
+    await tests.expand("part-to-bin");
     await tests.row("scenario 1,").first().waitFor();
   });
 });
@@ -47,9 +47,8 @@ for (const [first, last] of [[201, 400], [401, 800], [801, 1600]]) {
   const words = (number) => number.toLocaleString("en");
   step(`scenarios ${first} to ${last} are listed when they are asked for`, async () => {
     const more = tests.row(`More: ${words(first)} to ${words(last)}`);
-    await workbench.page.keyboard.press("End");
-    await more.waitFor();
-    await timed(`${first} to ${last}`, async () => {
+    await atTheEnd(more);
+    await told(`${first} to ${last}`, async () => {
       await more.click();
       await workbench.page.keyboard.press("ArrowRight");
       await more.waitFor({ state: "detached" });
@@ -58,15 +57,20 @@ for (const [first, last] of [[201, 400], [401, 800], [801, 1600]]) {
 }
 
 step("the rows end with what is not listed yet", async () => {
-  await workbench.page.keyboard.press("End");
-  await tests.row(/More: 1,601 to 3,200/).waitFor();
+  await atTheEnd(tests.row(/More: 1,601 to 3,200/));
   await tests.row("scenario 1600,").waitFor();
   await workbench.screenshot("testing-thousands");
 });
 
+/** Go to the last row, which is this when all have come. */
+async function atTheEnd(row) {
+  await eventually(async () => {
+    await workbench.page.keyboard.press("End");
+    await row.waitFor({ timeout: TRY });
+  });
+}
+
 /** Tell how long something took. */
-async function timed(name, task) {
-  const begun = Date.now();
-  await task();
-  console.log(`${name} of ${COUNT} scenarios: ${Date.now() - begun} ms`);
+async function told(name, task) {
+  console.log(`${name} of ${COUNT} scenarios: ${Math.round(await timed(task))} ms`);
 }

@@ -11,6 +11,8 @@ export const SCREENSHOTS = join(ROOT, "build", "workbench");
 export const VSIX = process.env.ROBBDD_VSIX ?? join(ROOT, "client-vscode", "robbdd-workbench.vsix");
 export const LANGUAGE_SERVER = process.env.ROBBDD_LSP ?? join(ROOT, ".venv", "bin", "robbdd-lsp");
 export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+/** How many times slower than this machine's the processor of the window is. */
+export const SLOWDOWN = Number(process.env.ROBBDD_WORKBENCH_SLOWDOWN ?? 1);
 
 /** Return a path, or fail with what makes it. */
 export function required(path, remedy) {

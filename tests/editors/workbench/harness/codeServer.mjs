@@ -7,8 +7,8 @@ import { createServer } from "node:net";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { codeServerEntry } from "./checkout.mjs";
+import { PATIENCE } from "./patience.mjs";
 
-const START_LIMIT = 60_000;
 const STOP_LIMIT = 5_000;
 
 const QUIET = {
@@ -164,7 +164,7 @@ export class CodeServer {
   }
 
   async #answering() {
-    const limit = Date.now() + START_LIMIT;
+    const limit = Date.now() + PATIENCE;
     while (this.#process.exitCode === null && Date.now() < limit) {
       try {
         const response = await fetch(`http://127.0.0.1:${this.#port}/healthz`);

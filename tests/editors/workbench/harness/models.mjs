@@ -1,15 +1,29 @@
-// Models that stories need beside the examples, made of them.
+// Models that stories need beside the examples, made of them; runs of the command line that come before a story.
 import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
+import { mkdir, writeFile } from "node:fs/promises";
+import { basename, dirname, join } from "node:path";
+import { promisify } from "node:util";
+import { LANGUAGE_SERVER } from "./checkout.mjs";
 
-const REPETITIONS = 10;
+/** Steps of a user's own, under which the ball of the pick-and-place example is on its way for ever. */
+const ENDLESS = `import time
 
-/** The example with its first scenario repeated under other names: long enough to be cancelled while it runs. */
-export function lengthened(text) {
-  const block = /^ {8}Scenario (?<name>[\w-]+) \{\n[^]*?^ {8}\}\n/m.exec(text);
-  assert.ok(block !== null, "the example has no scenario of the expected layout");
-  const { name } = block.groups;
-  const copies = Array.from({ length: REPETITIONS }, (_, index) => block[0].replace(name, `${name}-${index}`));
-  return text.replace(block[0], copies.join(""));
+from behave import when
+
+
+@when('"{agent}" picks "env:ball0" and places it at "{workspace}"')
+def wait(context, agent, workspace):
+    while True:
+        time.sleep(1)
+`;
+
+/** Write a model of the pick-and-place example whose run judges the cube, and then lasts until it is cancelled. */
+export async function writeEndless(path, text) {
+  const steps = join(dirname(path), "steps");
+  await mkdir(steps, { recursive: true });
+  await writeFile(path, text);
+  await writeFile(join(steps, basename(path).replace(".bdd", "_steps.py")), ENDLESS);
 }
 
 /** The pick-and-place example in a namespace of its own, its story and its scenario under other names. */
@@ -18,4 +32,12 @@ export function renamed(text, namespace, story, scenario) {
     .replace("https://example.org/robbdd/criteria/", `https://example.org/robbdd/${namespace}/`)
     .replace("tidy-bench", story)
     .replace("part-to-bin", scenario);
+}
+
+/** Execute the scenarios of a model that have these values, and keep the run; its summary is expected to read so. */
+export async function execute(path, values, expected) {
+  const robbdd = join(dirname(LANGUAGE_SERVER), "robbdd");
+  // It ends with 1 where something is violated.
+  const { stdout } = await promisify(execFile)(robbdd, ["run", path, "--where", values]).catch((error) => error);
+  assert.match(stdout, expected);
 }

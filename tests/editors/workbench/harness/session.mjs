@@ -1,14 +1,12 @@
 // A whole session: a copy of a workspace, a code-server on it, a browser that shows it; all of it gone at the end.
+import assert from "node:assert/strict";
 import { cp, mkdir, mkdtemp, readFile, readdir, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { setTimeout as sleep } from "node:timers/promises";
-import { CHROMIUM, SCREENSHOTS, VSIX, playwright, required } from "./checkout.mjs";
+import { CHROMIUM, SCREENSHOTS, SLOWDOWN, VSIX, playwright, required } from "./checkout.mjs";
 import { CodeServer } from "./codeServer.mjs";
+import { LONG, PATIENCE, eventually } from "./patience.mjs";
 import { Workbench } from "./workbench.mjs";
-
-/** Between two looks into the store, ms. */
-const PAUSE = 100;
 
 const LOOPBACK = new Set(["127.0.0.1", "localhost", "[::1]"]);
 
@@ -63,19 +61,33 @@ export class Session {
     await mkdir(state);
     this.server = new CodeServer({ state, ...options });
     await this.server.start(required(VSIX, "run npm run package in client-vscode"));
-    this.#browser = await playwright().chromium.launch({ executablePath: CHROMIUM, args: [...CHROMIUM_FLAGS, ...graphics] });
+    this.#browser = await playwright().chromium.launch({
+      executablePath: CHROMIUM,
+      args: [...CHROMIUM_FLAGS, ...graphics],
+      timeout: PATIENCE,
+    });
     const context = await this.#browser.newContext({ viewport: { width: 1360, height: 1040 } });
     await context.route(
       (url) => !LOOPBACK.has(url.hostname) && url.protocol.startsWith("http"),
       (route) => route.abort("blockedbyclient"),
     );
     this.#page = await context.newPage();
+    const devtools = await context.newCDPSession(this.#page);
+    await devtools.send("Emulation.setCPUThrottlingRate", { rate: SLOWDOWN });
     this.workbench = await Workbench.open(this.#page, this.server.address(this.workspace));
   }
 
   /** The text of a file of the workspace as it is on disk. */
   text(path) {
     return readFile(join(this.workspace, path), "utf8");
+  }
+
+  /** Line and column, from 1, of a text in a file on disk: in the first line that has it, and the other words too. */
+  async placeOf(path, text, beside = "") {
+    const lines = (await this.text(path)).split("\n");
+    const line = lines.findIndex((entry) => entry.includes(text) && entry.includes(beside));
+    assert.ok(line >= 0, `${path} has no line with ${text} and ${beside}`);
+    return { line: line + 1, column: lines[line].indexOf(text) + 1 };
   }
 
   /** The results of all runs that the workspace's store holds and that have ended, oldest first. */
@@ -89,16 +101,14 @@ export class Session {
   }
 
   /** Do what begins a run, wait until it has ended, and return its results. A short run leaves no other lasting sign. */
-  async runOf(action, limit) {
+  async runOf(action) {
     const { length } = await this.runs();
     await action();
-    for (const deadline = Date.now() + limit; Date.now() < deadline; await sleep(PAUSE)) {
+    return eventually(async () => {
       const ended = await this.runs();
-      if (ended.length > length) {
-        return ended.at(-1);
-      }
-    }
-    throw new Error(`no run has ended within ${limit} ms`);
+      assert.ok(ended.length > length, "no run has ended");
+      return ended.at(-1);
+    }, LONG);
   }
 
   /** Close everything. With the name of a failure a last picture and the server's log are kept. */

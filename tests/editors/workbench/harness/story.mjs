@@ -10,7 +10,8 @@ import { Session } from "./session.mjs";
  * @param {string} name of that picture
  * @param {(session: Session) => void} opened takes the session before the first step
  * @param {Partial<Parameters<typeof Session.open>[0]>} [options] of the session
- * @returns {(title: string, body: () => Promise<void>) => void} what adds a step: a later one stands on the earlier ones
+ * @returns {(title: string, body: (context: import("node:test").TestContext) => Promise<void>) => void} what adds a step:
+ *   a later one stands on the earlier ones
  */
 export function story(name, opened, { settings = {}, ...options } = {}) {
   /** @type {Session} */
@@ -32,10 +33,10 @@ export function story(name, opened, { settings = {}, ...options } = {}) {
   });
 
   return function step(title, body) {
-    test(title, async () => {
+    test(title, async (context) => {
       assert.equal(failed, undefined, `the step before failed: ${failed}`);
       try {
-        await body();
+        await body(context);
       } catch (error) {
         failed = title;
         throw error;

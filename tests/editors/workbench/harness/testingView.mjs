@@ -1,7 +1,11 @@
 // The Testing view of a workbench: rows of its tree with their states.
-import { PATIENCE } from "./workbench.mjs";
+import { readFile } from "node:fs/promises";
+import { join } from "node:path";
+import { EXAMPLES } from "./checkout.mjs";
+import { LONG, TRY, eventually } from "./patience.mjs";
+import { story } from "./story.mjs";
 
-const MOST_TRIES = 6;
+const EXPANDED = '[aria-expanded="true"]';
 
 export class TestingView {
   /** @param {import("./workbench.mjs").Workbench} workbench */
@@ -11,7 +15,8 @@ export class TestingView {
   }
 
   async show() {
-    await this.page.locator('.activitybar .action-label[aria-label^="Testing"]').click();
+    await this.workbench.command("Testing: Focus on Test Explorer View");
+    await this.page.locator(".test-explorer-tree").waitFor();
   }
 
   /** Rows of the tree by their words. */
@@ -25,25 +30,35 @@ export class TestingView {
     return this.row(text).filter({ has: icon });
   }
 
+  /** Wait until a row shows a state; executing comes before it. */
+  async turns(state, text) {
+    await this.rowsThat(state, text).first().waitFor({ timeout: LONG });
+  }
+
   async expand(text) {
     const found = this.row(text).first();
-    const expanded = found.and(this.page.locator('[aria-expanded="true"]'));
+    const expanded = found.and(this.page.locator(EXPANDED));
     await found.waitFor();
     // While the tree is being filled its rows move, and a click may meet nothing.
-    for (let tries = 0; tries < MOST_TRIES && !(await expanded.isVisible()); tries += 1) {
-      // The words about the row that was pointed at last may cover this one.
-      await this.page.mouse.move(0, 0);
-      await found.click();
-      await this.page.keyboard.press("ArrowRight");
-      await expanded.waitFor({ timeout: PATIENCE / MOST_TRIES }).catch(() => {});
-    }
-    await expanded.waitFor();
+    await eventually(async () => {
+      if (!(await expanded.isVisible())) {
+        await this.#select(found);
+        await this.page.keyboard.press("ArrowRight");
+      }
+      await expanded.waitFor({ timeout: TRY });
+    });
   }
 
   async collapse(text) {
-    await this.row(text).first().click();
-    await this.page.keyboard.press("ArrowLeft");
-    await this.row(text).first().and(this.page.locator('[aria-expanded="false"]')).waitFor();
+    const found = this.row(text).first();
+    const collapsed = found.and(this.page.locator('[aria-expanded="false"]'));
+    await eventually(async () => {
+      if (!(await collapsed.isVisible())) {
+        await this.#select(found);
+        await this.page.keyboard.press("ArrowLeft");
+      }
+      await collapsed.waitFor({ timeout: TRY });
+    });
   }
 
   async runRow(text) {
@@ -55,28 +70,47 @@ export class TestingView {
     const found = this.row(text).first();
     const button = found.locator(icon).first();
     await found.waitFor();
-    for (let tries = 1; ; tries += 1) {
-      try {
-        await found.hover({ timeout: PATIENCE / MOST_TRIES });
-        await button.click({ timeout: PATIENCE / MOST_TRIES });
-        return;
-      } catch (error) {
-        // While the tree is being filled its rows move away from under the pointer.
-        if (tries === MOST_TRIES) {
-          throw error;
-        }
-        await this.page.mouse.move(0, 0);
-      }
-    }
+    // While the tree is being filled its rows move away from under the pointer.
+    await eventually(async () => {
+      await this.page.mouse.move(0, 0);
+      await found.hover({ timeout: TRY });
+      await button.click({ timeout: TRY });
+    });
   }
 
   /** Choose an entry of a row's menu. */
   async choose(text, entry) {
-    await this.row(text).first().click({ button: "right" });
+    const found = this.row(text).first();
     const item = this.page.locator(".context-view .action-menu-item", { hasText: entry }).first();
-    await item.waitFor();
+    await found.waitFor();
+    await eventually(async () => {
+      await this.#select(found, "right");
+      await item.waitFor({ timeout: TRY });
+    });
     // A click on an entry is swallowed while the menu is being opened.
     await item.hover();
     await this.page.keyboard.press("Enter");
+    await item.waitFor({ state: "hidden" });
   }
+
+  async #select(row, button = "left") {
+    // The words about the row that was pointed at last may cover this one.
+    await this.page.mouse.move(0, 0);
+    await row.click({ button, timeout: TRY });
+  }
+}
+
+/**
+ * A story that is told in the Testing view of the pick-and-place example.
+ *
+ * @param {string} name as `story` has it
+ * @param {(session: import("./session.mjs").Session, tests: TestingView) => void} opened takes what was opened
+ * @param {(text: string, workspace: string) => Promise<void>} prepare takes the text of the example's model
+ */
+export function testingStory(name, opened, prepare) {
+  return story(name, (session) => opened(session, new TestingView(session.workbench)), {
+    workspace: join(EXAMPLES, "pickplace"),
+    settings: { "testing.automaticallyOpenPeekView": "never" },
+    prepare: async (workspace) => prepare(await readFile(join(workspace, "pickplace.bdd"), "utf8"), workspace),
+  });
 }

@@ -1,9 +1,9 @@
 // The workbench as a person sees it: small helpers over its page.
+import assert from "node:assert/strict";
 import { mkdir } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { SCREENSHOTS } from "./checkout.mjs";
-
-export const PATIENCE = 60_000;
+import { PATIENCE, TRY, eventually } from "./patience.mjs";
 
 /** Colour schemes and the class that the window wears in each. */
 export const SCHEMES = { dark: "vs-dark", light: "vs" };
@@ -17,8 +17,18 @@ export const HIGH_CONTRAST = {
   schemes: { dark: "hc-black", light: "hc-light" },
 };
 
+/** The classes that the page of a panel wears in each of these. */
+const PAGE_CLASSES = {
+  "vs-dark": ".vscode-dark",
+  vs: ".vscode-light",
+  "hc-black": ".vscode-high-contrast:not(.vscode-high-contrast-light)",
+  "hc-light": ".vscode-high-contrast-light",
+};
+
 const GROUP = ".editor-group-container.active";
 const EDITOR = `${GROUP} .editor-instance .monaco-editor`;
+const QUICK_INPUT = ".quick-input-widget .quick-input-filter input";
+const TOASTS = ".notifications-toasts .notification-list-item";
 
 export class Workbench {
   /** @param {import("playwright-core").Page} page */
@@ -26,33 +36,50 @@ export class Workbench {
     this.page = page;
     this.errors = page.locator(`${EDITOR} .squiggly-error`);
     this.status = page.locator(`[id="robbdd.robbdd-workbench.robbdd.status"]`);
-    this.notifications = page.locator(".notifications-toasts .notification-list-item");
+    this.notifications = page.locator(TOASTS);
   }
 
   /** Open the workbench at an address and wait until it can be used. */
   static async open(page, address) {
     page.setDefaultTimeout(PATIENCE);
     await page.goto(address);
-    await page.locator(".explorer-folders-view .monaco-list-row").first().waitFor();
-    return new Workbench(page);
+    const workbench = new Workbench(page);
+    await workbench.#restored();
+    return workbench;
   }
 
   /** Open a file of the workspace by its name or the end of its path. */
   async openFile(path) {
-    const input = await this.#quickInput("Control+P");
-    await input.fill(path);
     const name = path.split("/").at(-1);
-    await this.page.locator(".quick-input-list .monaco-list-row.focused", { hasText: name }).waitFor();
+    await this.#ask("Control+P", path);
+    await this.#focusedEntry(name).waitFor();
     await this.page.keyboard.press("Enter");
     await this.page.locator(`${GROUP} .tab.active[data-resource-name="${name}"]`).waitFor();
-    await this.page.locator(`${EDITOR} .view-line`).first().waitFor();
+    // The lines of the file before stay for a moment.
+    await this.page.locator(`${EDITOR}[data-uri$="/${name}"] .view-line`).first().waitFor();
   }
 
   /** Run a command of the palette by its full title. */
   async command(title) {
-    const input = await this.#quickInput("F1");
-    await input.fill(`>${title}`);
-    await this.page.locator(".quick-input-list .monaco-list-row.focused", { hasText: title }).waitFor();
+    await eventually(async () => {
+      await this.#ask("F1", `>${title}`);
+      try {
+        await this.#focusedEntry(title).waitFor({ timeout: TRY });
+      } catch (error) {
+        // What is offered later does not come into a list that is open.
+        await this.page.keyboard.press("Escape");
+        throw error;
+      }
+    });
+    await this.page.keyboard.press("Enter");
+  }
+
+  /** Choose an entry of the list that a command has opened. */
+  async pick(text) {
+    const input = this.page.locator(QUICK_INPUT);
+    await this.page.locator(".quick-input-list .monaco-list-row", { hasText: text }).first().waitFor();
+    await input.fill(text);
+    await this.#focusedEntry(text).waitFor();
     await this.page.keyboard.press("Enter");
   }
 
@@ -64,10 +91,15 @@ export class Workbench {
 
   /** Put the cursor before a character; lines and columns count from 1. */
   async goTo(line, column) {
-    const input = await this.#quickInput("Control+G");
-    await input.fill(`:${line}:${column}`);
+    await this.#ask("Control+G", `:${line}:${column}`);
     await this.page.keyboard.press("Enter");
-    await this.page.locator(".quick-input-widget").waitFor({ state: "hidden" });
+    await this.cursorAt(line, column);
+    await this.page.locator(`${EDITOR}.focused`).waitFor();
+  }
+
+  /** Wait until the cursor of the active editor is in a line, and before a character of it where one is named. */
+  async cursorAt(line, column = "\\d+") {
+    await this.page.locator(".statusbar-item", { hasText: new RegExp(`Ln ${line}, Col ${column}(?!\\d)`) }).waitFor();
   }
 
   /** Give the active editor the keyboard. */
@@ -162,22 +194,54 @@ export class Workbench {
     return found.jsonValue();
   }
 
-  /** Wait for the toast with this text and return it. */
+  /** Wait for the toast with this text and return it. It stays while it is pointed at. */
   async notification(text) {
     const toast = this.notifications.filter({ hasText: text }).first();
-    await toast.waitFor();
+    await toast.hover();
     return toast;
   }
 
-  /** The page of the panel with a web view that is in front: the last, since for a moment a panel stays in sight beside the one that takes its place. */
-  webview() {
-    return this.page.locator("iframe.webview.ready:visible").last().contentFrame().frameLocator("#active-frame");
+  /** Wait for a toast that says this, be it for a moment only. */
+  async said(pattern) {
+    // Looked for within the page, with each picture: a question from here may come too late.
+    await this.page.waitForFunction(
+      ([selector, source]) => [...document.querySelectorAll(selector)].some((item) => new RegExp(source).test(item.textContent)),
+      [TOASTS, pattern.source],
+      { polling: "raf" },
+    );
+  }
+
+  /**
+   * The page of the panel whose title has these words: the last in sight, and none but that, since for a moment a panel
+   * stays beside the one that takes its place.
+   */
+  webview(title) {
+    const inSight = this.page.locator("iframe.webview.ready:visible").last();
+    return inSight.contentFrame().frameLocator(`#active-frame[title*="${title}"]`);
+  }
+
+  /** Wait until the page of a panel has the colours of the scheme whose class the window wears. */
+  async themed(page, windowClass) {
+    await page.locator(`body${PAGE_CLASSES[windowClass]}`).waitFor();
+  }
+
+  /** Give the page of a panel, in the second group of editors, the keyboard. */
+  async focusPanel(page) {
+    await this.page.keyboard.press("Control+2");
+    await eventually(async () => {
+      assert.ok(await page.locator("body").evaluate(() => document.hasFocus()), "the page has not got the keyboard");
+    });
   }
 
   /** Load the window again, as after a crash or an update, and wait until it can be used. */
   async reload() {
     await this.page.reload();
-    await this.page.locator(".explorer-folders-view .monaco-list-row").first().waitFor();
+    await this.#restored();
+  }
+
+  /** A view in the side bar has its rows when the window has come back, whichever view that is. */
+  async #restored() {
+    await this.page.locator(".part.sidebar .monaco-list-row").first().waitFor();
   }
 
   /** Write a picture of the whole window below the build output. */
@@ -188,10 +252,17 @@ export class Workbench {
     return path;
   }
 
-  async #quickInput(key) {
-    const input = this.page.locator(".quick-input-widget .quick-input-filter input");
+  /** Open the quick input by a key and put a text into it. */
+  async #ask(key, text) {
+    // What was asked before may still be going away, and take the key for itself.
+    await this.page.locator(".quick-input-widget").waitFor({ state: "hidden" });
     await this.page.keyboard.press(key);
-    await input.waitFor();
-    return input;
+    await this.page.locator(QUICK_INPUT).fill(text);
+  }
+
+  /** The entry of the quick input's list that Enter takes, if its label has this text. */
+  #focusedEntry(text) {
+    const label = this.page.locator(".label-name", { hasText: text });
+    return this.page.locator(".quick-input-list .monaco-list-row.focused").filter({ has: label });
   }
 }
