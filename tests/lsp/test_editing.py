@@ -58,7 +58,7 @@ async def test_a_scene_is_split_off_into_a_new_file(editor: Editor) -> None:
     assert edit is not None
     changes = list(edit.document_changes or ())
     assert isinstance(changes[0], types.CreateFile)
-    assert len(changes) == 4
+    assert len(changes) == 5
 
 
 async def test_the_file_of_an_import_is_made_where_the_client_makes_files(editor: Editor) -> None:

@@ -115,6 +115,33 @@ async def test_variables_clauses_scenarios_and_events_are_renamed_in_closed_file
     assert await rename(editor, at, "renamed") == users
 
 
+async def test_a_refactoring_right_after_opening_knows_the_closed_files_that_it_concerns(scene: Editor) -> None:
+    place = scene.position("scene (ns=env)")
+    params = types.CodeActionParams(
+        text_document=types.TextDocumentIdentifier(uri=scene.uri),
+        range=types.Range(start=place, end=place),
+        context=types.CodeActionContext(diagnostics=[], only=["refactor.extract"]),
+    )
+    (action,) = list(await scene.client.text_document_code_action_async(params) or ())
+    assert isinstance(action, types.CodeAction)
+    assert action.edit is not None
+    edits = [change for change in action.edit.document_changes or () if isinstance(change, types.TextDocumentEdit)]
+    changed = {edit.text_document.uri.rsplit("/", 1)[-1] for edit in edits}
+    assert changed == {"bench_scene.scene", "bench.scene", "pickplace.bdd", "bench.scenex"}
+
+
+async def test_names_linked_right_after_opening_are_not_used_in_closed_files(editor: Editor) -> None:
+    # So many that reading them all takes longer than the request does.
+    for number in range(300):
+        text = (
+            f'import "bench.scene"\nns x = "https://example.org/{number}/"\nobj set (ns=x) set{number} {{ object a }}\n'
+        )
+        editor.path.with_name(f"other{number}.scene").write_text(text, encoding="utf-8")
+    scene = opened(editor, "bench.scene")
+    params = types.LinkedEditingRangeParams(**scene.at("object bin_ri", after=True))
+    assert await scene.client.text_document_linked_editing_range_async(params) is None
+
+
 async def test_hover_tells_of_uses_in_closed_files(scene: Editor) -> None:
     async with asyncio.timeout(PATIENCE):
         while "so far" in (told := await hovered(scene, "object bin_ri")):

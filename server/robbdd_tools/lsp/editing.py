@@ -95,6 +95,7 @@ def _register_linked(server: RobbddServer) -> None:
             ranges = [ls.convert.range(document, span) for span in spans]
             return types.LinkedEditingRanges(ranges=ranges, word_pattern=r"[\w\-]*")
 
+        await ls.importers.looked_around()
         return await ls.analyse(find)
 
 

@@ -115,6 +115,7 @@ def _register_actions(server: RobbddServer) -> None:
                 actions += source_actions(snapshot, uri, selected, ls.findings)
             return actions
 
+        await ls.importers.looked_around()
         return await ls.analyse(find)
 
 

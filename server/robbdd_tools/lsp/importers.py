@@ -34,6 +34,7 @@ class Importers:
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
         self._known: dict[str, tuple[float, ImportGraph]] = {}
+        self._looking: asyncio.Task[bool] | None = None
 
     async def graph(self, uri: str | None = None) -> ImportGraph:
         """Return what the files of the workspace import; for a file outside of it, those in its folder and below."""
@@ -93,7 +94,23 @@ class Importers:
 
     async def look_around(self) -> None:
         """Look on disk for the files that import open ones, and publish what these mean for them."""
+        await self._publish_after(self._begin())
+
+    def begin_looking(self) -> None:
+        """Do as ``look_around``, behind what is asked for meanwhile."""
+        self._server.spawn(self._publish_after(self._begin()))
+
+    async def looked_around(self) -> None:
+        """Wait for the look on disk that is under way, if any: whoever changes names must know all that use them."""
+        if self._looking is not None:
+            await asyncio.wait([self._looking])
+
+    def _begin(self) -> asyncio.Task[bool]:
         self._known.clear()
-        if await self.load(self._server.opened()):
+        self._looking = asyncio.get_running_loop().create_task(self.load(list(self._server.opened())))
+        return self._looking
+
+    async def _publish_after(self, loaded: asyncio.Task[bool]) -> None:
+        if await loaded:
             for uri in self._server.opened():
                 await self._server.publish(uri)

@@ -121,9 +121,10 @@ class RobbddServer(LanguageServer):
 
     async def text_changed(self, uri: str, version: int, text: str) -> None:
         """Take a new text of an open document and publish what it means."""
-        if uri not in self._opened:
-            self.spawn(self.importers.look_around())
+        is_new = uri not in self._opened
         self._opened.setdefault(uri)
+        if is_new:
+            self.importers.begin_looking()
         self.requests.text_changed(uri)
         await self._in_thread(lambda: self.project.open(uri, version, text))
         await self.publish(uri)
