@@ -34,6 +34,18 @@ def test_a_graph_survives_every_format(form: str) -> None:
     assert normal(parse(serialize(graph, form), form)) == normal(graph)
 
 
+@pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("back", ["_:head", "_:one", "_:two"])
+def test_a_list_that_leads_back_into_itself_survives_every_format(form: str, back: str) -> None:
+    text = f"""@prefix rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> .
+        <https://x/node> <https://x/items> _:head .
+        _:head rdf:first 1; rdf:rest _:one .
+        _:one rdf:first 2; rdf:rest _:two .
+        _:two rdf:first 3; rdf:rest {back} ."""
+    graph = parse(text, "ttl")
+    assert isomorphic(parse(serialize(graph, form), form), graph)
+
+
 def relabelled(node: Node) -> Node:
     return BNode(f"x{node}") if isinstance(node, BNode) else node
 

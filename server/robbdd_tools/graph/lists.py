@@ -44,13 +44,12 @@ class Lists:
         return sum(1 for _ in graph.subjects(None, head)) == 1
 
     def _read(self, head: Node) -> None:
-        items: list[Node] = []
-        cells: list[Node] = []
+        items: dict[Node, Node] = {}
         cell = head
-        while cell in self._next and cell not in cells[-1:]:
-            cells.append(cell)
-            item, cell = self._next[cell]
-            items.append(item)
+        while cell in self._next and cell not in items:
+            item, rest = self._next[cell]
+            items[cell] = item
+            cell = rest
         if cell == self._nil:
-            self._lists[head] = tuple(items)
-            self._cells.update(cells)
+            self._lists[head] = tuple(items.values())
+            self._cells.update(items)

@@ -11,6 +11,7 @@ from robbdd_tools.graph.canonical import canonical
 from robbdd_tools.graph.contexts import ContextLoader, Json, UnknownContext
 from robbdd_tools.graph.jsonld import context_for, expanded
 from robbdd_tools.graph.libraries import compact, frame, json_object, triples
+from robbdd_tools.graph.lists import Lists
 from robbdd_tools.graph.prefixes import bind_prefixes, user_prefixes
 from robbdd_tools.graph.vocabulary import expand
 
@@ -51,14 +52,23 @@ def serialize(graph: Graph, format: str) -> str:
 
 
 def _turtle(graph: Graph) -> str:
-    """Return a graph as Turtle with every digit of its numbers: rdflib writes six."""
+    """Return a graph as Turtle.
+
+    With every digit of its numbers, of which rdflib writes six; lists that lead back into themselves, which rdflib
+    would follow for ever, are written cell by cell.
+    """
     from io import BytesIO
 
     from rdflib import Literal
-    from rdflib.namespace import XSD
+    from rdflib.namespace import RDF, XSD
     from rdflib.plugins.serializers.turtle import TurtleSerializer
 
+    lists = Lists(graph)
+
     class Exact(TurtleSerializer):
+        def isValidList(self, l_: Node) -> bool:
+            return l_ != RDF.nil and lists.items(l_) is not None
+
         def label(self, node: Node, position: int) -> str:
             short: str = super().label(node, position)
             if isinstance(node, Literal) and node.datatype == XSD.double and isinstance(node.value, float):
