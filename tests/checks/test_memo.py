@@ -6,14 +6,31 @@ from random import Random
 import pytest
 
 from checks.models import LINES, story
-from kit import FOLDER, MODEL, SCENE, TEMPLATE
+from kit import FOLDER, MODEL, SCENE, STORY, TEMPLATE
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.checks import memo
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.names.project import Project
+from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
+from robbdd_tools.names.elements import Site
+from robbdd_tools.names.project import Project, Snapshot
 
 URI = f"{FOLDER}main.bdd"
 FAULTY = story(LINES.replace("{ <arms.panda> }", "{ <places.tray_ws> }") + "var <fetch.part>: { }\n")
+SCENARIO = STORY[STORY.index("        Scenario bench") : STORY.rindex("}")]
+FAULTY_SCENARIOS = MODEL.replace(
+    SCENARIO,
+    SCENARIO
+    + SCENARIO.replace("bench-to-tray", "idle").replace("{ <arms.panda> }", "{ <places.tray_ws> }")
+    + SCENARIO.replace("bench-to-tray", "poor").replace("var <fetch.goal>: { <places.bench_ws>, <places.tray_ws> }", "")
+    + " ".join(SCENARIO.replace("bench-to-tray", "short").replace("var <fetch.part>: obj set <parts>", "").split())
+    + SCENARIO.replace("bench-to-tray", "asking").replace(
+        "            variation:",
+        "            Then: ( var thing exists in <fetch.goal> ) such that\n"
+        "                { lies: holds(<thing> is held by <fetch.robot>, from <end> until <end>) }\n"
+        "            variation:",
+    ),
+)
+"""A story whose scenarios have a finding each."""
 
 
 def project(scene: str = SCENE) -> Project:
@@ -48,7 +65,7 @@ EDITS: list[tuple[str, Callable[[str], str]]] = [
 
 
 @pytest.mark.parametrize("edit", [edit for _, edit in EDITS], ids=[name for name, _ in EDITS])
-@pytest.mark.parametrize("text", [MODEL, FAULTY], ids=["sound", "faulty"])
+@pytest.mark.parametrize("text", [MODEL, FAULTY, FAULTY_SCENARIOS], ids=["sound", "faulty", "faulty scenarios"])
 def test_an_edit_and_its_undoing_give_what_a_fresh_analysis_gives(text: str, edit: Callable[[str], str]) -> None:
     warm = project()
     found: list[list[Diagnostic]] = []
@@ -73,13 +90,17 @@ PIECES = (
     "var <fetch.part>: { }\n",
     "<end>",
     "// ",
+    "Scenario idle {",
+    "bench-to-tray",
+    " " * 8,
 )
 
 
+@pytest.mark.parametrize("text", [FAULTY, FAULTY_SCENARIOS], ids=["one scenario", "scenarios"])
 @pytest.mark.parametrize("seed", range(4))
-def test_random_edits_give_what_a_fresh_analysis_gives(seed: int) -> None:
+def test_random_edits_give_what_a_fresh_analysis_gives(seed: int, text: str) -> None:
     random = Random(seed)
-    warm, text = project(), FAULTY
+    warm = project()
     for _ in range(40):
         start = random.randrange(len(text))
         edited = text[:start] + random.choice(PIECES) + text[start + random.choice((0, 0, 1, 5, 60)) :]
@@ -113,3 +134,24 @@ def test_an_unchanged_declaration_is_not_looked_at_again(monkeypatch: pytest.Mon
     assert [entry.span for entry in after if entry.span.start > start] == [
         entry.span.shifted(moved) for entry in before if entry.span.start > start
     ]
+
+
+def test_an_edit_in_a_scenario_looks_at_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    warm = project()
+    warm.open(URI, 1, FAULTY_SCENARIOS)
+    before = fast_diagnostics(warm.snapshot(), URI)
+    assert {"type-conflict", "missing-value", "empty-duration"} <= {entry.code for entry in before}
+    asked: list[str] = []
+
+    class Watched(Site):
+        def __init__(self, snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration) -> None:
+            super().__init__(snapshot, file, placed)
+            asked.append(placed.declaration.symbols[0].name)
+
+    monkeypatch.setattr(memo, "Site", Watched)
+    place = FAULTY_SCENARIOS.index("idle {") + len("idle {")
+    edited = f"{FAULTY_SCENARIOS[:place]} // now{FAULTY_SCENARIOS[place:]}"
+    warm.open(URI, 2, edited)
+    after = fast_diagnostics(warm.snapshot(), URI)
+    assert asked == ["idle"]
+    assert after == cold(edited)

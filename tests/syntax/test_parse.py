@@ -10,7 +10,7 @@ from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.symbols import walk
 
 
-def parse(text: str, language: str = "bdd") -> tree.DeclarationTree:
+def parse(text: str, language: str = "bdd") -> tree.ChunkTree:
     declaration = parse_declaration(language, text)
     assert declaration.faults == ()
     assert declaration.tree is not None

@@ -69,7 +69,7 @@ INSTANCE = """scene inst (ns=x) bench_mjc {
 }"""
 
 
-def parse(text: str, language: str = "scenex") -> tree.DeclarationTree:
+def parse(text: str, language: str = "scenex") -> tree.ChunkTree:
     declaration = parse_declaration(language, text)
     assert declaration.faults == ()
     assert declaration.tree is not None

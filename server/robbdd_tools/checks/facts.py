@@ -11,6 +11,7 @@ from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.names.uses import Bound, Clauses, clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.move import moved_node, moved_ref
 
 if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
@@ -59,6 +60,8 @@ class Facts:
 @kept_with_key
 def facts_of(declaration: Declaration) -> Facts:
     """Return the facts of a declaration."""
+    if declaration.parts:
+        return _put_together(declaration)
     root = declaration.tree
     heads = frozenset(reference.ref.path.partition(".")[0] for reference in declaration.references)
     if declaration.faults:
@@ -69,6 +72,27 @@ def facts_of(declaration: Declaration) -> Facts:
     bounds = tuple(bound for entry in clauses for bound in _unused_bounds(entry))
     unused = _unused(declaration, root) if isinstance(root, tree.Template) else ()
     return Facts(names, heads, _clause_paths(clauses), unused, bounds)
+
+
+def _put_together(declaration: Declaration) -> Facts:
+    """Return the facts of a declaration in parts from those of its parts."""
+    parts = [facts_of(part.declaration) for part in declaration.parts]
+    names: dict[str, list[str]] = {}
+    for part in parts:
+        for namespace, found in part.own_names.items():
+            names.setdefault(namespace, []).extend(found)
+    bounds = tuple(
+        Bound(moved_node(bound.variable, placed.offset), moved_ref(bound.in_set, placed.offset))
+        for placed, part in zip(declaration.parts, parts, strict=True)
+        for bound in part.unused_bounds
+    )
+    return Facts(
+        {namespace: tuple(found) for namespace, found in names.items()},
+        frozenset[str]().union(*(part.heads for part in parts)),
+        frozenset[str]().union(*(part.clause_paths for part in parts)),
+        (),
+        bounds,
+    )
 
 
 def _own_names(declaration: Declaration) -> dict[str, tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""Keeps the findings in a declaration while neither it nor anything it builds on changes."""
+"""Keeps the findings in a declaration, of a story in each scenario, while neither it nor what it builds on changes."""
 
 from __future__ import annotations
 
@@ -31,6 +31,7 @@ _RULED = (
     tree.ConstantSet,
     tree.Template,
     tree.Story,
+    tree.Variant,
     tree.Distribution,
     tree.KinematicTree,
     tree.SceneInstance,
@@ -42,9 +43,13 @@ _TRANSPARENT = (tree.Scene, tree.Composition, tree.ConstantSet)
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """Findings, which depend on the declarations in ``around`` and on which declarations have the ``names``."""
+    """Findings, which depend on the declarations in ``around`` and on which declarations have the ``names``.
+
+    ``paths`` are all qualified names that the declaration itself looked up.
+    """
 
     names: frozenset[str]
+    paths: frozenset[str]
     around: frozenset[Declaration]
     findings: tuple[Anchored, ...]
 
@@ -67,7 +72,7 @@ def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...])
     known = _still_valid(_runs.get(uri), scope)
     anchors = Anchors(snapshot)
     entries: dict[Declaration, _Entry] = {}
-    for placed in file.declarations:
+    for placed in file.parts():
         declaration = placed.declaration
         if not isinstance(declaration.tree, _RULED):
             continue
@@ -79,7 +84,8 @@ def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...])
                 checkpoint()
                 found += rule(site)
             names, around = _around(scope, declaration)
-            entry = _Entry(names, around, tuple(anchors.loosened(diagnostic, uri, placed) for diagnostic in found))
+            loosened = tuple(anchors.loosened(diagnostic, uri, placed) for diagnostic in found)
+            entry = _Entry(names, placed.targets.resolution.looked_up, around, loosened)
         entries[declaration] = entry
         for finding in entry.findings:
             yield anchors.fixed(finding, uri, placed)
@@ -101,11 +107,12 @@ def _still_valid(run: _Run | None, scope: Scope) -> Mapping[Declaration, _Entry]
     if any(map(_is_namespace, old ^ new)):
         # What leaves its namespace to the file does not name it.
         return {}
-    renamed = _renamed(before.names, after.names)
+    paths = _renamed(before.names, after.names)
+    names = {path.partition(".")[0] for path in paths}
     return {
         declaration: entry
         for declaration, entry in run.entries.items()
-        if gone.isdisjoint(entry.around) and renamed.isdisjoint(entry.names)
+        if gone.isdisjoint(entry.around) and names.isdisjoint(entry.names) and paths.isdisjoint(entry.paths)
     }
 
 
@@ -114,12 +121,12 @@ def _is_namespace(declaration: Declaration) -> bool:
 
 
 def _renamed(before: NameTable, after: NameTable) -> set[str]:
-    """Return the names of declarations that two tables may not agree on; repeated ones may have changed places."""
+    """Return the qualified names that two tables may not agree on; repeated ones may have changed places."""
     if before is after:
         return set()
     paths = changed_paths(before, after)
     paths.update(before.repeated, after.repeated)
-    return {path.partition(".")[0] for path in paths}
+    return paths
 
 
 def _around(scope: Scope, declaration: Declaration) -> tuple[frozenset[str], frozenset[Declaration]]:

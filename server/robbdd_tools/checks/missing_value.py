@@ -62,7 +62,9 @@ def _filled(scenario: Scenario, missing: list[Definition]) -> Iterator[Fix]:
 def _lines(scenario: Scenario, product: tree.Product, missing: list[Definition], fitting: list[list[str]]) -> Edit:
     site = scenario.site
     document, end = site.file.document, site.span(product.assignments[-1]).end
-    line = document.line_text(document.position(end).line)
+    # A scenario that stands in one line has its findings by itself, whatever is before it.
+    begin = max(document.line_starts[document.position(end).line], site.span(scenario.variant).start)
+    line = document.text[begin:end]
     lines: list[str] = []
     for variable, found in zip(missing, fitting, strict=True):
         values = f"{{ {', '.join(found)} }}"

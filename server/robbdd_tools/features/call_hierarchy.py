@@ -55,12 +55,10 @@ def calls_to(snapshot: Snapshot, definition: Definition) -> list[Call]:
         case SymbolKind.TEMPLATE:
             calls: list[Call] = []
             for scenario in variants_of(snapshot, definition):
-                site, variant = scenario.site, scenario.variant
-                root = site.tree
-                path = f"{root.name.text}.{variant.name.text}" if isinstance(root, tree.Story) else ""
-                user = site.file.definitions.get(path)
+                site = scenario.site
+                user = site.file.definitions.get(scenario.clauses.path)
                 if user is not None:
-                    calls.append(Call(user, (site.span(variant.template),)))
+                    calls.append(Call(user, (site.span(scenario.variant.template),)))
             return calls
         case _:
             return []

@@ -21,7 +21,7 @@ def symbol_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definiti
     analysis = snapshot.file(uri)
     if analysis is None:
         return None
-    placed = next((entry for entry in reversed(analysis.declarations) if entry.offset <= offset), None)
+    placed = analysis.part_at(offset)
     if placed is not None:
         inside = offset - placed.offset
         for reference in placed.declaration.references:

@@ -15,7 +15,7 @@ from robbdd_tools.features.markdown import code_block, literal
 from robbdd_tools.features.references import uses
 from robbdd_tools.features.results import NOTHING
 from robbdd_tools.features.sentences import clause_sentence, time_meaning, word_meaning, word_of
-from robbdd_tools.names.elements import elements_of, scene_members, site_of
+from robbdd_tools.names.elements import elements_of, scene_members, site_of, story_sites
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.types import variable_type
@@ -115,11 +115,8 @@ def variants_of(snapshot: Snapshot, template: Definition) -> Iterator[Scenario]:
     """Yield the variants of a template, in its own file and in those that import it."""
     for uri in (template.uri, *snapshot.importers(template.uri)):
         file = snapshot.file(uri)
-        for definition in file.definitions.values() if file is not None else ():
-            if definition.kind is not SymbolKind.STORY:
-                continue
-            site = site_of(snapshot, definition)
-            for scenario in scenarios(site) if site is not None else ():
+        for site in story_sites(snapshot, file) if file is not None else ():
+            for scenario in scenarios(site):
                 target = scenario.site.target(scenario.variant.template)
                 if target is not None and (target.uri, target.symbol.path) == (template.uri, template.symbol.path):
                     yield scenario

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Edit, Fix
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks.variants import Scenario, scenarios
-from robbdd_tools.names.elements import Site, element_of, elements_of, scene_members
+from robbdd_tools.names.elements import Site, element_of, elements_of, scene_members, story_sites
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -27,10 +27,9 @@ MOST_ROWS = 500
 def variation_refactorings(snapshot: Snapshot, uri: str, span: Span) -> Iterator[Fix]:
     """Yield the refactorings of the variations that a selection touches."""
     file = snapshot.file(uri)
-    for placed in file.declarations if file is not None else ():
-        if file is None or not isinstance(placed.declaration.tree, tree.Story) or placed.declaration.faults:
+    for site in story_sites(snapshot, file, span) if file is not None else ():
+        if site.placed.declaration.faults:
             continue
-        site = Site(snapshot, file, placed)
         for scenario in scenarios(site):
             if not _touches(site.span(scenario.variant), span) or not _headed(scenario):
                 continue

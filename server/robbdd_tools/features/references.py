@@ -11,6 +11,7 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.features.definition import symbol_at
 from robbdd_tools.names.parts import parts_of
 from robbdd_tools.names.types import columns_of
+from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -61,10 +62,10 @@ def _written(file: FileAnalysis) -> set[Span]:
     """Return where the variations of a file name the variables that they give values to."""
     return {
         Span(ref.span.end - len(ref.path.rpartition(".")[2]), ref.span.end).shifted(placed.offset)
-        for placed in file.declarations
-        if isinstance(placed.declaration.tree, tree.Story)
-        for variant in placed.declaration.tree.variants
-        for ref, _ in columns_of(variant.variation)
+        for placed in file.parts()
+        for clauses in clauses_of(placed.declaration)
+        if isinstance(clauses.node, tree.Variant)
+        for ref, _ in columns_of(clauses.node.variation)
     }
 
 
@@ -78,7 +79,7 @@ def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Place]:
 
 def _uses_in(snapshot: Snapshot, file: FileAnalysis, definition: Definition) -> Iterator[Span]:
     name = definition.symbol.name
-    for placed in file.declarations:
+    for placed in file.parts():
         checkpoint()
         for reference in placed.declaration.references:
             # Reading the written name is cheap; only what may mean the definition is followed.

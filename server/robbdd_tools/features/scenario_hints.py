@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.checks.counting import scenario_count
 from robbdd_tools.checks.variants import scenarios
-from robbdd_tools.names.elements import Site
-from robbdd_tools.syntax import tree
+from robbdd_tools.names.elements import story_sites
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
@@ -27,12 +26,7 @@ def scenario_hints(snapshot: Snapshot, uri: str, within: Span) -> list[ScenarioH
     """Return a hint for each variant in a part of a file whose sets are known."""
     file = snapshot.file(uri)
     hints: list[ScenarioHint] = []
-    for placed in file.declarations if file is not None else ():
-        if file is None or not isinstance(placed.declaration.tree, tree.Story):
-            continue
-        if placed.span.end < within.start or within.end < placed.offset:
-            continue
-        site = Site(snapshot, file, placed)
+    for site in story_sites(snapshot, file, within) if file is not None else ():
         for scenario in scenarios(site):
             count, span = scenario_count(scenario), site.span(scenario.variant.name)
             if count is not None and within.contains(span.end):

@@ -94,9 +94,10 @@ def coloured(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[t
     text, tables = analysis.document.text, snapshot.scope(uri).tables
     found: list[tuple[int, Coloured]] = []
     end = 0
-    for placed in analysis.declarations:
+    for placed in analysis.parts():
         checkpoint()
-        found.append((end, _between(text[end : placed.offset])))
+        if end < placed.offset:
+            found.append((end, _between(text[end : placed.offset])))
         end = placed.span.end
         if within is None or (placed.offset <= within.end and within.start <= end):
             found.append((placed.offset, _of_declaration(snapshot, analysis, placed, tables)))

@@ -16,7 +16,7 @@ from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.analysis import Definition, PlacedDeclaration
     from robbdd_tools.names.project import Snapshot
 
 _TOLD = {".bdd": re.compile(r"\bUser\s+Story\b"), ".bddx": re.compile(r"\bScenario\s+Exec\b")}
@@ -54,7 +54,7 @@ def stories_in(snapshot: Snapshot, uri: str) -> list[ListedStory]:
         story = placed.declaration.tree
         definition = file.definitions.get(story.name.text) if file and isinstance(story, tree.Story) else None
         if isinstance(story, tree.Story) and definition is not None and definition.iri is not None:
-            own = tuple(_listed(variant) for variant in variants if variant.site.placed is placed)
+            own = tuple(_listed(variant) for variant in variants if _stands_in(variant, placed))
             found.append(ListedStory(definition, definition.iri, story.feature.value, own))
     return found
 
@@ -65,6 +65,10 @@ def story_files(snapshot: Snapshot, folders: Iterable[str]) -> list[str]:
     candidates = sorted({*model_files(folders), *known})
     told = ((uri, _TOLD.get(f".{uri.rpartition('.')[2]}")) for uri in candidates)
     return [uri for uri, words in told if words and words.search(known[uri] if uri in known else _text(uri))]
+
+
+def _stands_in(variant: PlacedVariant, story: PlacedDeclaration) -> bool:
+    return story.offset <= variant.definition.span.start < story.span.end
 
 
 def _listed(variant: PlacedVariant) -> ListedVariant:

@@ -33,11 +33,11 @@ def type_hints(snapshot: Snapshot, uri: str, within: Span) -> list[TypeHint]:
     """Return a hint for each variable declared in a part of a file whose type is known."""
     file = snapshot.file(uri)
     hints: list[TypeHint] = []
-    for placed in file.declarations if file is not None else ():
-        if placed.span.end < within.start or within.end < placed.span.start:
-            continue
+    if file is None:
+        return hints
+    for placed in file.parts(within):
         for path, span in _declared(placed):
-            definition = None if file is None else file.definitions.get(path)
+            definition = file.definitions.get(path)
             if definition is None or definition.span != span or not within.contains(span.end):
                 continue
             found = variable_type(snapshot, definition)
@@ -53,11 +53,5 @@ def _declared(placed: PlacedDeclaration) -> Iterator[tuple[str, Span]]:
         for variable in root.variables:
             yield f"{root.name.text}.{variable.name.text}", variable.name.span.shifted(placed.offset)
     for clauses in clauses_of(placed.declaration):
-        if isinstance(root, tree.Template):
-            owner = root.name.text
-        elif isinstance(root, tree.Story):
-            owner = f"{root.name.text}.{clauses.node.name.text}"
-        else:
-            continue
         for bound in clauses.bounds:
-            yield f"{owner}.{bound.variable.text}", bound.variable.span.shifted(placed.offset)
+            yield f"{clauses.path}.{bound.variable.text}", bound.variable.span.shifted(placed.offset)

@@ -39,7 +39,7 @@ class Reached:
         return self.key[0]
 
     @property
-    def tree(self) -> tree.DeclarationTree | None:
+    def tree(self) -> tree.ChunkTree | None:
         """Its tree, ``None`` when it is broken."""
         return self.placed.declaration.tree
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -51,6 +52,17 @@ class PlacedDeclaration:
         """The chunk's absolute span."""
         return Span(self.offset, self.offset + len(self.declaration.text))
 
+    @property
+    def parts(self) -> tuple[PlacedDeclaration, ...]:
+        """Its parts at their places in the document; a declaration that is not read in parts is the only one."""
+        inner = self.declaration.parts
+        if not inner:
+            return (self,)
+        return tuple(
+            PlacedDeclaration(part.declaration, self.offset + part.offset, targets)
+            for part, targets in zip(inner, self.targets.parts(), strict=True)
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class ImportLink:
@@ -70,3 +82,23 @@ class FileAnalysis:
     imports: tuple[ImportLink, ...]
     definitions: Mapping[str, Definition]
     diagnostics: tuple[Diagnostic, ...]
+
+    def parts(self, within: Span | None = None) -> Iterator[PlacedDeclaration]:
+        """Yield the declarations that touch a part of the document (``None``: all), those in parts part by part."""
+        for placed in self.declarations:
+            if within is None or (placed.offset <= within.end and within.start <= placed.span.end):
+                for part in placed.parts:
+                    if within is None or (part.offset <= within.end and within.start <= part.span.end):
+                        yield part
+
+    def part_at(self, offset: int) -> PlacedDeclaration | None:
+        """Return the last declaration, or part of one, that begins at or before an offset."""
+        position = bisect_right(self.declarations, offset, key=_offset) - 1
+        if position < 0:
+            return None
+        parts = self.declarations[position].parts
+        return parts[bisect_right(parts, offset, key=_offset) - 1]
+
+
+def _offset(placed: PlacedDeclaration) -> int:
+    return placed.offset

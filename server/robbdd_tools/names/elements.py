@@ -42,7 +42,7 @@ class Site:
         return self.file.document.uri
 
     @property
-    def tree(self) -> tree.DeclarationTree | None:
+    def tree(self) -> tree.ChunkTree | None:
         """Its tree, ``None`` when it is broken."""
         return self.placed.declaration.tree
 
@@ -71,6 +71,13 @@ def site_of(snapshot: Snapshot, definition: Definition) -> Site | None:
         return None
     index = bisect_right(file.declarations, definition.span.start, key=lambda placed: placed.offset) - 1
     return Site(snapshot, file, file.declarations[index]) if index >= 0 else None
+
+
+def story_sites(snapshot: Snapshot, file: FileAnalysis, within: Span | None = None) -> Iterator[Site]:
+    """Yield the stories of a file, or of a part of it; one that is read in parts scenario by scenario."""
+    for part in file.parts(within):
+        if isinstance(part.declaration.tree, tree.Story | tree.Variant):
+            yield Site(snapshot, file, part)
 
 
 def element_of(site: Site, value: tree.Value) -> Element | None:

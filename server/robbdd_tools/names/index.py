@@ -11,11 +11,12 @@ from robbdd_tools.base.document import Document, Span
 from robbdd_tools.names.imports import import_uri
 from robbdd_tools.names.table import Entry, NameTable, make_table, update_table
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import Placed
 from robbdd_tools.syntax.parse import LANGUAGES, parse_declaration
 from robbdd_tools.syntax.split import Chunk, resplit, split
 
 if TYPE_CHECKING:
-    from robbdd_tools.syntax.declaration import Declaration, Symbol
+    from robbdd_tools.syntax.declaration import Symbol
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,14 +26,6 @@ class ImportPath:
     span: Span
     text: str
     uri: str
-
-
-@dataclass(frozen=True, slots=True)
-class Placed:
-    """A declaration and where it stands."""
-
-    declaration: Declaration
-    offset: int
 
 
 @dataclass(frozen=True, slots=True)

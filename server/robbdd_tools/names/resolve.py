@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,6 +13,7 @@ from robbdd_tools.names.analysis import Definition
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.table import changed_paths
 from robbdd_tools.names.through import ROLES, paths_through
+from robbdd_tools.syntax.move import moved_ref, moved_reference
 
 if TYPE_CHECKING:
     from robbdd_tools.names.scope import Scope
@@ -44,7 +46,8 @@ class Resolution:
     """What the references of one declaration lead to; ``looked_up`` are all paths that the answer depends on.
 
     It stays the same object as long as no edit can have changed it. ``through_others`` when it also depends on what
-    other names stand for, which no path tells.
+    other names stand for, which no path tells. That of a declaration in parts is put together from ``parts``, those of
+    its parts, which alone tell what they depend on.
     """
 
     declaration: Declaration
@@ -52,6 +55,31 @@ class Resolution:
     unresolved: tuple[Unresolved, ...]
     looked_up: frozenset[str]
     through_others: bool
+    parts: tuple[Resolution, ...] = ()
+
+
+class _InParts(Mapping["Ref", Target]):
+    """What the references of a declaration lead to, asked of its parts."""
+
+    __slots__ = ("_offsets", "_parts")
+
+    def __init__(self, declaration: Declaration, parts: tuple[Resolution, ...]) -> None:
+        self._offsets = [placed.offset for placed in declaration.parts]
+        self._parts = parts
+
+    def __getitem__(self, ref: Ref) -> Target:
+        position = bisect_right(self._offsets, ref.span.start) - 1
+        if position < 0:
+            raise KeyError(ref)
+        return self._parts[position].targets[moved_ref(ref, -self._offsets[position])]
+
+    def __iter__(self) -> Iterator[Ref]:
+        for offset, part in zip(self._offsets, self._parts, strict=True):
+            for ref in part.targets:
+                yield moved_ref(ref, offset)
+
+    def __len__(self) -> int:
+        return sum(len(part.targets) for part in self._parts)
 
 
 class Targets(Mapping["Ref", Definition]):
@@ -84,6 +112,10 @@ class Targets(Mapping["Ref", Definition]):
     def __len__(self) -> int:
         return len(self._targets)
 
+    def parts(self) -> tuple[Targets, ...]:
+        """Return the definitions that the references of each part of the declaration lead to."""
+        return tuple(Targets(self._scope, part, self._made) for part in self.resolution.parts)
+
     def declarations(self) -> Iterator[tuple[str, int]]:
         """Yield for each reference the document and the position in it of the declaration that it leads to."""
         for target in self._targets.values():
@@ -101,7 +133,28 @@ def resolve_file(scope: Scope, before: Scope | None, known: tuple[Resolution, ..
     """Resolve all declarations of a scope's own file, given the resolutions in the scope ``before``."""
     declarations = [placed.declaration for placed in scope.files[0].declarations]
     kept = _still_valid(scope, before, known)
-    return tuple(kept.get(declaration) or _resolve(scope, declaration) for declaration in declarations)
+    whole = {entry.declaration: entry for entry in known if entry.parts}
+    return tuple(
+        _put_together(scope, declaration, kept, whole.get(declaration))
+        if declaration.parts
+        else kept.get(declaration) or _resolve(scope, declaration)
+        for declaration in declarations
+    )
+
+
+def _put_together(
+    scope: Scope, declaration: Declaration, kept: Mapping[Declaration, Resolution], before: Resolution | None
+) -> Resolution:
+    """Return the resolution of a declaration in parts, the one of ``before`` where none of them has changed."""
+    parts = tuple(kept.get(part.declaration) or _resolve(scope, part.declaration) for part in declaration.parts)
+    if before is not None and before.parts == parts:
+        return before
+    unresolved = tuple(
+        Unresolved(moved_reference(problem.reference, placed.offset), problem.other)
+        for placed, part in zip(declaration.parts, parts, strict=True)
+        for problem in part.unresolved
+    )
+    return Resolution(declaration, _InParts(declaration, parts), unresolved, frozenset(), False, parts)
 
 
 def _still_valid(scope: Scope, before: Scope | None, known: tuple[Resolution, ...]) -> dict[Declaration, Resolution]:
@@ -110,8 +163,9 @@ def _still_valid(scope: Scope, before: Scope | None, known: tuple[Resolution, ..
     changed: set[str] = set()
     for old, new in zip(before.tables, scope.tables, strict=True):
         changed |= changed_paths(old, new)
+    every = (part for entry in known for part in entry.parts or (entry,))
     return {
-        entry.declaration: entry for entry in known if not entry.through_others and changed.isdisjoint(entry.looked_up)
+        entry.declaration: entry for entry in every if not entry.through_others and changed.isdisjoint(entry.looked_up)
     }
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.names.elements import Element, Site, element_of, elements_of, site_of
+from robbdd_tools.names.elements import Element, Site, element_of, elements_of, site_of, story_sites
 from robbdd_tools.names.uses import ANYTHING, Clauses, Kinds, Use, clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -167,11 +167,8 @@ def _variants(snapshot: Snapshot, definition: Definition) -> Iterator[tuple[Site
     template = definition.symbol.path.partition(".")[0]
     for uri in (definition.uri, *snapshot.importers(definition.uri)):
         file = snapshot.file(uri)
-        for placed in file.declarations if file is not None else ():
-            if file is None or not isinstance(placed.declaration.tree, tree.Story):
-                continue
-            site = Site(snapshot, file, placed)
-            for clauses in clauses_of(placed.declaration):
+        for site in story_sites(snapshot, file) if file is not None else ():
+            for clauses in clauses_of(site.placed.declaration):
                 variant = clauses.node
                 if not isinstance(variant, tree.Variant):
                     continue

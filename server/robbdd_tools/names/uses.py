@@ -51,13 +51,14 @@ class Use:
 
 @dataclass(frozen=True, slots=True)
 class Clauses:
-    """The clauses of one template or variant.
+    """The clauses of one template or variant, whose qualified name is ``path``; ``""`` where that is lost.
 
     ``phrases`` are in the order of the text. ``once`` are the durations outside of every ``for all``, whose events come
     again in each round.
     """
 
     node: tree.Template | tree.Variant
+    path: str
     phrases: tuple[tree.PhraseUse, ...]
     uses: tuple[Use, ...]
     bounds: tuple[Bound, ...]
@@ -70,20 +71,27 @@ def clauses_of(declaration: Declaration) -> tuple[Clauses, ...]:
     """Return the clauses of a template, or of each variant of a story; nothing for any other declaration."""
     match declaration.tree:
         case tree.Template() as template:
-            return (_collected(template, (template.duration, template.body)),)
+            return (_collected(template, template.name.text, (template.duration, template.body)),)
         case tree.Story() as story:
-            return tuple(_collected(variant, (variant.given, variant.then)) for variant in story.variants)
+            return tuple(_of_variant(variant, f"{story.name.text}.{variant.name.text}") for variant in story.variants)
+        case tree.Variant() as variant:
+            return (_of_variant(variant, declaration.symbols[0].path if declaration.symbols else ""),)
         case _:
             return ()
 
 
-def _collected(node: tree.Template | tree.Variant, parts: tuple[tree.Node | None, ...]) -> Clauses:
+def _of_variant(variant: tree.Variant, path: str) -> Clauses:
+    return _collected(variant, path, (variant.given, variant.then))
+
+
+def _collected(node: tree.Template | tree.Variant, path: str, parts: tuple[tree.Node | None, ...]) -> Clauses:
     collector = _Collector()
     for part in parts:
         collector.visit(part, {}, repeated=False)
     uses = tuple(sorted(collector.uses, key=lambda use: use.ref.span))
     phrases = tuple(sorted(collector.phrases, key=lambda phrase: phrase.span))
-    return Clauses(node, phrases, uses, tuple(collector.bounds), tuple(collector.durations), tuple(collector.once))
+    durations, once = tuple(collector.durations), tuple(collector.once)
+    return Clauses(node, path, phrases, uses, tuple(collector.bounds), durations, once)
 
 
 @dataclass(slots=True)

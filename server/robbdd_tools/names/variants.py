@@ -6,19 +6,23 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.names.elements import Site
+from robbdd_tools.names.elements import story_sites
+from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.elements import Site
     from robbdd_tools.names.project import Snapshot
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedVariant:
-    """A scenario variant as it is declared, its tree, the declaration around it, and its template where that is known.
+    """A scenario variant as it is declared, its tree, the declaration (or part of one) that holds it, and its template.
+
+    The latter only where it is known.
 
     ``rows`` are the absolute spans of its table's rows, in the order of its scenarios; empty without a table.
     """
@@ -34,14 +38,14 @@ class PlacedVariant:
 def variants_of(snapshot: Snapshot, uri: str) -> Iterator[PlacedVariant]:
     """Yield the variants that a file declares and that have an IRI, in the order of the text."""
     file = snapshot.file(uri)
-    for placed in file.declarations if file is not None else ():
-        story = placed.declaration.tree
-        if file is None or not isinstance(story, tree.Story):
-            continue
-        site = Site(snapshot, file, placed)
-        for node in story.variants:
-            found = file.definitions.get(f"{story.name.text}.{node.name.text}")
-            if found is None or found.iri is None or found.span != site.span(node.name):
+    if file is None:
+        return
+    for site in story_sites(snapshot, file):
+        for clauses in clauses_of(site.placed.declaration):
+            node, found = clauses.node, file.definitions.get(clauses.path)
+            if not isinstance(node, tree.Variant) or found is None or found.iri is None:
+                continue
+            if found.span != site.span(node.name):
                 continue
             template = site.target(node.template)
             known = template if template is not None and template.kind is SymbolKind.TEMPLATE else None

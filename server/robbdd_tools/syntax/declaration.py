@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
-    from robbdd_tools.syntax.tree import DeclarationTree, Ref
+    from robbdd_tools.syntax.tree import ChunkTree, Ref
 
 
 class SymbolKind(StrEnum):
@@ -107,10 +107,23 @@ class Declaration:
     """One chunk: its tree (``None`` when broken), names, references and faults; a function of its text only.
 
     Compared by identity: the cache gives the same object for the same text, and a keystroke asks for hundreds.
+
+    A long story is read in ``parts``, which follow one another through its text: what stands before its scenarios,
+    each scenario (its tree a variant) and what stands behind them. What is told of a part stays, wherever an edit of
+    another one moves it. Any other declaration has none.
     """
 
     text: str
-    tree: DeclarationTree | None
+    tree: ChunkTree | None
     symbols: tuple[Symbol, ...]
     references: tuple[Reference, ...]
     faults: tuple[SyntaxFault, ...]
+    parts: tuple[Placed, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A declaration and where it stands: in a file, or as a part in a larger declaration."""
+
+    declaration: Declaration
+    offset: int

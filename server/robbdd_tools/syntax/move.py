@@ -39,8 +39,12 @@ def moved_symbol(symbol: Symbol, by: int) -> Symbol:
 
 def moved_reference(reference: Reference, by: int) -> Reference:
     """Return a reference at its place in a larger text."""
-    ref = reference.ref
-    return Reference(Ref(ref.span.shifted(by), ref.role, ref.path), reference.scopes)
+    return Reference(moved_ref(reference.ref, by), reference.scopes)
+
+
+def moved_ref(ref: Ref, by: int) -> Ref:
+    """Return the name of a use at its place in a larger text."""
+    return Ref(ref.span.shifted(by), ref.role, ref.path)
 
 
 def moved_fault(fault: SyntaxFault, by: int) -> SyntaxFault:

@@ -12,10 +12,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import chain, pairwise
+from typing import Generic, TypeVar
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.declaration import Declaration, Reference, Symbol, SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.declaration import Declaration, Placed, Reference, Symbol, SyntaxFault, SyntaxFix
 from robbdd_tools.syntax.faults import last_token, trailing_fault
 from robbdd_tools.syntax.move import moved_fault, moved_node, moved_reference, moved_symbol
 from robbdd_tools.syntax.piece import Piece, read_piece
@@ -119,17 +120,22 @@ def _closing_line(text: str, start: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """What a story says around its scenarios, with spans in a text where a stand-in has their place."""
+    """What a story says around its scenarios, with spans in a text where a stand-in has their place.
+
+    ``head`` and ``tail`` are the parts of the story before and behind them.
+    """
 
     story: tree.Story | None
     symbols: tuple[Symbol, ...]
     references: tuple[Reference, ...]
     faults: tuple[SyntaxFault, ...]
+    head: Declaration
+    tail: Declaration
 
 
 @dataclass(frozen=True, slots=True)
-class _Scenario:
-    """What one scenario says; ``variant`` is ``None`` where it cannot be told."""
+class _Moved:
+    """What one scenario says, at its place in the story; ``variant`` is ``None`` where it cannot be told."""
 
     variant: tree.Variant | None
     symbols: tuple[Symbol, ...]
@@ -137,16 +143,21 @@ class _Scenario:
     faults: tuple[SyntaxFault, ...]
 
 
-Key = tuple[str, str, str | None, int]
-"""Text, story, namespace and offset."""
+Key = tuple[str, str, str | None]
+"""Text, story and namespace."""
+KeyInPlace = tuple[str, Key, int]
+"""The text once more, and where it stands in its story."""
+_AnyKey = TypeVar("_AnyKey", Key, KeyInPlace)
+_Read = TypeVar("_Read")
 
 
-class _Kept:
+class _Kept(Generic[_AnyKey, _Read]):
     """Scenarios as they were read: those of the latest stories, never only a part of the latest one."""
 
-    def __init__(self) -> None:
-        self._latest: dict[Key, tuple[_Scenario, ...]] = {}
-        self._older: dict[Key, tuple[_Scenario, ...]] = {}
+    def __init__(self, read: Callable[[_AnyKey], tuple[_Read, ...]]) -> None:
+        self._read = read
+        self._latest: dict[_AnyKey, tuple[_Read, ...]] = {}
+        self._older: dict[_AnyKey, tuple[_Read, ...]] = {}
         self._letters = 0
 
     def begin(self) -> None:
@@ -154,18 +165,14 @@ class _Kept:
         if self._letters > KEPT_LETTERS:
             self._older, self._latest, self._letters = self._latest, {}, 0
 
-    def get(self, key: Key, read: Callable[[Key], tuple[_Scenario, ...]]) -> tuple[_Scenario, ...]:
-        """Return what was read before, else what ``read`` returns."""
+    def get(self, key: _AnyKey) -> tuple[_Read, ...]:
+        """Return what was read before, else read it."""
         found = self._latest.get(key)
         if found is None:
             found = self._older.get(key)
-            self._latest[key] = found = read(key) if found is None else found
+            self._latest[key] = found = self._read(key) if found is None else found
             self._letters += len(key[0])
         return found
-
-
-_kept = _Kept()
-_kept_in_place = _Kept()
 
 
 def read_story(cut: Cut) -> Declaration:
@@ -175,18 +182,23 @@ def read_story(cut: Cut) -> Declaration:
     frame = _frame(cut.head, cut.tail)
     own = [replace(symbol, extent=_stretched(symbol.extent, cut)) for symbol in frame.symbols]
     path, namespace = (own[0].path, own[0].namespace) if own else ("", None)
-    found = [
-        one for start, text in cut.scenarios() for one in _kept_in_place.get((text, path, namespace, start), _placed)
-    ]
+    keys = [((text, path, namespace), start) for start, text in cut.scenarios()]
+    parts = (Placed(part.declaration, start + part.offset) for key, start in keys for part in _kept.get(key))
+    found = [moved for key, start in keys for moved in _kept_in_place.get((key[0], key, start))]
     outside = (_outside(fault, cut) for fault in frame.faults)
     faults = sorted(chain(outside, *(one.faults for one in found)), key=lambda fault: fault.span)
     story = frame.story
     if story is not None:
         variants = tuple(one.variant for one in found if one.variant is not None)
         story = replace(story, span=_stretched(story.span, cut), variants=variants)
-    symbols = tuple(chain(own, *(one.symbols for one in found)))
-    references = tuple(chain(frame.references, *(one.references for one in found)))
-    return Declaration(cut.text, story, symbols, references, tuple(faults))
+    return Declaration(
+        cut.text,
+        story,
+        tuple(chain(own, *(one.symbols for one in found))),
+        tuple(chain(frame.references, *(one.references for one in found))),
+        tuple(faults),
+        (Placed(frame.head, 0), *parts, Placed(frame.tail, cut.end)),
+    )
 
 
 @lru_cache(maxsize=KEPT_FRAMES)
@@ -194,12 +206,14 @@ def _frame(head: str, tail: str) -> _Frame:
     text = head + STAND_IN + tail
     piece = read_piece("bdd", text)
     faults = piece.faults if piece.trailing is None else (*piece.faults, trailing_fault(text, piece.trailing))
-    lost = salvage(head)[:1]
-    if not isinstance(piece.tree, tree.Story):
-        return _Frame(None, lost, (), faults)
-    story = replace(piece.tree, variants=())
-    known = tuple(symbol for symbol in symbols(story) if symbol.name != HOLE)
-    return _Frame(story, known or lost, references(story), faults)
+    story = replace(piece.tree, variants=()) if isinstance(piece.tree, tree.Story) else None
+    known = () if story is None else tuple(symbol for symbol in symbols(story) if symbol.name != HOLE)
+    known = known or salvage(head)[:1]
+    used = () if story is None else references(story)
+    own = tuple(replace(symbol, extent=Span(symbol.extent.start, len(head))) for symbol in known)
+    return _Frame(
+        story, known, used, faults, Declaration(head, None, own, used, ()), Declaration(tail, None, (), (), ())
+    )
 
 
 def _outside(fault: SyntaxFault, cut: Cut) -> SyntaxFault:
@@ -230,32 +244,37 @@ def _unframed(offset: int, cut: Cut) -> int:
     return cut.end if offset < behind else offset - behind + cut.end
 
 
-def _placed(key: Key) -> tuple[_Scenario, ...]:
-    text, story, namespace, offset = key
+def _moved(place: KeyInPlace) -> tuple[_Moved, ...]:
+    _, key, start = place
     return tuple(
-        _Scenario(
-            moved_node(one.variant, offset),
-            tuple(moved_symbol(symbol, offset) for symbol in one.symbols),
-            tuple(moved_reference(reference, offset) for reference in one.references),
-            tuple(moved_fault(fault, offset) for fault in one.faults),
+        _Moved(
+            moved_node(part.declaration.tree, start + part.offset),
+            tuple(moved_symbol(symbol, start + part.offset) for symbol in part.declaration.symbols),
+            tuple(moved_reference(reference, start + part.offset) for reference in part.declaration.references),
+            tuple(moved_fault(fault, start + part.offset) for fault in part.declaration.faults),
         )
-        for one in _kept.get((text, story, namespace, 0), _scenarios)
+        for part in _kept.get(key)
     )
 
 
-def _scenarios(key: Key) -> tuple[_Scenario, ...]:
+def _scenarios(key: Key) -> tuple[Placed, ...]:
     """Return what a text says that begins with a scenario; what stands behind its end may be another one."""
-    text, story, namespace, _ = key
-    found: list[_Scenario] = []
+    text, path, namespace = key
+    found: list[Placed] = []
     start = 0
     while True:
         rest = text[start:]
         piece = _read_scenario(rest)
         faults = (trailing_fault(rest, 0),) if piece.tree is None and found else piece.faults
-        found.append(_scenario(piece.tree, rest, faults, (story, namespace), start))
+        own = rest[: piece.trailing]
+        found.append(Placed(_scenario(piece.tree, own, faults, path, namespace), start))
         if piece.trailing is None:
             return tuple(found)
         start += piece.trailing
+
+
+_kept = _Kept[Key, Placed](_scenarios)
+_kept_in_place = _Kept[KeyInPlace, _Moved](_moved)
 
 
 def _read_scenario(text: str) -> Piece:
@@ -274,20 +293,10 @@ def _read_scenario(text: str) -> Piece:
 
 
 def _scenario(
-    variant: tree.Variant | None,
-    text: str,
-    faults: tuple[SyntaxFault, ...],
-    story: tuple[str, str | None],
-    offset: int,
-) -> _Scenario:
-    path, namespace = story
+    variant: tree.Variant | None, text: str, faults: tuple[SyntaxFault, ...], path: str, namespace: str | None
+) -> Declaration:
     declared = variant_symbols(variant, path, namespace) if variant is not None and path else ()
     if faults and path:
         declared = with_lost(declared, salvage_scenario(text, path, namespace))
     used = references(variant, (path,)) if variant is not None else ()
-    return _Scenario(
-        moved_node(variant, offset),
-        tuple(moved_symbol(symbol, offset) for symbol in declared),
-        tuple(moved_reference(reference, offset) for reference in used),
-        tuple(moved_fault(fault, offset) for fault in faults),
-    )
+    return Declaration(text, variant, declared, used, faults)

@@ -156,6 +156,8 @@ DeclarationTree = (
     | Policy
     | Execution
 )
+ChunkTree = DeclarationTree | Variant
+"""What a ``Declaration`` may hold: a scenario that is read by itself is one, too."""
 
 __all__ = [
     "Actuation",
@@ -170,6 +172,7 @@ __all__ = [
     "Body",
     "Camera",
     "CatalogEntry",
+    "ChunkTree",
     "Composition",
     "Conjunction",
     "ConstantSet",
