@@ -16,7 +16,9 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.namespaces import only_namespace
+from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import Placed
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis
@@ -63,7 +65,19 @@ def _changes(declaration: Declaration, namespace: str | None) -> tuple[Change, .
 
 def _found_changes(declaration: Declaration, namespace: str | None) -> tuple[Change, ...]:
     rewriter = _Rewriter(declaration.text, "" if namespace is None else f"(ns={namespace}) ")
-    return tuple(_merged(rewriter.declaration(declaration.tree)))
+    changes = list(rewriter.declaration(declaration.tree))
+    if isinstance(declaration.tree, tree.Story):
+        for part in declaration.parts or (Placed(declaration, 0),):
+            changes += [(span.shifted(part.offset), text) for span, text in _in_scenarios(part.declaration)]
+    return tuple(_merged(changes))
+
+
+@kept_with_key
+def _in_scenarios(declaration: Declaration) -> tuple[Change, ...]:
+    """Return the changes in the variants of a story, or of a part of one."""
+    variants = (clauses.node for clauses in clauses_of(declaration) if isinstance(clauses.node, tree.Variant))
+    rewriter = _Rewriter(declaration.text, "")
+    return tuple(change for variant in variants for change in rewriter.variant(variant))
 
 
 def _merged(changes: Iterable[Change]) -> Iterator[Change]:
@@ -86,6 +100,7 @@ class _Rewriter:
     namespace: str
 
     def declaration(self, root: object) -> Iterator[Change]:
+        """Yield the changes of a declaration, of a story those outside of its scenarios."""
         if isinstance(root, _NAMED) and root.namespace is None and self.namespace:
             yield _put(root.name.span.start, self.namespace)
         if isinstance(root, tree.Template):
@@ -94,10 +109,9 @@ class _Rewriter:
                 yield _put(opening, f" {_during(root.duration)}")
             yield from self._body(root.body)
         elif isinstance(root, tree.Story):
-            if "Scenarios" not in self._code(root.benefit.span.end, root.variants[0].span.start):
-                yield _put(root.variants[0].span.start, "Scenarios: ")
-            for variant in root.variants:
-                yield from self._variant(variant)
+            first = root.variants[0].span.start
+            if "Scenarios" not in self._code(root.benefit.span.end, first):
+                yield _put(first, "Scenarios: ")
 
     def _body(self, body: tree.Body) -> Iterator[Change]:
         yield from self._clauses(body.given)
@@ -152,7 +166,7 @@ class _Rewriter:
         if _words(self.text[use.action.span.start : use.action.span.end]) != _words(_phrase(use.action)):
             yield use.action.span, _phrase(use.action)
 
-    def _variant(self, variant: tree.Variant) -> Iterator[Change]:
+    def variant(self, variant: tree.Variant) -> Iterator[Change]:
         word = re.compile(r"Variant\s+").search(self.text, variant.span.start, variant.name.span.start)
         if word:
             yield Span(*word.span()), ""

@@ -106,8 +106,11 @@ def row_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHi
 
 def pass_rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> PassRate | None:
     """Return the pass rate of a variant's last runs, ``None`` when it was never run."""
+    known = findings.variants.get(variant.iri)
+    if known is None:
+        return None
     now = variant_digest(snapshot, variant)
-    return _rate((one, one.digest == now) for one in findings.variants.get(variant.iri, ()))
+    return _rate((one, one.digest == now) for one in known)
 
 
 def execution_rate(snapshot: Snapshot, execution: PlacedExecution, findings: Findings) -> PassRate | None:

@@ -20,7 +20,6 @@ from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.uses import ANYTHING, Kinds
 from robbdd_tools.syntax.chunk import Expectation, Parsed, grammar_text, parse_chunk
 from robbdd_tools.syntax.declaration import SymbolKind
-from robbdd_tools.syntax.story import without_earlier_scenarios
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Edit
@@ -66,7 +65,6 @@ def complete(snapshot: Snapshot, uri: str, offset: int) -> list[Completion]:
     if cursor.quoted is not None:
         return list(_in_quotes(uri, analysis, offset))
     language = language_of(uri)
-    cursor = replace(cursor, before=without_earlier_scenarios(cursor.before))
     before, expected = _expected(language, cursor.before)
     if expected is None:
         return []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -23,9 +24,9 @@ _BLOCK = re.compile(r"(?<![\w\-.<])(?:kgraph\s*\([^()]*\)|body)\s*([^\W\d][\w\-]
 class Cursor:
     """A place in a file.
 
-    ``before`` is the text of the chunk up to the word at the cursor, ``word`` the part of it that is typed already
-    and ``span`` its absolute place; ``scopes`` the paths of the enclosing declarations, innermost first;
-    ``quoted`` the opened comment or string, if the cursor is inside one.
+    ``before`` is the text of the chunk up to the word at the cursor, in a story without the scenarios before its own,
+    ``word`` the part of it that is typed already and ``span`` its absolute place; ``scopes`` the paths of the
+    enclosing declarations, innermost first; ``quoted`` the opened comment or string, if the cursor is inside one.
     """
 
     placed: PlacedDeclaration | None
@@ -39,13 +40,24 @@ class Cursor:
 def cursor_at(analysis: FileAnalysis, offset: int) -> Cursor:
     """Describe the place ``offset`` (absolute) of a file."""
     placed = next((entry for entry in reversed(analysis.declarations) if entry.offset <= offset), None)
-    start = 0 if placed is None else placed.offset
-    text = analysis.document.text[start:offset]
+    text = _before(analysis, placed, offset)
     match = _WORD.search(text, text.rfind("\n") + 1)
     # A point behind a reference stands before a word of its own.
     word = match[0].lstrip(".") if match else ""
     before = text[: len(text) - len(word)]
     return Cursor(placed, before, word, Span(offset - len(word), offset), _scopes(placed, before), _quoted(text))
+
+
+def _before(analysis: FileAnalysis, placed: PlacedDeclaration | None, offset: int) -> str:
+    """Return the text of a declaration up to the cursor, of a story without the scenarios before the one at it."""
+    if placed is None:
+        return analysis.document.text[:offset]
+    parts = placed.parts
+    # Behind its end a story still has its last scenario.
+    within = parts if len(parts) == 1 else parts[:-1]
+    start = within[bisect_right(within, offset, key=lambda part: part.offset) - 1].offset
+    head = parts[0].declaration.text if start > placed.offset else ""
+    return head + analysis.document.text[start:offset]
 
 
 def _scopes(placed: PlacedDeclaration | None, before: str) -> tuple[str, ...]:

@@ -158,8 +158,11 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
         case SymbolKind.TREE_NODE:
             yield from _tree_node(site, definition)
         case SymbolKind.TEMPLATE:
-            for scenario in variants_of(site.snapshot, definition):
+            variants = list(variants_of(site.snapshot, definition))
+            for scenario in variants[:MOST_LISTED]:
                 yield f"`{scenario.variant.name.text}`: {_count(scenario)}"
+            if len(variants) > MOST_LISTED:
+                yield f"… and {len(variants) - MOST_LISTED:,} more"
         case SymbolKind.OBJECT_SET | SymbolKind.WORKSPACE_SET | SymbolKind.AGENT_SET | SymbolKind.CONSTANT_SET:
             yield from _members(elements_of(site))
         case SymbolKind.SCENE:
@@ -254,7 +257,7 @@ def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Ite
 
 
 def _used(snapshot: Snapshot, definition: Definition) -> Iterator[str]:
-    places = sorted(set(uses(snapshot, definition)))
+    places = sorted(set(uses(snapshot, definition)), key=lambda place: (place[0], place[1].start))
     if not places:
         yield from () if definition.kind in _COMPLETE else ("not used",)
         return

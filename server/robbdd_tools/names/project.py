@@ -102,11 +102,17 @@ class Snapshot:
     _analyses: dict[str, Resolved]
 
     @cached_property
+    def _files(self) -> dict[str, FileAnalysis]:
+        return {}
+
+    @cached_property
     def _scopes(self) -> dict[str, Scope]:
         return {}
 
     def file(self, uri: str) -> FileAnalysis | None:
         """Return what is known of a file; ``None`` when it is not in the project or cannot be read."""
+        if uri in self._files:
+            return self._files[uri]
         if not isinstance(self.sources.get(uri), FileIndex):
             return None
         scope = self.scope(uri)
@@ -115,6 +121,7 @@ class Snapshot:
             imports = self._imports(scope.files[0])
             kept = analyse(scope, imports, self._on_import_lines(scope.files[0], imports), kept)
             self._analyses[uri] = kept
+        self._files[uri] = kept.analysis
         return kept.analysis
 
     def document(self, uri: str) -> Document:

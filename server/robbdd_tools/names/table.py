@@ -66,7 +66,7 @@ def update_table(old: NameTable, before: Sequence[Declaration], after: Sequence[
     if not renamed:
         return old
     entries = dict(old.entries)
-    touched = {symbol.path for position in renamed for symbol in before[position].symbols}
+    touched = {path for position in renamed for path, _ in _names(before[position])}
     for path in touched:
         kept = tuple(entry for entry in entries.pop(path) if entry.declaration not in renamed)
         if kept:
@@ -88,13 +88,13 @@ def changed_paths(old: NameTable, new: NameTable) -> set[str]:
 def _add(entries: dict[str, tuple[Entry, ...]], declarations: Iterable[tuple[int, Declaration]]) -> set[str]:
     added: set[str] = set()
     for position, declaration in declarations:
-        for number, symbol in enumerate(declaration.symbols):
-            entry = Entry(symbol.kind, position, number)
-            others = entries.get(symbol.path)
-            entries[symbol.path] = (
+        for number, (path, kind) in enumerate(_names(declaration)):
+            entry = Entry(kind, position, number)
+            others = entries.get(path)
+            entries[path] = (
                 (entry,) if others is None else tuple(sorted((*others, entry), key=lambda entry: entry.place))
             )
-            added.add(symbol.path)
+            added.add(path)
     return added
 
 
@@ -103,4 +103,6 @@ def _kinds(entries: tuple[Entry, ...]) -> tuple[SymbolKind, ...]:
 
 
 def _names(declaration: Declaration) -> list[tuple[str, SymbolKind]]:
-    return [(symbol.path, symbol.kind) for symbol in declaration.symbols]
+    """Return what a declaration declares; its parts tell it without being moved to their places."""
+    every = [part.declaration for part in declaration.parts] or [declaration]
+    return [(symbol.path, symbol.kind) for one in every for symbol in one.symbols]

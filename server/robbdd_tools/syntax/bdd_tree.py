@@ -5,6 +5,7 @@ Spans count from the start of the chunk, so that a tree stays valid wherever its
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from robbdd_tools.syntax.scene_tree import Link, Name, NamespaceArgument, Node, Number, PythonAttribute, Ref, Text
@@ -326,4 +327,4 @@ class Story(Node):
     role: Text
     feature: Text
     benefit: Text
-    variants: tuple[Variant, ...]
+    variants: Sequence[Variant]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -115,8 +116,8 @@ class Declaration:
 
     text: str
     tree: ChunkTree | None
-    symbols: tuple[Symbol, ...]
-    references: tuple[Reference, ...]
+    symbols: Sequence[Symbol]
+    references: Sequence[Reference]
     faults: tuple[SyntaxFault, ...]
     parts: tuple[Placed, ...] = ()
 

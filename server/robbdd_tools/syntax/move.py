@@ -2,12 +2,59 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cache
-from typing import Any, cast
+from itertools import accumulate
+from typing import Any, TypeVar, cast, overload
 
 from robbdd_tools.syntax.declaration import Reference, Symbol, SyntaxFault, SyntaxFix
 from robbdd_tools.syntax.scene_tree import Node, Ref, field_names
+
+Entry = TypeVar("Entry")
+
+
+class InPlace(Sequence[Entry]):
+    """What the parts of a text tell, one part after the other; each is moved to its place when it is first asked for.
+
+    Equal to any sequence with the same entries; an entry is always the same object.
+    """
+
+    def __init__(self, parts: Iterable[tuple[int, Sequence[Entry]]], move: Callable[[Entry, int], Entry]) -> None:
+        self._parts = [part for part in parts if part[1]]
+        self._ends = list(accumulate(len(entries) for _, entries in self._parts))
+        self._move = move
+        self._moved: dict[int, tuple[Entry, ...]] = {}
+
+    def __len__(self) -> int:
+        return self._ends[-1] if self._ends else 0
+
+    @overload
+    def __getitem__(self, index: int) -> Entry: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Entry, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Entry | tuple[Entry, ...]:
+        if isinstance(index, slice):
+            return tuple(self[position] for position in range(len(self))[index])
+        position = range(len(self))[index]
+        part = bisect_right(self._ends, position)
+        return self._part(part)[position - self._ends[part]]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and tuple(self) == tuple(cast("Sequence[Any]", other))
+
+    def __hash__(self) -> int:
+        return hash(tuple(self))
+
+    def _part(self, number: int) -> tuple[Entry, ...]:
+        found = self._moved.get(number)
+        if found is None:
+            offset, entries = self._parts[number]
+            found = self._moved[number] = tuple([self._move(entry, offset) for entry in entries])
+        return found
 
 
 def moved_node(node: Any, by: int) -> Any:

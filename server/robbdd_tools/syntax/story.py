@@ -8,17 +8,16 @@ tells how another one is to be read; and an error costs no more than its own sce
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import chain, pairwise
-from typing import Generic, TypeVar
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.declaration import Declaration, Placed, Reference, Symbol, SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.declaration import Declaration, Placed, Symbol, SyntaxFault, SyntaxFix
 from robbdd_tools.syntax.faults import last_token, trailing_fault
-from robbdd_tools.syntax.move import moved_fault, moved_node, moved_reference, moved_symbol
+from robbdd_tools.syntax.move import InPlace, moved_fault, moved_node, moved_reference, moved_symbol
 from robbdd_tools.syntax.piece import Piece, read_piece
 from robbdd_tools.syntax.recover import HOLE
 from robbdd_tools.syntax.salvage import salvage, salvage_scenario, with_lost
@@ -97,12 +96,6 @@ def quotes_scenario(text: str) -> bool:
     return any("\n" in match[0] and _HEADER_LINE.search(match[0]) for match in _LONG_STRINGS.finditer(text))
 
 
-def without_earlier_scenarios(text: str) -> str:
-    """Return the text of a story that ends at a cursor without the scenarios before the one at the cursor."""
-    cut = cut_story(text)
-    return text if cut is None else cut.head + text[cut.starts[-1] :]
-
-
 def _starts_line(text: str, offset: int) -> bool:
     """Tell whether only white space stands before a place in its line."""
     return not text[text.rfind("\n", 0, offset) + 1 : offset].strip()
@@ -127,37 +120,21 @@ class _Frame:
 
     story: tree.Story | None
     symbols: tuple[Symbol, ...]
-    references: tuple[Reference, ...]
     faults: tuple[SyntaxFault, ...]
     head: Declaration
     tail: Declaration
 
 
-@dataclass(frozen=True, slots=True)
-class _Moved:
-    """What one scenario says, at its place in the story; ``variant`` is ``None`` where it cannot be told."""
-
-    variant: tree.Variant | None
-    symbols: tuple[Symbol, ...]
-    references: tuple[Reference, ...]
-    faults: tuple[SyntaxFault, ...]
-
-
 Key = tuple[str, str, str | None]
 """Text, story and namespace."""
-KeyInPlace = tuple[str, Key, int]
-"""The text once more, and where it stands in its story."""
-_AnyKey = TypeVar("_AnyKey", Key, KeyInPlace)
-_Read = TypeVar("_Read")
 
 
-class _Kept(Generic[_AnyKey, _Read]):
+class _Kept:
     """Scenarios as they were read: those of the latest stories, never only a part of the latest one."""
 
-    def __init__(self, read: Callable[[_AnyKey], tuple[_Read, ...]]) -> None:
-        self._read = read
-        self._latest: dict[_AnyKey, tuple[_Read, ...]] = {}
-        self._older: dict[_AnyKey, tuple[_Read, ...]] = {}
+    def __init__(self) -> None:
+        self._latest: dict[Key, tuple[Placed, ...]] = {}
+        self._older: dict[Key, tuple[Placed, ...]] = {}
         self._letters = 0
 
     def begin(self) -> None:
@@ -165,40 +142,51 @@ class _Kept(Generic[_AnyKey, _Read]):
         if self._letters > KEPT_LETTERS:
             self._older, self._latest, self._letters = self._latest, {}, 0
 
-    def get(self, key: _AnyKey) -> tuple[_Read, ...]:
+    def get(self, key: Key) -> tuple[Placed, ...]:
         """Return what was read before, else read it."""
         found = self._latest.get(key)
         if found is None:
             found = self._older.get(key)
-            self._latest[key] = found = self._read(key) if found is None else found
+            self._latest[key] = found = _scenarios(key) if found is None else found
             self._letters += len(key[0])
         return found
+
+
+_kept = _Kept()
 
 
 def read_story(cut: Cut) -> Declaration:
     """Return the declaration of a story, of which only scenarios with a new text are parsed."""
     _kept.begin()
-    _kept_in_place.begin()
     frame = _frame(cut.head, cut.tail)
-    own = [replace(symbol, extent=_stretched(symbol.extent, cut)) for symbol in frame.symbols]
+    own = tuple(replace(symbol, extent=_stretched(symbol.extent, cut)) for symbol in frame.symbols)
     path, namespace = (own[0].path, own[0].namespace) if own else ("", None)
-    keys = [((text, path, namespace), start) for start, text in cut.scenarios()]
-    parts = (Placed(part.declaration, start + part.offset) for key, start in keys for part in _kept.get(key))
-    found = [moved for key, start in keys for moved in _kept_in_place.get((key[0], key, start))]
+    scenarios = [
+        Placed(part.declaration, start + part.offset)
+        for start, text in cut.scenarios()
+        for part in _kept.get((text, path, namespace))
+    ]
     outside = (_outside(fault, cut) for fault in frame.faults)
-    faults = sorted(chain(outside, *(one.faults for one in found)), key=lambda fault: fault.span)
+    inside = (moved_fault(fault, part.offset) for part in scenarios for fault in part.declaration.faults)
     story = frame.story
     if story is not None:
-        variants = tuple(one.variant for one in found if one.variant is not None)
-        story = replace(story, span=_stretched(story.span, cut), variants=variants)
+        story = replace(story, span=_stretched(story.span, cut), variants=_variants(scenarios))
+    every = (Placed(frame.head, 0), *scenarios, Placed(frame.tail, cut.end))
+    declared = ((part.offset, part.declaration.symbols) for part in scenarios)
+    used = ((part.offset, part.declaration.references) for part in every)
     return Declaration(
         cut.text,
         story,
-        tuple(chain(own, *(one.symbols for one in found))),
-        tuple(chain(frame.references, *(one.references for one in found))),
-        tuple(faults),
-        (Placed(frame.head, 0), *parts, Placed(frame.tail, cut.end)),
+        InPlace([(0, own), *declared], moved_symbol),
+        InPlace(used, moved_reference),
+        tuple(sorted(chain(outside, inside), key=lambda fault: fault.span)),
+        every,
     )
+
+
+def _variants(scenarios: Iterable[Placed]) -> InPlace[tree.Variant]:
+    trees = ((part.offset, part.declaration.tree) for part in scenarios)
+    return InPlace(((offset, (root,)) for offset, root in trees if isinstance(root, tree.Variant)), moved_node)
 
 
 @lru_cache(maxsize=KEPT_FRAMES)
@@ -211,9 +199,7 @@ def _frame(head: str, tail: str) -> _Frame:
     known = known or salvage(head)[:1]
     used = () if story is None else references(story)
     own = tuple(replace(symbol, extent=Span(symbol.extent.start, len(head))) for symbol in known)
-    return _Frame(
-        story, known, used, faults, Declaration(head, None, own, used, ()), Declaration(tail, None, (), (), ())
-    )
+    return _Frame(story, known, faults, Declaration(head, None, own, used, ()), Declaration(tail, None, (), (), ()))
 
 
 def _outside(fault: SyntaxFault, cut: Cut) -> SyntaxFault:
@@ -244,19 +230,6 @@ def _unframed(offset: int, cut: Cut) -> int:
     return cut.end if offset < behind else offset - behind + cut.end
 
 
-def _moved(place: KeyInPlace) -> tuple[_Moved, ...]:
-    _, key, start = place
-    return tuple(
-        _Moved(
-            moved_node(part.declaration.tree, start + part.offset),
-            tuple(moved_symbol(symbol, start + part.offset) for symbol in part.declaration.symbols),
-            tuple(moved_reference(reference, start + part.offset) for reference in part.declaration.references),
-            tuple(moved_fault(fault, start + part.offset) for fault in part.declaration.faults),
-        )
-        for part in _kept.get(key)
-    )
-
-
 def _scenarios(key: Key) -> tuple[Placed, ...]:
     """Return what a text says that begins with a scenario; what stands behind its end may be another one."""
     text, path, namespace = key
@@ -271,10 +244,6 @@ def _scenarios(key: Key) -> tuple[Placed, ...]:
         if piece.trailing is None:
             return tuple(found)
         start += piece.trailing
-
-
-_kept = _Kept[Key, Placed](_scenarios)
-_kept_in_place = _Kept[KeyInPlace, _Moved](_moved)
 
 
 def _read_scenario(text: str) -> Piece:

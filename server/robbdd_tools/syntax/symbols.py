@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, cast
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE, Reference, Symbol, SymbolKind
+from robbdd_tools.syntax.move import InPlace
 from robbdd_tools.syntax.recover import HOLE
 from robbdd_tools.syntax.scene_tree import field_names
 
@@ -196,6 +197,6 @@ def walk_at(node: tree.Node, offset: int) -> Iterator[tree.Node]:
 def _nodes(value: Any) -> Iterator[tree.Node]:
     if isinstance(value, tree.Node):
         yield value
-    elif isinstance(value, tuple):
-        for entry in cast(tuple[Any, ...], value):
+    elif isinstance(value, tuple | InPlace):
+        for entry in cast(Sequence[Any], value):
             yield from _nodes(entry)
