@@ -1,5 +1,6 @@
 """The published form is read into the same trees as the current one."""
 
+from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any, cast
 
@@ -92,8 +93,8 @@ def shape(node: Any) -> Any:
 
     The published form leaves out a namespace that can be no other one, and says with each listed value what it is.
     """
-    if isinstance(node, tuple):
-        return tuple(shape(entry) for entry in cast(tuple[Any, ...], node))
+    if isinstance(node, Sequence) and not isinstance(node, str):
+        return tuple(shape(entry) for entry in cast(Sequence[Any], node))
     if isinstance(node, tree.Ref):
         return ("Element" if node.role in ("Object", "Workspace", "Agent") else node.role, node.path)
     if not is_dataclass(node) or isinstance(node, type):

@@ -7,11 +7,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.document import Document
+from robbdd_tools.base.memory import kept_with_key
+
 if TYPE_CHECKING:
-    from robbdd_tools.base.document import Document
+    from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import Declaration
 
 _SIGNS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(?P<open>[{(])|(?P<close>[})])")
+
+_LINE_END = re.compile(r"\r\n|\r|\n")
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -28,26 +34,51 @@ def folds(snapshot: Snapshot, uri: str) -> list[Fold]:
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
-    document = analysis.document
-    lines = [document.line_text(line).strip() for line in range(len(document.line_starts))]
+    lines = [line.lstrip() for line in _LINE_END.split(analysis.document.text)]
     found = {
-        *_brackets(document),
+        *_brackets(analysis),
         *_runs(lines, "//", "comment"),
         *_runs(lines, "import", "imports"),
     }
     return sorted(found)
 
 
-def _brackets(document: Document) -> Iterator[Fold]:
+def _brackets(file: FileAnalysis) -> Iterator[Fold]:
+    opened: list[int] = []
+    for placed in file.parts():
+        start = file.document.position(placed.offset).line
+        inside = _brackets_in(placed.declaration)
+        for first, last in (*inside.pairs, *((opened.pop() - start, last) for last in inside.closed if opened)):
+            if last - 1 > first:
+                yield Fold(start + first, start + last - 1, "region")
+        opened += (start + line for line in inside.opened)
+
+
+@dataclass(frozen=True, slots=True)
+class _Brackets:
+    """The lines of the brackets in a piece of text, counted from its first: pairs, and those without a partner."""
+
+    pairs: tuple[tuple[int, int], ...]
+    closed: tuple[int, ...]
+    opened: tuple[int, ...]
+
+
+@kept_with_key
+def _brackets_in(declaration: Declaration) -> _Brackets:
+    document = Document("", 0, declaration.text)
+    pairs: list[tuple[int, int]] = []
+    closed: list[int] = []
     opened: list[int] = []
     for match in _SIGNS.finditer(document.text):
         if match["open"]:
-            opened.append(match.start())
-        elif match["close"] and opened:
-            first = document.position(opened.pop()).line
-            last = document.position(match.start()).line - 1
-            if last > first:
-                yield Fold(first, last, "region")
+            opened.append(document.position(match.start()).line)
+        elif match["close"]:
+            line = document.position(match.start()).line
+            if opened:
+                pairs.append((opened.pop(), line))
+            else:
+                closed.append(line)
+    return _Brackets(tuple(pairs), tuple(closed), tuple(opened))
 
 
 def _runs(lines: list[str], beginning: str, kind: str) -> Iterator[Fold]:

@@ -121,7 +121,7 @@ def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
         add_execution(frame, root, position)
 
 
-def _add_simple(frame: Frame, scenes: Scenes, root: tree.DeclarationTree) -> None:
+def _add_simple(frame: Frame, scenes: Scenes, root: tree.ChunkTree) -> None:
     match root:
         case tree.Event() | tree.Task():
             node = frame.claimed(root.name.text, root.name)

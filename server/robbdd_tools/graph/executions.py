@@ -21,7 +21,7 @@ _FORMS: dict[type[tree.Node], str] = {
 }
 
 
-def add_execution(frame: Frame, root: tree.DeclarationTree | None, position: int) -> None:
+def add_execution(frame: Frame, root: tree.ChunkTree | None, position: int) -> None:
     """State a declaration of a ``.bddx``; ``position`` is its place among all. Any other states nothing here."""
     match root:
         case tree.Implementation():

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.graph.sink import Frame
 
-Placed = list[tuple["tree.DeclarationTree | None", "Frame"]]
+Placed = list[tuple["tree.ChunkTree | None", "Frame"]]
 """Trees of declarations, each with the frame that it becomes triples in."""
 
 
@@ -47,7 +47,7 @@ def add_instances(placed: Placed) -> None:
         _add(frame, trees, root)
 
 
-def _add(frame: Frame, trees: Trees, root: tree.DeclarationTree | None) -> None:
+def _add(frame: Frame, trees: Trees, root: tree.ChunkTree | None) -> None:
     match root:
         case tree.Distribution():
             _add_distribution(frame, root)

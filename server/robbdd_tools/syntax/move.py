@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from functools import cache
 from itertools import accumulate
 from typing import Any, TypeVar, cast, overload
@@ -81,7 +80,9 @@ def _inner_fields(kind: type[Node]) -> tuple[str, ...]:
 
 def moved_symbol(symbol: Symbol, by: int) -> Symbol:
     """Return a symbol at its place in a larger text."""
-    return replace(symbol, span=symbol.span.shifted(by), extent=symbol.extent.shifted(by))
+    span, extent = symbol.span.shifted(by), symbol.extent.shifted(by)
+    # As ``replace`` would, several times as fast: the outline of a long story takes thousands.
+    return Symbol(symbol.path, symbol.name, symbol.kind, span, extent, symbol.namespace, symbol.target)
 
 
 def moved_reference(reference: Reference, by: int) -> Reference:
