@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.names.uses import Bound, Clauses, clauses_of
 from robbdd_tools.syntax import tree
@@ -60,6 +61,7 @@ class Facts:
 @kept_with_key
 def facts_of(declaration: Declaration) -> Facts:
     """Return the facts of a declaration."""
+    checkpoint()
     if declaration.parts:
         return _put_together(declaration)
     root = declaration.tree

@@ -200,6 +200,7 @@ def _own(language: str, declaration: Declaration) -> tuple[Token, ...]:
     found: list[Token] = []
     end = 0
     for match in _WORDS.finditer(declaration.text):
+        checkpoint()
         group = match.lastgroup or ""
         span = Span(match.start(group), match.end(group))
         if span.start < end:
@@ -221,9 +222,10 @@ def _own(language: str, declaration: Declaration) -> tuple[Token, ...]:
 
 def _concepts(declaration: Declaration) -> Iterator[tuple[int, Token]]:
     """Yield what the tree says of words, by where they start; what is told later wins."""
-    nodes = list(walk(declaration.tree)) if declaration.tree is not None else []
-    for node in nodes:
+    nodes: list[tree.Node] = []
+    for node in walk(declaration.tree) if declaration.tree is not None else ():
         checkpoint()
+        nodes.append(node)
         match node:
             case tree.PhraseUse():
                 concept = ACTION if node.word in load_catalog().behaviours else PREDICATE

@@ -19,6 +19,7 @@ Result = TypeVar("Result")
 class _Job:
     work: Callable[[], Any]
     urgent: bool
+    replacing: str | None
     done: Future[Any] = field(default_factory=Future[Any])
     abandoned: bool = False
 
@@ -27,7 +28,8 @@ class AnalysisThread:
     """Does urgent work (edits and requests) in the order in which it comes, other work when there is none.
 
     At a checkpoint work that is not urgent lets the urgent go first, and work whose caller was cancelled ends. So a
-    hover never waits for the diagnostics of a large file, and nothing is computed that nobody will see.
+    hover never waits for the diagnostics of a large file, and nothing is computed that nobody will see. An edit ends
+    there too when the next thing to do is another edit ``replacing`` the same.
     """
 
     def __init__(self) -> None:
@@ -38,9 +40,12 @@ class AnalysisThread:
         self._stopped = False
         threading.Thread(target=self._work, name="analysis", daemon=True).start()
 
-    async def do(self, work: Callable[[], Result], urgent: bool = True) -> Result:
-        """Return the result of ``work``; when the caller is cancelled, it is left out or ends at a checkpoint."""
-        job = _Job(work, urgent)
+    async def do(self, work: Callable[[], Result], urgent: bool = True, replacing: str | None = None) -> Result:
+        """Return the result of ``work``; when the caller is cancelled, it is left out or ends at a checkpoint.
+
+        Raises ``Abandoned`` when other work ``replacing`` the same is done instead.
+        """
+        job = _Job(work, urgent, replacing)
         with self._changed:
             (self._urgent if urgent else self._later).append(job)
             self._changed.notify()
@@ -84,5 +89,7 @@ class AnalysisThread:
         job = self._running[-1]
         while not job.urgent and self._urgent:
             self._run(self._urgent.popleft())
-        if job.abandoned or self._stopped:
+        # What was asked between two edits has to see the first one.
+        replaced = job.replacing is not None and bool(self._urgent) and self._urgent[0].replacing == job.replacing
+        if job.abandoned or replaced or self._stopped:
             raise Abandoned

@@ -15,6 +15,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from robbdd_tools import __version__
+from robbdd_tools.base.checkpoint import Abandoned
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics
@@ -126,7 +127,11 @@ class RobbddServer(LanguageServer):
         if is_new:
             self.importers.begin_looking()
         self.requests.text_changed(uri)
-        await self._in_thread(lambda: self.project.open(uri, version, text))
+        try:
+            await self._analysis.do(lambda: self.project.open(uri, version, text), replacing=uri)
+        except Abandoned:
+            # The next text has come before this one was read.
+            return
         await self.publish(uri)
         self.survey.look([uri])
 

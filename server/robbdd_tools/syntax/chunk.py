@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from threading import Lock
+from threading import RLock
 from typing import Any
 
 from robbdd_tools.base.data import data_file
@@ -45,8 +45,9 @@ class Parsed:
     trailing: int | None
 
 
-# Rules are compiled when they are first met; a second thread must not see one half done.
-_COMPILING = Lock()
+# Rules are compiled when they are first met; a second thread must not see one half done. What is done at a
+# checkpoint in the middle of a text may parse another one.
+_COMPILING = RLock()
 
 
 def parse_chunk(language: str, text: str) -> Parsed | Rejected:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, cast
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.chunk import RawNode
@@ -20,6 +21,7 @@ _KINDS = {"obj": "object", "ws": "workspace", "agn": "agent"}
 
 def convert(raw: RawNode, text: str) -> Any:
     """Return the tree node of a parser's object made from ``text``, which may have been mended by signs behind it."""
+    checkpoint()
     rule = type(raw).__name__
     span = Span(min(raw._tx_position, len(text)), min(raw._tx_position_end, len(text)))
     if rule.endswith("Ref"):

@@ -9,7 +9,7 @@ from robbdd_tools.syntax.declaration import Declaration
 from robbdd_tools.syntax.faults import trailing_fault
 from robbdd_tools.syntax.piece import read_piece
 from robbdd_tools.syntax.salvage import salvage, with_lost
-from robbdd_tools.syntax.story import cut_story, quotes_scenario, read_story
+from robbdd_tools.syntax.story import cut_story, forget_scenarios, quotes_scenario, read_story
 from robbdd_tools.syntax.symbols import references, symbols
 
 KEPT_LETTERS = 500_000
@@ -55,6 +55,7 @@ def parse_declaration(language: str, text: str) -> Declaration:
 def forget_declarations() -> None:
     """Parse everything afresh from now on."""
     _kept.clear()
+    forget_scenarios()
 
 
 def _parsed(language: str, text: str) -> Declaration:

@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.syntax import grammar
 
 DEEPEST = 6000
@@ -323,6 +324,7 @@ def _several(one: Parse, separator: Parse | None, at_least_one: bool) -> Parse:
         if end < 0:
             return -1 if at_least_one else position
         while True:
+            checkpoint()
             between = end if separator is None else separator(state, end, log)
             following = -1 if between < 0 else one(state, between, log)
             if following < 0:

@@ -151,8 +151,17 @@ class _Kept:
             self._letters += len(key[0])
         return found
 
+    def clear(self) -> None:
+        """Forget everything."""
+        self.__init__()
+
 
 _kept = _Kept()
+
+
+def forget_scenarios() -> None:
+    """Parse every scenario afresh from now on."""
+    _kept.clear()
 
 
 def read_story(cut: Cut) -> Declaration:

@@ -1,0 +1,68 @@
+"""The analysis thread leaves what nobody will see, and nothing that somebody still has to see."""
+
+import asyncio
+import threading
+from collections.abc import Callable
+
+import pytest
+
+from robbdd_tools.base.checkpoint import Abandoned, checkpoint
+from robbdd_tools.lsp.analysis import AnalysisThread
+
+
+class Steps:
+    """Work in two steps with a checkpoint between them, which waits there until it may go on."""
+
+    def __init__(self) -> None:
+        self.begun = threading.Event()
+        self.go_on = threading.Event()
+
+    def __call__(self) -> str:
+        """Do it."""
+        self.begun.set()
+        self.go_on.wait()
+        checkpoint()
+        return "whole"
+
+
+async def _begun(steps: Steps, thread: AnalysisThread) -> asyncio.Task[str]:
+    task = asyncio.create_task(thread.do(steps, replacing="a.bdd"))
+    await asyncio.to_thread(steps.begun.wait)
+    return task
+
+
+async def _queued(thread: AnalysisThread, work: Callable[[], str], replacing: str | None) -> asyncio.Task[str]:
+    task = asyncio.create_task(thread.do(work, replacing=replacing))
+    # Its first step puts the work into the queue.
+    await asyncio.sleep(0)
+    return task
+
+
+async def test_an_edit_is_left_for_the_next_one_of_its_document() -> None:
+    thread, steps = AnalysisThread(), Steps()
+    first = await _begun(steps, thread)
+    second = await _queued(thread, lambda: "newer", "a.bdd")
+    steps.go_on.set()
+    with pytest.raises(Abandoned):
+        await first
+    assert await second == "newer"
+    thread.stop()
+
+
+async def test_an_edit_is_not_left_for_one_of_another_document() -> None:
+    thread, steps = AnalysisThread(), Steps()
+    first = await _begun(steps, thread)
+    second = await _queued(thread, lambda: "other", "b.bdd")
+    steps.go_on.set()
+    assert (await first, await second) == ("whole", "other")
+    thread.stop()
+
+
+async def test_what_is_asked_between_two_edits_sees_the_first() -> None:
+    thread, steps = AnalysisThread(), Steps()
+    first = await _begun(steps, thread)
+    asked = await _queued(thread, lambda: "asked", None)
+    second = await _queued(thread, lambda: "newer", "a.bdd")
+    steps.go_on.set()
+    assert (await first, await asked, await second) == ("whole", "asked", "newer")
+    thread.stop()
