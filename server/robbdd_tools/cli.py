@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from robbdd_tools import __version__
+from robbdd_tools.base.memory import collect_rarely
 from robbdd_tools.commands import FAILED, INTERRUPTED, OK
 from robbdd_tools.commands.arguments import allow_selection, wanted
 from robbdd_tools.commands.run_arguments import allow_policy, allow_run, allow_store, policy, run_options
@@ -26,6 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if reconfigure is not None:
             reconfigure(encoding="utf-8", errors="replace")
     options = _parser().parse_args(arguments)
+    collect_rarely()
     command: Callable[[argparse.Namespace], int] = options.command
     try:
         return _fetch_contexts(options) or command(options)

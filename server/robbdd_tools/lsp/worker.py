@@ -11,6 +11,7 @@ from typing import BinaryIO
 
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import read_text, uri_to_path
+from robbdd_tools.base.memory import collect_rarely
 from robbdd_tools.features.diagnostics import fast_diagnostics, shape_diagnostics
 from robbdd_tools.graph.incremental import Superseded, Validation
 from robbdd_tools.lsp.frames import LENGTH, Answer, Begun, Forget, Request, frame
@@ -127,6 +128,7 @@ def main(in_passing: bool = False) -> None:
     stdout = sys.stdout.buffer
     # Whatever a library prints must not get between the frames.
     sys.stdout = sys.stderr
+    collect_rarely()
     worker = Worker(Inbox(sys.stdin.buffer))
 
     def tell(message: Begun | Answer) -> None:
