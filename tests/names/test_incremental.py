@@ -17,11 +17,17 @@ from hypothesis import strategies as st
 from tests.bench.models import long_story
 
 from kit import EXAMPLES, MODEL, SCENE
+from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.checks.memo import nothing_kept
 from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.folding import folds
+from robbdd_tools.features.outline import outline
+from robbdd_tools.features.scenario_hints import scenario_hints
 from robbdd_tools.features.semantic_tokens import semantic_tokens
+from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.names.analysis import FileAnalysis
+from robbdd_tools.names.clauses import clauses_in
 from robbdd_tools.names.project import Project
 
 IN_CI = 340
@@ -137,7 +143,15 @@ def known(project: Project, uri: str) -> object:
         path: (found.span, found.extent, found.kind, found.iri) for path, found in analysis.definitions.items()
     }
     targets = [(placed.offset, dict(placed.targets)) for placed in analysis.declarations]
-    return fast_diagnostics(snapshot, uri), definitions, targets, analysis.imports, semantic_tokens(snapshot, uri)
+    whole = Span(0, len(analysis.document.text))
+    told = [
+        folds(snapshot, uri),
+        outline(snapshot, uri),
+        type_hints(snapshot, uri, whole),
+        scenario_hints(snapshot, uri, whole),
+        list(clauses_in(snapshot, uri)),
+    ]
+    return fast_diagnostics(snapshot, uri), definitions, targets, analysis.imports, semantic_tokens(snapshot, uri), told
 
 
 @settings(
