@@ -84,6 +84,16 @@ STORY = """User Story (ns=t) fetching {
 MODEL = EVENTS + TEMPLATE + STORY
 """A small sound model over ``SCENE``."""
 
+_ENDLESS = """import time
+
+from behave import when
+
+
+@when('"{agent}" picks "env:ball0" and places it at "{workspace}"')
+def wait(context, agent, workspace):
+    while True:
+        time.sleep(1)
+"""
 _MARKER = re.compile(r"^(\s*//\s*)(\^+)\s+(\S+)\s*(.*)$")
 
 
@@ -158,6 +168,16 @@ def corpus(*endings: str) -> list[Path]:
     if not folder:
         pytest.skip("ROBBDD_CORPUS is not set: no foreign models to read")
     return sorted(path for path in Path(folder, "current").rglob("*") if path.suffix in endings)
+
+
+def make_endless(model: Path) -> None:
+    """Let the ball of a copy of the pick-and-place example be on its way for ever, by a step of a user's own.
+
+    A run judges the cube and lasts until it is cancelled.
+    """
+    steps = model.parent / "steps"
+    steps.mkdir()
+    (steps / f"{model.stem}_steps.py").write_text(_ENDLESS, encoding="utf-8")
 
 
 def schema_errors(name: str, document: object) -> list[str]:

@@ -14,7 +14,8 @@ from pytest_lsp import LanguageClient
 from kit import EXAMPLES
 from robbdd_tools.base.files import path_to_uri
 
-PATIENCE = 60.0
+PATIENCE = 300.0
+"""Seconds that a test waits for what will come, far more than a slow machine needs."""
 CLIENTS = pytest.mark.parametrize("client", ["visual-studio-code", "neovim", "emacs"], indirect=True)
 """For tests whose answer depends on what the client can do."""
 ASKED = (

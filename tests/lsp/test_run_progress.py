@@ -14,6 +14,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcInternalError
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
+from kit import make_endless
 from lsp_kit import PATIENCE, Editor, begin_session
 
 Told = list[tuple[str, Any]]
@@ -82,6 +83,7 @@ async def test_the_progress_of_a_cancelled_run_ends_by_saying_so(
     client: LanguageClient, tmp_path: Path, told: Told
 ) -> None:
     editor = Editor(client, tmp_path)
+    make_endless(editor.path)
     editor.open()
     params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": editor.uri}])
     running = asyncio.ensure_future(client.workspace_execute_command_async(params))

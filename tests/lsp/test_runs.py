@@ -12,7 +12,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
-from kit import schema_errors
+from kit import make_endless, schema_errors
 from lsp_kit import CLIENTS, PATIENCE, Editor, plain
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.cli import main
@@ -207,6 +207,7 @@ async def test_the_lens_record_runs_a_scenario_and_pictures_what_it_violates(edi
 
 @pytest.mark.physics
 async def test_a_cancelled_run_leaves_its_open_clauses_unknown(editor: Editor, run_messages: list[Any]) -> None:
+    make_endless(editor.path)
     editor.open()
     await editor.diagnostics()
     running = asyncio.ensure_future(execute(editor, "run"))
