@@ -21,6 +21,8 @@
   (pcase-let ((`(,eglot ,lsp-mode) (robbdd-forms page)))
     (mapc #'eval (if (eq client 'eglot) eglot (append (butlast eglot 2) lsp-mode)))))
 
+(defconst patience 180 "Seconds that anything may take, far more than a slow machine needs.")
+
 (defun expect (words held)
   "Say that WORDS hold; end in failure unless HELD."
   (unless held
@@ -31,7 +33,7 @@
 (defmacro eventually (words &rest check)
   "Wait until CHECK holds, which WORDS say."
   (declare (indent 1))
-  `(expect ,words (with-timeout (60 nil)
+  `(expect ,words (with-timeout (patience nil)
                     (while (not (progn ,@check))
                       (accept-process-output nil 0.05))
                     t)))

@@ -4,6 +4,7 @@
 (require 'xref)
 (setq lsp-auto-guess-root t
       lsp-idle-delay 0.05
+      lsp-response-timeout patience
       xref-prompt-for-identifier nil)
 
 (defun visit (file)
@@ -69,7 +70,6 @@
 (overwrite "{ <places.near_ws>, <places.right_ws> }" "{ <places.near_ws> }")
 (overwrite "held by <robot>, after <evt-pick-end>" "held by <robot>, after <evt-place-end>")
 (before "Scenario part-to-bin")
-(setq lsp-response-timeout 120)
 (act "Run scenario part-to-bin")
 (eventually "a violated clause is underlined after a run" (member "clause-violated" (codes)))
 

@@ -11,7 +11,7 @@ for client in ${*:-eglot lsp-mode}; do
     cp -r "$root/examples/pickplace" "$work/"
     echo "$client"
     (cd "$work/pickplace" && HOME="$work" XDG_CONFIG_HOME="$work" PATH="$(dirname "$ROBBDD_LSP"):$PATH" \
-        timeout 300 "$emacs" --batch -q -l "$here/kit.el" \
+        timeout 900 "$emacs" --batch -q -l "$here/kit.el" \
         --eval "(robbdd-configure \"$root/docs/editors.md\" '$client)" -l "$here/$client.el")
     rm -rf "$work"
 done

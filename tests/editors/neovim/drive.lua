@@ -7,8 +7,11 @@ local function expect(condition, words)
   io.stdout:write("ok: " .. words .. "\n")
 end
 
+-- Milliseconds, far more than a slow machine needs.
+local patience = 180000
+
 local function eventually(words, check)
-  expect(vim.wait(60000, check, 20), words)
+  expect(vim.wait(patience, check, 20), words)
 end
 
 local function place(text, behind)
@@ -23,7 +26,7 @@ end
 
 local function ask(method, parameters)
   parameters.textDocument = { uri = vim.uri_from_bufnr(0) }
-  local answers = vim.lsp.buf_request_sync(0, method, parameters, 60000) or {}
+  local answers = vim.lsp.buf_request_sync(0, method, parameters, patience) or {}
   for _, answer in pairs(answers) do
     return answer.result
   end

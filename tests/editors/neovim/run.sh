@@ -12,4 +12,4 @@ cp -r "$root/examples/pickplace" "$work/"
 sed -n '/^```lua$/,/^```$/p' "$root/docs/editors.md" | sed '1d;$d' > "$work/init.lua"
 cd "$work/pickplace"
 HOME="$work" XDG_CONFIG_HOME="$work" XDG_DATA_HOME="$work" XDG_STATE_HOME="$work" PATH="$(dirname "$ROBBDD_LSP"):$PATH" \
-    timeout 120 "$nvim" --headless -u "$work/init.lua" -i NONE -n pickplace.bdd -c "luafile $here/drive.lua"
+    timeout 900 "$nvim" --headless -u "$work/init.lua" -i NONE -n pickplace.bdd -c "luafile $here/drive.lua"
