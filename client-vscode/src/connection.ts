@@ -3,8 +3,8 @@ import { createInterface } from "node:readline";
 import type { Readable } from "node:stream";
 import * as vscode from "vscode";
 import { CloseAction, ErrorAction, LanguageClient, State, TransportKind } from "vscode-languageclient/node";
-import { failuresFirst } from "./hints";
 import { RestartBudget } from "./restarts";
+import { VerdictPainter } from "./verdicts/painter";
 
 /** What hears of a connection, and does what the server's commands ask for. */
 export interface Owner {
@@ -37,6 +37,8 @@ export function createClient(
 ): LanguageClient {
   const budget = new RestartBudget();
   let answered = false;
+  /** There while the server runs: what it has told goes with it. */
+  let verdicts: VerdictPainter | undefined;
   const client = new DiscreetClient(
     "robbdd",
     "RobBDD",
@@ -63,8 +65,14 @@ export function createClient(
       middleware: {
         provideCompletionItem: async (document, position, context, token, next) =>
           withoutSnippets(await next(document, position, context, token)),
-        provideInlayHints: async (document, range, token, next) =>
-          failuresFirst(document, (await next(document, range, token)) ?? []),
+        provideInlayHints: (document, part, token, next) => {
+          const ask = (range: vscode.Range) => next(document, range, token);
+          return verdicts === undefined ? ask(part) : verdicts.takeHints(document, part, ask);
+        },
+        provideCodeLenses: (document, token, next) => {
+          const ask = () => next(document, token);
+          return verdicts === undefined ? ask() : verdicts.takeLenses(document, ask);
+        },
         executeCommand: (name, [argument]: unknown[]) => owner.execute(name, argument),
       },
       // Python's logging writes everything to stderr; that alone does not make a line an error.
@@ -75,6 +83,8 @@ export function createClient(
     owner.runMessage(notification);
   });
   client.onDidChangeState(({ newState }) => {
+    verdicts?.dispose();
+    verdicts = newState === State.Running ? new VerdictPainter() : undefined;
     if (newState === State.Starting) {
       owner.starting();
     } else if (newState === State.Running) {

@@ -13,8 +13,17 @@ interface Command extends Entry {
   readonly title: string;
 }
 
+interface Colour {
+  readonly id: string;
+  readonly defaults: Readonly<Record<string, string>>;
+}
+
 interface Manifest {
-  readonly contributes: { readonly commands: readonly Command[]; readonly menus: Readonly<Record<string, readonly Entry[]>> };
+  readonly contributes: {
+    readonly colors: readonly Colour[];
+    readonly commands: readonly Command[];
+    readonly menus: Readonly<Record<string, readonly Entry[]>>;
+  };
 }
 
 const { contributes } = JSON.parse(text("package.json")) as Manifest;
@@ -46,6 +55,15 @@ test("the readme tells of every command of the palette", () => {
   const told = [...text("README.md").matchAll(/^\| RobBDD: (.*?) \|/gm)].map(([, title]) => title);
   const offered = contributes.commands.filter(({ command }) => palette.get(command) !== "false");
   assert.deepEqual(told.sort(), offered.map(({ title }) => title).sort());
+});
+
+test("each look of a verdict has a colour, which every kind of theme gives it", () => {
+  const looks = ["holds", "violated", "unknown", "stale"];
+  assert.deepEqual(contributes.colors.map(({ id }) => id), looks.map((look) => `robbdd.${look}Foreground`));
+  for (const { id, defaults } of contributes.colors) {
+    assert.deepEqual(Object.keys(defaults).sort(), ["dark", "highContrast", "highContrastLight", "light"], id);
+    assert.ok(Object.values(defaults).every((colour) => !colour.startsWith("#")), `${id} has a colour of its own`);
+  }
 });
 
 function text(path: string): string {

@@ -4,6 +4,7 @@ import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { LONG, TRY, eventually } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
+import { verdictAt } from "./harness/verdicts.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "pickplace/pickplace.bdd";
@@ -27,8 +28,7 @@ step("hover on a violated clause shows the moment and the margin over time", asy
   const { workbench } = session;
   await workbench.openFile(FILE);
   await workbench.codeLens("Run").first().click();
-  const clause = workbench.lines("at-goal:");
-  await clause.filter({ hasText: "✗" }).waitFor({ timeout: LONG });
+  await verdictAt(workbench, /at-goal:/, /^✗/, { timeout: LONG });
   await workbench.statusText(/RobBDD$/, LONG);
   for (const scheme of Object.keys(SCHEMES)) {
     await workbench.changeScheme(scheme);

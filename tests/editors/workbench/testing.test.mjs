@@ -8,6 +8,7 @@ import { LANGUAGE_SERVER } from "./harness/checkout.mjs";
 import { renamed, writeEndless } from "./harness/models.mjs";
 import { timed } from "./harness/patience.mjs";
 import { testingStory } from "./harness/testingView.mjs";
+import { verdictAt } from "./harness/verdicts.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
 const FILE = "pickplace.bdd";
@@ -109,7 +110,7 @@ step("a failing clause shows its margin and instant where it stands, and what wa
   const message = workbench.page.locator(".test-error-content-widget", { hasText: told });
   await message.first().waitFor();
   // The message covers what stands behind the clause, so that the verdict stands before it.
-  await workbench.lines(/^\s*✗.*at-goal:/).waitFor();
+  assert.equal((await verdictAt(workbench, /^\s*at-goal:/, /^✗/)).side, "before");
   for (const scheme of Object.keys(SCHEMES)) {
     await workbench.changeScheme(scheme);
     await workbench.screenshot(`testing-failed-${scheme}`);

@@ -4,6 +4,7 @@ import { join } from "node:path";
 import { SAMPLES } from "./harness/checkout.mjs";
 import { LONG } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
+import { verdictAt } from "./harness/verdicts.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
 
 const TITLE = "Get Started with RobBDD";
@@ -36,8 +37,7 @@ step("each step's button works and its tick comes with the deed", async () => {
   await page.locator('.tab.active[data-resource-name="pickplace.bdd"]').waitFor();
 
   await press("run", "Run Scenarios of This File");
-  const verdict = page.locator(".editor-instance .monaco-editor .view-line", { hasText: "✔" });
-  await verdict.first().waitFor({ timeout: LONG });
+  await verdictAt(workbench, /holds\(/, /^✔/, { editor: ".editor-instance .monaco-editor", timeout: LONG });
   await done("run");
   await workbench.screenshot("walkthrough-green");
 

@@ -109,15 +109,22 @@ export class CodeServer {
     groups.delete(group);
   }
 
+  /** Change settings; the window follows as soon as it notices. */
+  async configure(settings) {
+    Object.assign(this.#settings, settings);
+    const text = JSON.stringify(this.#settings, undefined, 2);
+    // An extension may ask for its settings before the browser has sent the user's: the machine's are there at once.
+    for (const place of ["Machine", "User"]) {
+      await writeFile(join(this.#state, "data", place, "settings.json"), text);
+    }
+  }
+
   async #writeProfile() {
     this.#port = await freePort();
     for (const folder of ["home", "data/User", "data/Machine", "extensions"]) {
       await mkdir(join(this.#state, folder), { recursive: true });
     }
-    // An extension may ask for its settings before the browser has sent the user's: the machine's are there at once.
-    const settings = JSON.stringify(this.#settings, undefined, 2);
-    await writeFile(join(this.#state, "data/Machine/settings.json"), settings);
-    await writeFile(join(this.#state, "data/User/settings.json"), settings);
+    await this.configure({});
     const config = `bind-addr: 127.0.0.1:${this.#port}\nauth: none\ncert: false\n`;
     await writeFile(join(this.#state, "config.yaml"), config);
   }

@@ -26,7 +26,7 @@ const PAGE_CLASSES = {
 };
 
 const GROUP = ".editor-group-container.active";
-const EDITOR = `${GROUP} .editor-instance .monaco-editor`;
+export const EDITOR = `${GROUP} .editor-instance .monaco-editor`;
 const QUICK_INPUT = ".quick-input-widget .quick-input-filter input";
 const TOASTS = ".notifications-toasts .notification-list-item";
 
@@ -156,7 +156,7 @@ export class Workbench {
     return this.page.locator(`${EDITOR} .codelens-decoration a`, { hasText: text });
   }
 
-  /** The visible lines of the active editor that match, with their inlay hints in the text. */
+  /** The visible lines of the active editor that match, with their inlay hints in the text; verdicts are drawn beside it, see `verdicts.mjs`. */
   lines(text) {
     return this.page.locator(`${EDITOR} .view-line`, { hasText: text });
   }
@@ -181,17 +181,6 @@ export class Workbench {
   /** Wait until the status item of the extension reads like this. */
   async statusText(pattern, timeout = PATIENCE) {
     await this.status.filter({ hasText: pattern }).waitFor({ timeout });
-  }
-
-  /** The colour of the first verdict beside a clause and that of the ground it stands on. */
-  async verdictColours() {
-    // In one go: the editor may draw its lines anew at any time.
-    const found = await this.page.waitForFunction((selector) => {
-      const hint = [...document.querySelectorAll(selector)].find((span) => /[✔✗]/.test(span.textContent));
-      const ground = hint?.closest(".monaco-editor-background, .monaco-editor");
-      return ground ? [getComputedStyle(hint).color, getComputedStyle(ground).backgroundColor] : undefined;
-    }, `${EDITOR} .view-line span > span`);
-    return found.jsonValue();
   }
 
   /** Wait for the toast with this text and return it. It stays while it is pointed at. */

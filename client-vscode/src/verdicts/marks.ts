@@ -1,0 +1,66 @@
+// The verdicts among the server's hints and lenses, as marks in the text.
+import type * as vscode from "vscode";
+import { isRecord } from "../values";
+
+/** What a result is coloured by. */
+export interface Appearance {
+  readonly verdict: "holds" | "violated" | "unknown";
+  /** The text has changed since. */
+  readonly stale: boolean;
+}
+
+/** Words at a place of a text, before it or behind it, with what is told to who points at them. */
+export interface Mark extends Appearance {
+  readonly words: string;
+  readonly line: number;
+  readonly character: number;
+  readonly side: "before" | "after";
+  readonly tooltip: string;
+}
+
+type Text = Pick<vscode.TextDocument, "lineAt">;
+
+/** How a hint or a lens of the server is to look; undefined where it tells no verdict. */
+export function appearanceOf(shown: object): Appearance | undefined {
+  const data: unknown = "data" in shown ? shown.data : undefined;
+  if (!isRecord(data) || typeof data["verdict"] !== "string") {
+    return undefined;
+  }
+  const verdict = data["verdict"] === "holds" || data["verdict"] === "violated" ? data["verdict"] : "unknown";
+  return { verdict, stale: data["stale"] === true };
+}
+
+/**
+ * The verdicts on clauses and rows. One that does not hold stands before its clause: behind it the editor draws the
+ * failure of the test, over whatever stands there.
+ */
+export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[]): Mark[] {
+  return hints.flatMap((hint): Mark[] => {
+    const appearance = appearanceOf(hint);
+    if (appearance === undefined) {
+      return [];
+    }
+    const { line, character } = hint.position;
+    const words = typeof hint.label === "string" ? hint.label : hint.label.map(({ value }) => value).join("");
+    const tooltip = typeof hint.tooltip === "string" ? hint.tooltip : (hint.tooltip?.value ?? "");
+    const mark = { ...appearance, words, line, tooltip };
+    const { firstNonWhitespaceCharacterIndex: first, text } = document.lineAt(line);
+    // The editor draws nothing at the row of a table.
+    return appearance.verdict === "holds" || text[first] === "|"
+      ? [{ ...mark, character, side: "after" }]
+      : [{ ...mark, character: first, side: "before" }];
+  });
+}
+
+/** The pass rates, at the ends of the lines below their lenses. */
+export function marksOfLenses(document: Text, lenses: readonly vscode.CodeLens[]): Mark[] {
+  return lenses.flatMap((lens): Mark[] => {
+    const appearance = appearanceOf(lens);
+    if (appearance === undefined) {
+      return [];
+    }
+    const { line } = lens.range.start;
+    const character = document.lineAt(line).text.length;
+    return [{ ...appearance, words: lens.command?.title ?? "", line, character, side: "after", tooltip: "" }];
+  });
+}

@@ -1,0 +1,121 @@
+// Draws verdicts in their colours: the editor has one colour for all hints and one for all lenses, icons included.
+import * as vscode from "vscode";
+import { type Mark, appearanceOf, marksOfHints, marksOfLenses } from "./marks";
+
+/** Room between a verdict and the text. */
+const GAP = "1.5ch";
+
+type Answer<Entry> = vscode.ProviderResult<Entry[]>;
+
+/** Takes the verdicts out of a server's hints and lenses and draws them itself, until it is disposed of. */
+export class VerdictPainter implements vscode.Disposable {
+  private readonly hints = new Layer((document) => {
+    const shown = vscode.workspace.getConfiguration("editor", document).get("inlayHints.enabled");
+    return shown === "on" || shown === "onUnlessPressed";
+  });
+  private readonly lenses = new Layer(
+    (document) => vscode.workspace.getConfiguration("editor", document).get("codeLens") === true,
+  );
+  private readonly layers = [this.hints, this.lenses];
+  private readonly listeners = [
+    vscode.window.onDidChangeVisibleTextEditors((editors) => {
+      this.draw(editors);
+    }),
+    vscode.workspace.onDidChangeConfiguration((change) => {
+      if (change.affectsConfiguration("editor.inlayHints") || change.affectsConfiguration("editor.codeLens")) {
+        this.draw(vscode.window.visibleTextEditors);
+      }
+    }),
+    vscode.workspace.onDidCloseTextDocument((document) => {
+      for (const layer of this.layers) {
+        layer.show(document, []);
+      }
+    }),
+  ];
+
+  /** Ask for the hints of a whole text, whatever part is in sight, and return those of that part that are no verdicts. */
+  async takeHints(
+    document: vscode.TextDocument,
+    part: vscode.Range,
+    ask: (whole: vscode.Range) => Answer<vscode.InlayHint>,
+  ): Promise<vscode.InlayHint[] | null | undefined> {
+    const { version } = document;
+    const found = await ask(new vscode.Range(0, 0, document.lineCount, 0));
+    // Of a text that has been edited since the editor asks again.
+    if (found && document.version === version) {
+      this.hints.show(document, marksOfHints(document, found));
+    }
+    return found?.filter((hint) => appearanceOf(hint) === undefined && part.contains(hint.position));
+  }
+
+  /** Ask for the lenses of a text and return those that are no verdicts. */
+  async takeLenses(
+    document: vscode.TextDocument,
+    ask: () => Answer<vscode.CodeLens>,
+  ): Promise<vscode.CodeLens[] | null | undefined> {
+    const { version } = document;
+    const found = await ask();
+    if (found && document.version === version) {
+      this.lenses.show(document, marksOfLenses(document, found));
+    }
+    return found?.filter((lens) => appearanceOf(lens) === undefined);
+  }
+
+  dispose(): void {
+    for (const part of [...this.listeners, ...this.layers]) {
+      part.dispose();
+    }
+  }
+
+  private draw(editors: readonly vscode.TextEditor[]): void {
+    for (const editor of editors) {
+      for (const layer of this.layers) {
+        layer.draw(editor);
+      }
+    }
+  }
+}
+
+/** The marks of one kind, by document. */
+class Layer implements vscode.Disposable {
+  private readonly type = vscode.window.createTextEditorDecorationType({});
+  private readonly known = new WeakMap<vscode.TextDocument, { readonly version: number; readonly marks: readonly Mark[] }>();
+
+  constructor(private readonly isWanted: (document: vscode.TextDocument) => boolean) {}
+
+  /** Show these marks in a document as it is now, in all its editors, in place of those from before. */
+  show(document: vscode.TextDocument, marks: readonly Mark[]): void {
+    this.known.set(document, { version: document.version, marks });
+    for (const editor of vscode.window.visibleTextEditors.filter((one) => one.document === document)) {
+      this.draw(editor);
+    }
+  }
+
+  /** Draw what is known in an editor; where the text has changed since, the editor has moved the marks that it has. */
+  draw(editor: vscode.TextEditor): void {
+    const known = this.known.get(editor.document);
+    if (!this.isWanted(editor.document)) {
+      editor.setDecorations(this.type, []);
+    } else if (known?.version === editor.document.version) {
+      editor.setDecorations(this.type, known.marks.map(decoration));
+    }
+  }
+
+  dispose(): void {
+    this.type.dispose();
+  }
+}
+
+function decoration({ verdict, stale, words, line, character, side, tooltip }: Mark): vscode.DecorationOptions {
+  const text: vscode.ThemableDecorationAttachmentRenderOptions = {
+    contentText: words,
+    color: new vscode.ThemeColor(`robbdd.${stale ? "stale" : verdict}Foreground`),
+    fontStyle: stale ? "italic" : "normal",
+    margin: side === "after" ? `0 0 0 ${GAP}` : `0 ${GAP} 0 0`,
+  };
+  return {
+    range: new vscode.Range(line, character, line, character),
+    renderOptions: { [side]: text },
+    ...(tooltip === "" ? {} : { hoverMessage: new vscode.MarkdownString().appendText(tooltip) }),
+  };
+}

@@ -1,0 +1,62 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import type { CodeLens, InlayHint, TextDocument } from "vscode";
+import { appearanceOf, marksOfHints, marksOfLenses } from "../src/verdicts/marks";
+
+const LINES = ["Scenario tidy {", "    at-goal: holds(<thing>)", "    | <cube> | <bin> |"];
+
+test("what tells no verdict is none", () => {
+  for (const data of [undefined, null, 1, "holds", {}, { stale: true }, { verdict: 1 }]) {
+    assert.equal(appearanceOf({ label: "✔ 4/4", data }), undefined);
+  }
+  assert.equal(appearanceOf({ label: "✔ 4/4" }), undefined);
+});
+
+test("a verdict of a later server is unknown, and fresh unless it says that it is stale", () => {
+  assert.deepEqual(appearanceOf({ data: { verdict: "holds" } }), { verdict: "holds", stale: false });
+  assert.deepEqual(appearanceOf({ data: { verdict: "perhaps", stale: true } }), { verdict: "unknown", stale: true });
+});
+
+test("what holds stands behind its clause, what does not before it, and behind the row of a table in any case", () => {
+  const found = marksOfHints(text(), [
+    hint(1, 27, "✔ 4/4", { verdict: "holds", stale: false }, "thing = cube: ✔"),
+    hint(1, 27, "✗ 0/4 (stale)", { verdict: "violated", stale: true }),
+    hint(1, 27, "? 0/4", { verdict: "unknown", stale: false }),
+    hint(2, 22, "✗ at-goal", { verdict: "violated", stale: false }),
+    hint(0, 13, "4 scenarios", undefined),
+  ]);
+  assert.deepEqual(
+    found.map(({ words, line, character, side }) => [words, line, character, side]),
+    [
+      ["✔ 4/4", 1, 27, "after"],
+      ["✗ 0/4 (stale)", 1, 4, "before"],
+      ["? 0/4", 1, 4, "before"],
+      ["✗ at-goal", 2, 22, "after"],
+    ],
+  );
+  assert.deepEqual(found.map(({ tooltip }) => tooltip), ["thing = cube: ✔", "", "", ""]);
+});
+
+test("a pass rate stands at the end of the line below its lens", () => {
+  const rate = { verdict: "violated", stale: false };
+  const lenses = [lens("Run", undefined), lens("✗ 3/4 passed", rate)];
+  assert.deepEqual(marksOfLenses(text(), lenses), [
+    { ...rate, words: "✗ 3/4 passed", line: 0, character: 15, side: "after", tooltip: "" },
+  ]);
+});
+
+function hint(line: number, character: number, label: string, data: unknown, tooltip?: string): InlayHint {
+  return { position: { line, character }, label, tooltip, data } as unknown as InlayHint;
+}
+
+function lens(title: string, data: unknown): CodeLens {
+  return { range: { start: { line: 0, character: 9 } }, command: { title, command: "" }, data } as unknown as CodeLens;
+}
+
+function text(): Pick<TextDocument, "lineAt"> {
+  const lineAt = (line: number) => {
+    const found = LINES[line] ?? "";
+    return { text: found, firstNonWhitespaceCharacterIndex: found.search(/\S/) };
+  };
+  return { lineAt } as TextDocument;
+}
