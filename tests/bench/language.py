@@ -68,6 +68,9 @@ def _one_file(text: str, name: str, typing: Iterator[str]) -> Iterator[tuple[str
     project = Project()
     project.open(f"{FOLDER}lab.scene", 1, SCENE)
     forget_declarations()
+    left = _uninterrupted(lambda: Project().open(uri, 1, text))
+    yield f"a text that another one has replaced is left within, {name}", f"{left:.0f} ms"
+    forget_declarations()
     textx = milliseconds(lambda: [parse_with_textx("bdd", chunk.text) for chunk in split("bdd", text)])
     opened = milliseconds(lambda: _typed(project, uri, 1, text))
     yield f"cold open, {name}", f"{opened:.0f} ms, {1000 * opened / count:.0f} ms per 1000 lines"

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from tests.bench.models import model
+from tests.bench.models import long_story, model
 
 from kit import FOLDER, SCENE
 from robbdd_tools.base.memory import collect_rarely
@@ -20,7 +20,7 @@ from robbdd_tools.names.project import Project
 if TYPE_CHECKING:
     from rdflib import Graph
 
-EDITS = 40
+EDITS, FEW_EDITS = 40, 5
 TRIPLES = 100_000
 QUERIES = ("idle-events", "variants", "clause-times")
 SLOW_QUERIES = ("predicate-coverage", "clauses-by-workspace")
@@ -31,30 +31,34 @@ def rows() -> Iterator[tuple[str, str]]:
     """Yield a name and a figure for each measurement."""
     collect_rarely()  # As the validation process does.
     for lines in (100, 1000, 10_000):
-        yield _edits(lines)
+        text = model(lines)
+        yield _edits(text, f"{text.count(chr(10))} lines", "0.5 seconds", EDITS)
+    yield _edits(long_story(10_000), "one story of 10000 lines", "{ <arms.panda> }", FEW_EDITS)
     yield from _engines()
 
 
-def _edits(lines: int) -> tuple[str, str]:
-    text, uri = model(lines), f"{FOLDER}bench.bdd"
+def _edits(text: str, name: str, old: str, count: int) -> tuple[str, str]:
+    """Measure edits of a text: more and more space behind the first word of the first ``old`` in its second half."""
+    uri = f"{FOLDER}bench.bdd"
     project, validation = Project(), Validation()
     project.open(f"{FOLDER}lab.scene", 1, SCENE)
     project.open(uri, 1, text)
     validation.run(project.snapshot(), uri)
-    place = text.index("0.5 seconds", len(text) // 2)
+    place = text.index(old, len(text) // 2) + old.index(" ")
     edits: list[float] = []
-    for number in range(EDITS):
-        edited = f"{text[:place]}0.{number + 10} seconds{text[place + len('0.5 seconds') :]}"
+    for number in range(count):
+        edited = f"{text[:place]}{' ' * (number + 1)}{text[place:]}"
 
         def validated(version: int = number + 2, edited: str = edited) -> None:
             project.open(uri, version, edited)
             validation.run(project.snapshot(), uri)
+            assert validation.looked_at
 
         edits.append(_milliseconds(validated))
     whole = _milliseconds(lambda: validate(build_graph(project.snapshot(), uri)))
     hundredths = statistics.quantiles(edits, n=100, method="inclusive")
     figures = f"p50 {hundredths[49]:.0f}, p95 {hundredths[94]:.0f} ms; the whole graph takes {whole:.0f} ms"
-    return f"edit to the shapes' findings, {text.count(chr(10))} lines", figures
+    return f"edit to the shapes' findings, {name}", figures
 
 
 def _engines() -> Iterator[tuple[str, str]]:
