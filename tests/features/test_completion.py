@@ -1,17 +1,22 @@
 """Completion offers what the grammar accepts at the cursor, by kind and scope of names."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from kit import MODEL, ROOT, SCENE, fixture
+from kit import MODEL, MODELS, ROOT, SCENE, fixture
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import Completion, complete
+from robbdd_tools.features.describe_entry import describe_entry
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.fixes_on_demand import fixes_on_demand
 from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.snippets import declaration_snippets
+from robbdd_tools.features.unimported import Elsewhere
 from robbdd_tools.names.project import Project
 from robbdd_tools.syntax.parse import parse_declaration
 
@@ -228,6 +233,47 @@ def test_a_name_on_disk_that_nobody_has_loaded_brings_its_import(tmp_path: Path)
     project.open(uri, 1, text)
     at_scene = text.index("<bench_scene>") + 1
     assert [entry.edits[0].text for entry in complete(project.snapshot(), uri, at_scene)] == ['import "lab.scene"\n']
+
+
+def test_a_name_of_a_file_elsewhere_in_the_workspace_brings_its_import(tmp_path: Path) -> None:
+    (tmp_path / "cells").mkdir()
+    lab = tmp_path / "cells" / "lab.scene"
+    lab.write_text(SCENE, encoding="utf-8")
+    uri, elsewhere, project = path_to_uri(tmp_path / "story" / "main.bdd"), Elsewhere(), Project()
+    elsewhere.look([path_to_uri(lab), path_to_uri(tmp_path / "gone.scene")])
+    text = MODEL.replace('import "lab.scene"\n', "")
+    project.open(uri, 1, text)
+    at_scene = text.index("<bench_scene>") + 1
+    (found,) = complete(project.snapshot(), uri, at_scene, elsewhere)
+    assert [edit.text for edit in found.edits] == ['import "../cells/lab.scene"\n']
+    assert "bench_scene" in str(describe_entry(project.snapshot(), found.kind, *(found.origin or ())))
+    unknown = next(one for one in fast_diagnostics(project.snapshot(), uri) if one.code == "unknown-name")
+    fixes = fixes_on_demand(project.snapshot(), uri, unknown, elsewhere)
+    assert [fix.title for fix in fixes] == ["Import '../cells/lab.scene'"]
+    elsewhere.look([])
+    assert complete(project.snapshot(), uri, at_scene, elsewhere) == []
+
+
+def test_the_configurations_that_can_be_set_are_offered() -> None:
+    found = at(edited("<part> is located at <goal>, before", "<robot> has config max$0, before"))
+    assert {entry.label: entry.detail for entry in found}["max_speed"] == "of an agent, m/s"
+    assert {entry.kind for entry in found} == {"setting"}
+
+
+@pytest.mark.parametrize("path", [path for path in MODELS if path.parent.name in ("pickplace", "ownrobot")], ids=str)
+def test_every_proposal_of_every_kind_is_documented(path: Path) -> None:
+    project, uri = Project(), path_to_uri(path)
+    project.load(uri)
+    snapshot = project.snapshot()
+    text = snapshot.document(uri).text
+    places = [0, *(match.start() for match in re.finditer(r"(?<=[<\s\"'])", text))]
+    found = {
+        (entry.kind, *(entry.origin or (uri, entry.label)))
+        for place in places[:: max(1, len(places) // 150)]
+        for entry in complete(snapshot, uri, place)
+    }
+    assert found
+    assert [entry for entry in sorted(found) if not describe_entry(snapshot, *entry)] == []
 
 
 def test_completion_works_below_broken_lines_of_the_same_declaration() -> None:

@@ -49,10 +49,12 @@ class Setting:
         fits = all(self.low <= number <= self.high and not (self.whole and number % 1) for number in numbers)
         ordered = all(low < high for low, high in zip(numbers[::2], numbers[1::2], strict=False))
         if len(numbers) != self.count or not fits or not ordered:
-            raise SettingError(f"'{self.name}' cannot be '{text}': it is {self._wanted()}")
+            raise SettingError(f"'{self.name}' cannot be '{text}': it is {self.wanted}")
         return numbers
 
-    def _wanted(self) -> str:
+    @property
+    def wanted(self) -> str:
+        """What a value is, in words."""
         kind = "a whole number" if self.whole else "a number"
         if self.count > 1:
             kind = f"{self.count} numbers, each lower bound before its upper one,"

@@ -9,11 +9,12 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.checks.lines import import_edit
 from robbdd_tools.features.cursor import Cursor, cursor_at
 from robbdd_tools.features.quoted import quoted
 from robbdd_tools.features.snippets import declaration_snippets
-from robbdd_tools.features.unimported import beside, loaded
+from robbdd_tools.features.unimported import Elsewhere, beside, loaded
 from robbdd_tools.features.value_types import fits, kinds_in_text, may_be, scene_wanted, slot_wanted, values_wanted
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
@@ -28,17 +29,18 @@ if TYPE_CHECKING:
 
 MOST_BROKEN_LINES = 50
 """Lines that do not parse and are passed over on the way to a cursor."""
+_CONFIGURED = re.compile(r"\bhas\s+config\s+\Z")
 _STARTS = frozenset({"import", "ns"})
 _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet", "AgentSet", "ConstantSet", "AnySet")}
 
 
 @dataclass(frozen=True, slots=True)
 class Completion:
-    """One proposal: ``kind`` is ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog`` or the kind of a symbol.
+    """One proposal: ``kind`` is ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog``, ``setting`` or a symbol's.
 
     ``text`` replaces ``span``, or with what stands behind the cursor ``whole``; that of a snippet has placeholders.
     Of two proposals the one with the smaller ``rank`` fits better. ``edits`` go with it (an import). ``origin`` is
-    the document and the qualified name that a name stands for.
+    the document and the qualified name that a name stands for, or the URI of a file and nothing.
     """
 
     label: str
@@ -52,7 +54,7 @@ class Completion:
     origin: tuple[str, str] | None = None
 
 
-def complete(snapshot: Snapshot, uri: str, offset: int) -> list[Completion]:
+def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | None = None) -> list[Completion]:
     """Return the proposals at a cursor, keywords first, each group in alphabetical order.
 
     Variables that cannot stand in a slot of a phrase come last; values that their variable cannot take, or that are
@@ -76,7 +78,9 @@ def complete(snapshot: Snapshot, uri: str, offset: int) -> list[Completion]:
             Completion(f"{snippet.label} …", "snippet", "whole declaration", snippet.body, cursor.span, whole)
             for snippet in declaration_snippets(language)
         )
-    names = _Names(snapshot, analysis, cursor, whole)
+    names = _Names(snapshot, analysis, cursor, whole, elsewhere)
+    if "NameText" in expected.rules:
+        found += names.settings()
     found += names.proposals(expected.rules, bracket="")
     if "<" in expected.literals:
         _, inside = _expected(language, before + "<")
@@ -138,6 +142,14 @@ class _Names:
     file: FileAnalysis
     cursor: Cursor
     whole: Span
+    elsewhere: Elsewhere | None
+
+    def settings(self) -> Iterator[Completion]:
+        """Yield the configurations that ``has config`` can set."""
+        if _CONFIGURED.search(self.cursor.before):
+            for name, setting in SETTINGS.items():
+                detail = f"of {setting.target}" + (f", {setting.unit}" if setting.unit else "")
+                yield Completion(name, "setting", detail, name, self.cursor.span, self.whole)
 
     def proposals(self, rules: Iterable[str], bracket: str) -> Iterator[Completion]:
         """Yield the names that fit some rules: those in scope, then those of files to import."""
@@ -175,14 +187,15 @@ class _Names:
 
     def _to_import(self, role: str, known: set[str], bracket: str, wanted: Kinds) -> Iterator[Completion]:
         uri = self.file.document.uri
-        for path, index in [*loaded(self.snapshot, uri), *beside(self.snapshot, uri)]:
-            for name in sorted(index.names.kinds):
-                kind = next((kind for kind in index.names.kinds[name] if kind in ROLE_KINDS[role]), None)
+        others = [] if self.elsewhere is None else self.elsewhere.importable(self.snapshot, uri)
+        for other in [*loaded(self.snapshot, uri), *beside(self.snapshot, uri), *others]:
+            for name in sorted(other.names):
+                kind = next((kind for kind in other.names[name] if kind in ROLE_KINDS[role]), None)
                 if kind is not None and name not in known and may_be(kind, wanted):
                     known.add(name)
-                    found = self._proposal(name, kind, (index.document.uri, name), bracket, rank=2)
-                    detail = f"{found.detail}, imports '{path}'"
-                    yield replace(found, detail=detail, edits=(import_edit(self.file, path),))
+                    found = self._proposal(name, kind, (other.uri, name), bracket, rank=2)
+                    detail = f"{found.detail}, imports '{other.path}'"
+                    yield replace(found, detail=detail, edits=(import_edit(self.file, other.path),))
 
     def _proposal(self, name: str, kind: SymbolKind, origin: tuple[str, str], bracket: str, rank: int) -> Completion:
         closing = kind is not SymbolKind.NAMESPACE and _needs_closing(self.file.document.text, self.cursor)
@@ -214,7 +227,7 @@ def _in_quotes(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion
     """Propose what may stand inside quotes."""
     text = file.document.text
     rest = re.compile(r"[^\"'\n/]*").match(text, offset)
-    for name, kind, typed in quoted(uri, text[text.rfind("\n", 0, offset) + 1 : offset]):
+    for name, kind, typed, target in quoted(uri, text[text.rfind("\n", 0, offset) + 1 : offset]):
         start = offset - len(typed)
         whole = Span(start, offset if rest is None else rest.end())
-        yield Completion(name, kind, "", name, Span(start, offset), whole)
+        yield Completion(name, kind, "", name, Span(start, offset), whole, origin=(target, "") if target else None)

@@ -69,9 +69,9 @@ def reference_at(file: FileAnalysis, span: Span) -> tuple[PlacedDeclaration, Ref
 def imports_of(file: FileAnalysis, reference: Reference, others: Iterable[Importable]) -> Iterator[Fix]:
     """Yield an import of each file that declares a name as it is used."""
     kinds = ROLE_KINDS[reference.ref.role]
-    for path, index in others:
-        if any(kind in kinds for kind in index.names.kinds.get(reference.ref.path, ())):
-            yield Fix(f"Import '{path}'", (import_edit(file, path),))
+    for other in others:
+        if any(kind in kinds for kind in other.names.get(reference.ref.path, ())):
+            yield Fix(f"Import '{other.path}'", (import_edit(file, other.path),))
 
 
 def _declarations(

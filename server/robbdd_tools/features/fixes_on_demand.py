@@ -12,7 +12,7 @@ from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.features.fixes import imports_of, reference_at
 from robbdd_tools.features.fixes_of_files import cycle_fixes, import_fixes, model_file_fixes
 from robbdd_tools.features.rename import RenameRefused, rename
-from robbdd_tools.features.unimported import beside
+from robbdd_tools.features.unimported import Elsewhere, beside
 from robbdd_tools.names.elements import Site, elements_of, site_of
 from robbdd_tools.names.index import FileIndex
 from robbdd_tools.names.problems import free_name
@@ -30,17 +30,24 @@ if TYPE_CHECKING:
 Finder = Callable[["Snapshot", "FileAnalysis", Diagnostic], Iterator[Fix]]
 
 
-def fixes_on_demand(snapshot: Snapshot, uri: str, diagnostic: Diagnostic) -> tuple[Fix, ...]:
+def fixes_on_demand(
+    snapshot: Snapshot, uri: str, diagnostic: Diagnostic, elsewhere: Elsewhere | None = None
+) -> tuple[Fix, ...]:
     """Return the fixes of a finding that it does not bring with it; all files that import its own must be there."""
     file, find = snapshot.file(uri), _FINDERS.get(diagnostic.code)
+    if file is not None and diagnostic.code == "unknown-name":
+        return tuple(_imports(snapshot, file, diagnostic, elsewhere))
     return () if file is None or find is None else tuple(find(snapshot, file, diagnostic))
 
 
-def _imports(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
+def _imports(
+    snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic, elsewhere: Elsewhere | None
+) -> Iterator[Fix]:
     """Yield imports of files that nobody has loaded yet and that declare an unknown name."""
-    used = reference_at(file, diagnostic.span)
+    used, uri = reference_at(file, diagnostic.span), file.document.uri
     if used is not None:
-        yield from imports_of(file, used[1], beside(snapshot, file.document.uri))
+        yield from imports_of(file, used[1], beside(snapshot, uri))
+        yield from imports_of(file, used[1], elsewhere.importable(snapshot, uri) if elsewhere is not None else ())
 
 
 def _another_name(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
@@ -138,7 +145,6 @@ def _site(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Sit
 
 _FINDERS: Mapping[str, Finder] = {
     "import": import_fixes,
-    "unknown-name": _imports,
     "model-file": model_file_fixes,
     "cyclic-import": cycle_fixes,
     "duplicate-iri": _another_name,

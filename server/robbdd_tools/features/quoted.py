@@ -23,10 +23,10 @@ MODEL_ENDINGS: Mapping[str, frozenset[str]] = {
 """How the files of each kind of model end."""
 
 
-def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str]]:
-    """Yield what may stand in the quotes that a line ends in: name, kind, and how much of it is typed already."""
+def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
+    """Yield what may stand in the quotes that a line ends in: name, kind, how much of it is typed already, file."""
     if match := _ENTRY.search(line):
-        yield from ((name, "catalog", match[1]) for name in sorted(known_entries(language_of(uri))))
+        yield from ((name, "catalog", match[1], "") for name in sorted(known_entries(language_of(uri))))
         return
     wanted = frozenset(f".{kind}" for kind in IMPORTABLE.get(language_of(uri), ()))
     match = _IMPORT.search(line)
@@ -35,7 +35,7 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str]]:
     if match is not None:
         folder, _, last = match[1].rpartition("/")
         for name, kind in _entries(uri, folder and f"{folder}/", wanted):
-            yield name, kind, last
+            yield name, kind, last, urljoin(uri, quote(f"{folder}/{name}" if folder else name))
 
 
 def _entries(uri: str, folder: str, endings: Collection[str]) -> Iterator[tuple[str, str]]:

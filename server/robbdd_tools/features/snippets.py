@@ -77,6 +77,71 @@ def declaration_snippets(language: str) -> tuple[Snippet, ...]:
     return tuple(_Writer(rules).snippet(option) for option in options if isinstance(option, Use))
 
 
+@cache
+def keyword_form(language: str, words: str) -> str | None:
+    """Return what is written with some keywords: from them to the end of what they begin, else all around them."""
+    rules = read_grammar(grammar_text(language))
+    wanted = words.split()
+    every = [parts for rule in rules.values() for parts in _sequences(rule)]
+    for parts in every:
+        for start in range(len(parts)):
+            literals = [
+                part.text
+                for part in takewhile(lambda part: _is_word((part,)), parts[start:])
+                if isinstance(part, Literal)
+            ]
+            if literals[: len(wanted)] == wanted and start + len(wanted) <= len(parts):
+                return _Writer(rules).form(_up_to_label(parts[start:], len(wanted)))
+    around = (parts for parts in every if any(_has_literal(part, words) for part in parts))
+    return next((_Writer(rules).form(parts) for parts in around), None)
+
+
+def _sequences(part: Expression) -> Iterator[tuple[Expression, ...]]:
+    """Yield the runs of parts in a rule, outer ones first."""
+    match part:
+        case Sequence():
+            yield part.parts
+            for inner in part.parts:
+                yield from _sequences(inner)
+        case Choice():
+            for option in part.options:
+                yield from _sequences(option)
+        case Optional():
+            yield from _sequences(part.part)
+        case Assignment():
+            if not isinstance(part.value, Use):
+                yield from _sequences(part.value)
+            else:
+                yield (part,)
+        case _:
+            yield (part,)
+
+
+def _up_to_label(parts: tuple[Expression, ...], words: int) -> tuple[Expression, ...]:
+    """Return the first parts, up to the next ones with a label of their own, or to a bracket opened before them."""
+    depth = 0
+    for number, part in enumerate(parts):
+        if part in (Literal("{"), Literal("(")):
+            depth += 1
+        elif part in (Literal("}"), Literal(")")):
+            depth -= 1
+        if depth < 0 or (depth == 0 and number > words and _is_labelled(parts, number)):
+            return parts[:number]
+    return parts
+
+
+def _is_labelled(parts: tuple[Expression, ...], number: int) -> bool:
+    return not _is_word(parts[number - 1 : number]) and _begins_line(parts[number:])
+
+
+def _has_literal(part: Expression, text: str) -> bool:
+    if isinstance(part, Assignment):
+        return part.separator == Literal(text) or _has_literal(part.value, text)
+    if isinstance(part, Choice):
+        return any(_has_literal(option, text) for option in part.options)
+    return isinstance(part, Literal) and part.text == text
+
+
 class _Writer:
     """Writes one declaration with marks for its placeholders, which the layout takes for names."""
 
@@ -89,6 +154,13 @@ class _Writer:
         keywords = words[: next(number for number, word in enumerate(words) if not re.fullmatch(r"[^\W\d]+", word))]
         laid_out = lay_out(_broken_into_lines(words)).rstrip("\n")
         return Snippet(" ".join(keywords), _MARK.sub(lambda match: self._placeholders[int(match[1])], laid_out))
+
+    def form(self, parts: tuple[Expression, ...]) -> str:
+        """Return parts of a rule with what the placeholders say."""
+        words = list(dropwhile(lambda word: word == _BREAK, self._words(Sequence(parts), depth=1)))
+        laid_out = lay_out(_broken_into_lines(words)).rstrip("\n")
+        body = _MARK.sub(lambda match: self._placeholders[int(match[1])], laid_out)
+        return Snippet("", body).plain
 
     def _words(self, part: Expression, depth: int, name: str = "") -> Iterator[str]:
         match part:
@@ -185,4 +257,4 @@ def _broken_into_lines(words: list[str]) -> str:
         elif not (before in ("(", "<", "=", "", _BREAK) or word in (")", ">", ":", ",")):
             text += "" if (before, word) in _JOINED else " "
         text += "" if word == _BREAK else word
-    return text.replace('="', '= "')
+    return text.replace('="', '= "').replace("=<", "= <")

@@ -1,11 +1,13 @@
-"""Model files that a file could import and does not: those that are loaded, and those beside it on disk."""
+"""Model files that a file could import and does not: loaded ones, those beside it, those elsewhere in the workspace."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import FileState, file_state, path_to_uri, read_text, uri_to_path
 from robbdd_tools.names.imports import IMPORTABLE, import_path
@@ -13,33 +15,69 @@ from robbdd_tools.names.index import FileIndex, index_file, language_of
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import SymbolKind
 
+Kinds = Mapping[str, "tuple[SymbolKind, ...]"]
+"""Qualified name → what it is declared as."""
 MOST_NEIGHBOURS = 200
 """Model files beside one another that are searched for a name."""
 
 
-Importable = tuple[str, FileIndex]
-"""The path to write, and what it leads to."""
+@dataclass(frozen=True, slots=True)
+class Importable:
+    """A file: the path to write for it, and the kinds of its names."""
+
+    path: str
+    uri: str
+    names: Kinds
+
+
+class Elsewhere:
+    """The names of the workspace's files that nobody has loaded, as they were when these were last looked at."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[FileState, Kinds]] = {}
+
+    def look(self, uris: Iterable[str]) -> None:
+        """Take in just these files; only those that have changed are read."""
+        found = dict.fromkeys(uris)
+        for uri in found:
+            checkpoint()
+            state, known = file_state(uri), self._known.get(uri)
+            if state is not None and (known is None or known[0] != state):
+                index = file_on_disk(uri)
+                if index is not None:
+                    self._known[uri] = state, index.names.kinds
+        for gone in self._known.keys() - found.keys():
+            del self._known[gone]
+
+    def importable(self, snapshot: Snapshot, uri: str) -> list[Importable]:
+        """Return the files that a file may import, neither loaded nor beside it, in the order of the paths to write."""
+        passed_over = {*snapshot.sources, *_beside(uri)}
+        return _importable(uri, ((name, found) for name, (_, found) in self._known.items() if name not in passed_over))
 
 
 def loaded(snapshot: Snapshot, uri: str) -> list[Importable]:
     """Return the files of the project that a file may still import, in the order of the paths to write."""
     reached = {file.document.uri for file in snapshot.scope(uri).files}
     indices = (source for source in snapshot.sources.values() if isinstance(source, FileIndex))
-    return _importable(uri, (index for index in indices if index.document.uri not in reached))
+    return _importable(uri, ((i.document.uri, i.names.kinds) for i in indices if i.document.uri not in reached))
 
 
 def beside(snapshot: Snapshot, uri: str) -> list[Importable]:
     """Return the files in the folder of a file that it may import and that nobody has loaded yet."""
     unread = (file_on_disk(name) for name in _beside(uri) if name not in snapshot.sources)
-    return _importable(uri, (index for index in unread if index is not None))
+    return _importable(uri, ((index.document.uri, index.names.kinds) for index in unread if index is not None))
 
 
-def _importable(uri: str, indices: Iterable[FileIndex]) -> list[Importable]:
-    kinds = IMPORTABLE.get(language_of(uri), ())
-    fitting = (index for index in indices if language_of(index.document.uri) in kinds)
-    named = ((import_path(uri, index.document.uri), index) for index in fitting)
-    return sorted(((path, index) for path, index in named if path is not None), key=lambda entry: entry[0])
+def _importable(uri: str, files: Iterable[tuple[str, Kinds]]) -> list[Importable]:
+    languages = IMPORTABLE.get(language_of(uri), ())
+    found = [
+        Importable(path, other, names)
+        for other, names in files
+        if language_of(other) in languages and (path := import_path(uri, other)) is not None
+    ]
+    return sorted(found, key=lambda file: file.path)
 
 
 def _beside(uri: str) -> list[str]:

@@ -27,6 +27,7 @@ _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     "file": _KINDS.File,
     "folder": _KINDS.Folder,
     "catalog": _KINDS.Value,
+    "setting": _KINDS.Property,
     SymbolKind.EVENT: _KINDS.Event,
     SymbolKind.VARIABLE: _KINDS.Variable,
     SymbolKind.SET_VARIABLE: _KINDS.Variable,
@@ -131,11 +132,8 @@ class Converter:
         snippets = client is not None and bool(client.snippet_support)
         if completion.kind == "snippet" and not snippets:
             return None
-        data: dict[str, str] | None = None
-        if completion.origin is not None:
-            data = {"uri": completion.origin[0], "path": completion.origin[1]}
-        elif completion.kind == "keyword":
-            data = {"words": completion.label}
+        uri, path = completion.origin or (document.uri, completion.label)
+        data = {"kind": str(completion.kind), "uri": uri, "path": path}
         range = self.range(document, completion.span)
         edit: types.TextEdit | types.InsertReplaceEdit = types.TextEdit(range=range, new_text=completion.text)
         if client is not None and client.insert_replace_support:

@@ -139,7 +139,7 @@ def _quick_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionP
     for diagnostic in fast_diagnostics(snapshot, uri):
         if diagnostic.span.start > span.end or diagnostic.span.end < span.start:
             continue
-        fixes = (*diagnostic.fixes, *fixes_on_demand(snapshot, uri, diagnostic))
+        fixes = (*diagnostic.fixes, *fixes_on_demand(snapshot, uri, diagnostic, ls.importers.elsewhere))
         shown = ls.convert.diagnostic(snapshot, diagnostic)
         edits = ((fix.title, edit) for fix in fixes if (edit := edit_of(ls, snapshot, fix)) is not None)
         for position, (title, edit) in enumerate(edits):

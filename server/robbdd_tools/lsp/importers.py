@@ -12,6 +12,7 @@ from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.definition import symbol_at
 from robbdd_tools.features.import_graph import ImportGraph
+from robbdd_tools.features.unimported import Elsewhere
 from robbdd_tools.features.workspace_files import model_files, model_files_near
 from robbdd_tools.lsp.convert import document_of
 
@@ -35,6 +36,8 @@ class Importers:
         self._server = server
         self._known: dict[str, tuple[float, ImportGraph]] = {}
         self._looking: asyncio.Task[bool] | None = None
+        self.elsewhere = Elsewhere()
+        """The names that files of the workspace declare, loaded or not."""
 
     async def graph(self, uri: str | None = None) -> ImportGraph:
         """Return what the files of the workspace import; for a file outside of it, those in its folder and below."""
@@ -114,3 +117,5 @@ class Importers:
         if await loaded:
             for uri in self._server.opened():
                 await self._server.publish(uri)
+        files = await asyncio.to_thread(model_files, list(self._server.workspace.folders))
+        await self._server.analyse(lambda _: self.elsewhere.look(files), urgent=False)

@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from robbdd_tools.features.clause_results import appearance, clause_hints, row_hints
 from robbdd_tools.features.completion import complete
-from robbdd_tools.features.describe import describe_path, describe_words
+from robbdd_tools.features.describe_entry import describe_entry
 from robbdd_tools.features.hover import Hover, hover
 from robbdd_tools.features.scenario_hints import scenario_hints
 from robbdd_tools.features.type_hints import type_hints
@@ -40,7 +40,7 @@ def _register_completion(server: RobbddServer) -> None:
             abilities = client.completion.completion_item if client and client.completion else None
             return [
                 item
-                for entry in complete(snapshot, document.uri, offset)
+                for entry in complete(snapshot, document.uri, offset, ls.importers.elsewhere)
                 if (item := ls.convert.completion(document, entry, abilities)) is not None
             ]
 
@@ -50,12 +50,8 @@ def _register_completion(server: RobbddServer) -> None:
     async def resolve(ls: RobbddServer, item: types.CompletionItem) -> types.CompletionItem:
         data = cast("dict[str, Any]", item.data or {})
 
-        def find(snapshot: Snapshot) -> str | None:
-            if "path" in data:
-                return describe_path(snapshot, str(data.get("uri")), str(data["path"]))
-            return describe_words(item.label) if "words" in data else None
-
-        found = await ls.analyse(find)
+        kind, uri, path = (str(data.get(name, "")) for name in ("kind", "uri", "path"))
+        found = await ls.analyse(lambda snapshot: describe_entry(snapshot, kind, uri, path))
         if found is not None:
             client = ls.client_capabilities.text_document
             abilities = client.completion.completion_item if client and client.completion else None

@@ -1,0 +1,74 @@
+"""What a proposal of completion means, in Markdown: of every kind of entry, loaded or not."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from urllib.parse import unquote
+
+from robbdd_tools.base.files import file_state
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.catalog.settings import SETTINGS
+from robbdd_tools.features.describe import describe_import, describe_path, describe_words
+from robbdd_tools.features.markdown import code_block
+from robbdd_tools.features.sentences import word_meaning
+from robbdd_tools.features.snippets import declaration_snippets, keyword_form
+from robbdd_tools.names.index import language_of
+from robbdd_tools.names.project import Project
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.project import Snapshot
+
+
+def describe_entry(snapshot: Snapshot, kind: str, uri: str, path: str) -> str | None:
+    """Describe a proposal by its kind, its document (or that of a name or file) and its label (or qualified name)."""
+    match kind:
+        case "keyword":
+            return _keyword(language_of(uri), path)
+        case "snippet":
+            bodies = (one.plain for one in declaration_snippets(language_of(uri)) if f"{one.label} …" == path)
+            return next((code_block(body, language_of(uri)) for body in bodies), None)
+        case "setting":
+            setting = SETTINGS.get(path)
+            return (
+                None if setting is None else f"`{path}` of {setting.target}: {setting.doc}\n\nIt is {setting.wanted}."
+            )
+        case "catalog":
+            return _word(path)
+        case "folder":
+            return f"**folder** `{unquote(uri.rstrip('/').rpartition('/')[2])}`"
+        case "file":
+            return _file(snapshot, uri)
+        case _:
+            return describe_path(_with(snapshot, uri), uri, path)
+
+
+def _keyword(language: str, words: str) -> str | None:
+    form = keyword_form(language, words)
+    parts = (describe_words(words), None if form is None else code_block(form, language))
+    return "\n\n".join(part for part in parts if part is not None) or None
+
+
+def _word(name: str) -> str | None:
+    catalog = load_catalog()
+    behaviour = catalog.behaviours.get(name)
+    if behaviour is not None:
+        return word_meaning(behaviour)
+    model = catalog.robots.get(name) or catalog.objects.get(name)
+    return None if model is None else f"`{name}`\n\n{model.doc}"
+
+
+def _file(snapshot: Snapshot, uri: str) -> str:
+    if language_of(uri):
+        return describe_import(_with(snapshot, uri), uri)
+    state = file_state(uri)
+    size = "" if state is None else f", {state.size:,} bytes"
+    return f"**model file** `{unquote(uri.rpartition('/')[2])}`{size}"
+
+
+def _with(snapshot: Snapshot, uri: str) -> Snapshot:
+    """Return a snapshot that has a file: this one or, for a moment, one of that file alone."""
+    if uri in snapshot.sources:
+        return snapshot
+    project = Project()
+    project.load(uri)
+    return project.snapshot()
