@@ -4,7 +4,7 @@ import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { contrast } from "./harness/contrast.mjs";
 import { writeEndless } from "./harness/models.mjs";
-import { LONG } from "./harness/patience.mjs";
+import { LONG, eventually } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
 import { themeColour, verdictAt } from "./harness/verdicts.mjs";
 import { SCHEMES } from "./harness/workbench.mjs";
@@ -79,9 +79,11 @@ step("the run is told in the output channel, with its summary at the end", async
 step("the verdicts can be read in a dark and in a light theme", async () => {
   for (const scheme of Object.keys(SCHEMES)) {
     await workbench.changeScheme(scheme);
-    const { colour, ground } = await verdictAt(workbench, /holds\(/, /^✔/);
-    assert.equal(colour, await themeColour(workbench, "robbdd.holdsForeground"));
-    assert.ok(contrast(colour, ground) >= READABLE, `${scheme}: ${colour} on ${ground}`);
+    await eventually(async () => {
+      const { colour, ground } = await verdictAt(workbench, /holds\(/, /^✔/);
+      assert.equal(colour, await themeColour(workbench, "robbdd.holdsForeground"));
+      assert.ok(contrast(colour, ground) >= READABLE, `${scheme}: ${colour} on ${ground}`);
+    });
     await workbench.screenshot(`example-${scheme}`);
   }
 });
