@@ -19,6 +19,8 @@ import pytest
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.names.project import Project, Snapshot
+from robbdd_tools.run.manifest import written_manifest
+from robbdd_tools.run.protocol import Manifest
 from robbdd_tools.syntax.parse import LANGUAGES
 
 FOLDER = "file:///fixture/"
@@ -187,3 +189,9 @@ def schema_errors(name: str, document: object) -> list[str]:
     schema = json.loads((DOCS / "schemas" / name).read_text(encoding="utf-8"))
     as_sent = json.loads(json.dumps(document))
     return [error.message for error in validator(schema).iter_errors(as_sent)]
+
+
+def write_manifest(folder: Path, manifest: Manifest) -> None:
+    """Write a whole manifest into a run folder."""
+    for _ in written_manifest(folder, manifest, manifest.scenarios):
+        pass

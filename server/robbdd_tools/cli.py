@@ -1,4 +1,4 @@
-"""The command line: ``robbdd check | graph | gherkin | steps | run | import | query``.
+"""The command line: what each ``robbdd`` command takes, and exit codes.
 
 Exit codes: 0 all well; 1 errors found (check) or a clause violated or unknown (run); 2 the command could not do its
 work; 130 interrupted.

@@ -14,9 +14,10 @@ from pathlib import Path
 import pytest
 
 from agent.worlds import BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, Steps, write_run
+from kit import write_manifest
 from robbdd_tools.agent.world import build_world
+from robbdd_tools.run.manifest import MANIFEST
 from robbdd_tools.run.protocol import (
-    MANIFEST,
     ClauseJudged,
     ClauseStarted,
     ConfigSpec,
@@ -31,7 +32,6 @@ from robbdd_tools.run.protocol import (
     ScenarioStarted,
     decode,
     encode,
-    write_manifest,
 )
 
 pytestmark = pytest.mark.physics

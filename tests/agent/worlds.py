@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from kit import write_manifest
 from robbdd_tools.agent.course import Call, Timing
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.run.protocol import ClauseSpec, Manifest, ScenarioSpec, SceneSpec, write_manifest
+from robbdd_tools.run.protocol import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 
 PANDA, CUBE, BALL, BIN, OTHER_BIN = "env:panda", "env:cube1", "env:ball1", "env:bin1", "env:bin2"
 BENCH_WS, BIN_WS, OTHER_WS = "env:bench_ws", "env:bin1_ws", "env:bin2_ws"

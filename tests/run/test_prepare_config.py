@@ -7,8 +7,9 @@ from pathlib import Path
 from kit import MODEL, SCENE, fixture
 from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.read import read_model
+from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.prepare import RunRequest, prepare
-from robbdd_tools.run.protocol import ConfigSpec, Manifest, read_manifest
+from robbdd_tools.run.protocol import ConfigSpec, Manifest
 
 GIVEN = "holds(<part> is located at"
 

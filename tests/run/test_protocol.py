@@ -6,6 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kit import write_manifest
+from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
     ClauseJudged,
     ClauseSpec,
@@ -21,8 +23,6 @@ from robbdd_tools.run.protocol import (
     SceneSpec,
     decode,
     encode,
-    read_manifest,
-    write_manifest,
 )
 
 MESSAGES = [

@@ -13,6 +13,7 @@ from time import monotonic
 import pytest
 
 from agent.worlds import CUBE, SCENE, Steps, write_run
+from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
     ClauseJudged,
     LogLine,
@@ -22,7 +23,6 @@ from robbdd_tools.run.protocol import (
     RunStarted,
     ScenarioFinished,
     ScenarioStarted,
-    read_manifest,
 )
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import CANCELLED, STOPPED, Policy, Scheduler, no_watcher

@@ -17,7 +17,8 @@ import numpy as np
 
 from robbdd_tools.agent.trace_codec import pack
 from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
-from robbdd_tools.run.protocol import read_manifest, trace_file
+from robbdd_tools.run.manifest import read_manifest
+from robbdd_tools.run.protocol import trace_file
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.trace_codec import Evidence

@@ -11,7 +11,7 @@ from typing import Any
 from robbdd_tools.agent.channel import current_channel
 from robbdd_tools.agent.session import Session
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
-from robbdd_tools.run.protocol import MANIFEST, read_manifest
+from robbdd_tools.run.manifest import MANIFEST, read_manifest
 
 EXECUTION = "robbdd.execution"
 """Where behave's user data holds which scenario of the manifest is being executed: several may share a feature's."""

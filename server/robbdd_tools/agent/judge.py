@@ -19,6 +19,7 @@ from robbdd_tools.agent.sentences import Clause, fluents_of, read_clause, read_e
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
     ClauseSpec,
     LogLine,
@@ -31,7 +32,6 @@ from robbdd_tools.run.protocol import (
     ScenarioSpec,
     ScenarioStarted,
     judged,
-    read_manifest,
     scenario_key,
     trace_file,
 )

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.run.protocol import read_manifest, thumbnail_file
+from robbdd_tools.run.manifest import read_manifest
+from robbdd_tools.run.protocol import thumbnail_file
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

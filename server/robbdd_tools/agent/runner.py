@@ -12,6 +12,7 @@ from robbdd_tools.agent.channel import Channel, Lines, use_channel
 from robbdd_tools.agent.engine import version
 from robbdd_tools.agent.hooks import EXECUTION
 from robbdd_tools.agent.session import STRANGER
+from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
     ClauseJudged,
     LogLine,
@@ -21,7 +22,6 @@ from robbdd_tools.run.protocol import (
     ScenarioFinished,
     ScenarioStarted,
     decode_order,
-    read_manifest,
 )
 
 if TYPE_CHECKING:

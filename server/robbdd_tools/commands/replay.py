@@ -17,8 +17,9 @@ from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.execute import execute
 from robbdd_tools.commands.requests import digest, load_models
 from robbdd_tools.commands.runs import store_at
+from robbdd_tools.run.manifest import MANIFEST
 from robbdd_tools.run.prepare import FEATURES
-from robbdd_tools.run.protocol import MANIFEST, trace_file
+from robbdd_tools.run.protocol import trace_file
 from robbdd_tools.run.store import NoSuchRun
 from robbdd_tools.run.used_files import changed
 

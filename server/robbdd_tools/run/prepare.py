@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass, fields, replace
-from functools import cache
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from robbdd_tools.base.files import uri_to_path
-from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.gherkin.feature import Numbered, every_scenario
 from robbdd_tools.gherkin.files import FeaturePlan, only, whole_plan, written_scenarios
 from robbdd_tools.gherkin.skeleton import steps_file
 from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri, Story, Variant
-from robbdd_tools.run.protocol import MANIFEST, ExecutionSpec, Manifest, ScenarioSpec
+from robbdd_tools.run.manifest import written_manifest
+from robbdd_tools.run.protocol import Manifest, ScenarioSpec
 from robbdd_tools.run.related import Relations
 from robbdd_tools.run.specs import SpecWriter
 
@@ -117,20 +114,8 @@ def _written(
     (features / "steps").mkdir(parents=True, exist_ok=True)
     (features / "environment.py").write_text(_ENVIRONMENT, encoding="utf-8", newline="\n")
     (features / "steps" / "catalog_steps.py").write_text(_STEPS, encoding="utf-8", newline="\n")
-    with (folder / MANIFEST).open("w", encoding="utf-8", newline="\n") as manifest:
-        known = [asdict(part.writer.execution) for part in parts if part.writer.execution is not None]
-        head = {"model": name, "seed": seed, "traces": traces, "executions": known}
-        trees: dict[str, TreeSpec] = {}
-        manifest.write(json.dumps(head, ensure_ascii=False)[:-1] + ', "scenarios": [')
-        separator = "\n"
-        for part in parts:
-            for spec in part.specs(folder):
-                manifest.write(separator + json.dumps(spec, default=_fields, ensure_ascii=False))
-                separator = ",\n"
-                if spec.tree is not None:
-                    trees[spec.tree.name] = spec.tree
-                yield spec
-        manifest.write(f'\n], "trees": {json.dumps([asdict(tree) for tree in trees.values()], ensure_ascii=False)}}}\n')
+    specs = (spec for part in parts for spec in part.specs(folder))
+    yield from written_manifest(folder, Manifest(name, seed, (), traces), specs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,17 +171,3 @@ def write_surroundings(folder: Path, model_name: str, json_ld: str) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "behave.ini").write_text(_BEHAVE, encoding="utf-8", newline="\n")
     (folder / f"{model_name}.jsonld").write_text(json_ld, encoding="utf-8", newline="\n")
-
-
-def _fields(value: Any) -> object:
-    """Return the fields of a dataclass, for JSON; unlike ``asdict`` it copies nothing. Executions, trees are named."""
-    if isinstance(value, ExecutionSpec):
-        return value.iri
-    if isinstance(value, TreeSpec):
-        return value.name
-    return {name: getattr(value, name) for name in _names(value.__class__)}
-
-
-@cache
-def _names(kind: type[Any]) -> tuple[str, ...]:
-    return tuple(entry.name for entry in fields(kind))

@@ -1,7 +1,8 @@
 """What the parent and the agent process say to each other: a manifest, and one JSON object per line both ways.
 
-The agent reads orders (``Execute``) on its standard input, ends at its end, and writes ``RunMessage``s. The only module
-that both sides share. Every message is a frozen dataclass; ``encode`` and ``decode`` are inverse.
+The agent reads orders (``Execute``) on its standard input, ends at its end, and writes ``RunMessage``s. Besides
+``run.manifest``, the manifest's file, the only module that both sides share. Every message is a frozen dataclass;
+``encode`` and ``decode`` are inverse.
 """
 
 from __future__ import annotations
@@ -12,13 +13,11 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from robbdd_tools.base.plain import from_plain
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.verdict import Verdict
 
-MANIFEST = "manifest.json"
 VIEWER = "ROBBDD_VIEWER"
 """Environment variable of the agent: when it is set, a window shows each scenario in real time."""
 NO_STEP = "no step definition"
@@ -296,50 +295,3 @@ def curves_file(folder: Path, index: int) -> Path:
 def thumbnail_file(folder: Path, index: int, line: int) -> Path:
     """Return where the small picture of a violation is: scenario, feature line of the clause."""
     return folder / f"{index:06}-{line}.png"
-
-
-def write_manifest(folder: Path, manifest: Manifest) -> None:
-    """Write the manifest into a run folder."""
-    data = asdict(manifest)
-    for entry in data["scenarios"]:
-        entry["execution"] = entry["execution"] and entry["execution"]["iri"]
-        entry["tree"] = entry["tree"] and entry["tree"]["name"]
-    executions = {spec.execution.iri: spec.execution for spec in manifest.scenarios if spec.execution is not None}
-    data["executions"] = [asdict(execution) for execution in executions.values()]
-    trees = {spec.tree.name: spec.tree for spec in manifest.scenarios if spec.tree is not None}
-    data["trees"] = [asdict(tree) for tree in trees.values()]
-    (folder / MANIFEST).write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-
-
-def read_manifest(folder: Path) -> Manifest:
-    """Read the manifest of a run folder; raises ``OSError`` or ``ValueError``.
-
-    Scenarios name their execution by its IRI and their tree by its name; these are beside them, each once.
-    """
-    data = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
-    trees = {entry["name"]: from_plain(TreeSpec, entry) for entry in data.get("trees", ())}
-    scenarios = tuple(_scenario(entry, executions, trees) for entry in data["scenarios"])
-    return Manifest(data["model"], data["seed"], scenarios, data.get("traces", False))
-
-
-def _scenario(
-    entry: dict[str, Any], executions: Mapping[str, ExecutionSpec], trees: Mapping[str, TreeSpec]
-) -> ScenarioSpec:
-    scene = entry.pop("scene")
-    clauses = entry.pop("clauses")
-    execution, tree = entry.pop("execution", None), entry.pop("tree", None)
-    return ScenarioSpec(
-        scene=SceneSpec(
-            tuple(scene["objects"]),
-            tuple(scene["agents"]),
-            {name: tuple(objects) for name, objects in scene["workspaces"].items()},
-            {name: tuple(inner) for name, inner in scene["contains"].items()},
-            dict(scene["places"]),
-            tuple(ConfigSpec(**config) for config in scene["config"]),
-        ),
-        clauses=tuple(from_plain(ClauseSpec, clause) for clause in clauses),
-        execution=None if execution is None else executions[execution],
-        tree=None if tree is None else trees[tree],
-        **entry,
-    )

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any, cast
 
 from robbdd_tools.base.files import full_path
-from robbdd_tools.run.protocol import Manifest, read_manifest
+from robbdd_tools.run.manifest import read_manifest
+from robbdd_tools.run.protocol import Manifest
 
 MARKS = ("pyproject.toml", "robbdd.toml", ".git")
 """What the root of a project has one of."""
