@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 MOST_BROKEN_LINES = 50
 """Lines that do not parse and are passed over on the way to a cursor."""
+MOST_TO_IMPORT = 300
+"""Names of files to import that are offered; loaded files and those beside go first."""
 _CONFIGURED = re.compile(r"\bhas\s+config\s+\Z")
 _STARTS = frozenset({"import", "ns"})
 _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet", "AgentSet", "ConstantSet", "AnySet")}
@@ -166,7 +169,7 @@ class _Names:
                 if fits(self.snapshot, definition, wanted, members):
                     yield self._proposal(name, definition.kind, (definition.uri, definition.symbol.path), bracket, rank)
             if role != "Namespace" and members is None:
-                yield from self._to_import(role, known, bracket, wanted)
+                yield from islice(self._to_import(role, known, bracket, wanted), MOST_TO_IMPORT)
 
     def _in_scope(self, role: str) -> Iterator[tuple[str, Definition, int]]:
         scope = self.snapshot.scope(self.file.document.uri)

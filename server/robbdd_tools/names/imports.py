@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from importlib.machinery import PathFinder
 from pathlib import Path
 from urllib.parse import quote, unquote, urljoin, urlsplit
@@ -36,6 +37,7 @@ def import_uri(importer: str, path: str) -> str:
     return path_to_uri(folder / inside.lstrip("/"))
 
 
+@lru_cache(maxsize=10_000)
 def import_path(importer: str, imported: str) -> str | None:
     """Return how a file is named in an import: relative to its importer; ``None`` where no such path leads to it."""
     here, there = urlsplit(importer), urlsplit(imported)
