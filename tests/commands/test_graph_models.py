@@ -67,8 +67,9 @@ def test_an_error_in_a_graph_keeps_it_from_becoming_features(folder: Path, tmp_p
     assert not (tmp_path / "features").exists()
 
 
-def test_a_name_with_another_ending_is_refused_with_the_endings_that_there_are() -> None:
-    done = robbdd("check", "model.owl")
+def test_a_name_with_another_ending_is_refused_with_the_endings_that_there_are(tmp_path: Path) -> None:
+    (tmp_path / "model.owl").touch()
+    done = robbdd("check", "model.owl", folder=tmp_path)
     assert done.returncode == 2
     assert "must end in one of .bdd, .scene, .ttl, .json, .jsonld" in done.stderr
 
