@@ -71,7 +71,8 @@ def test_a_name_with_another_ending_is_refused_with_the_endings_that_there_are(t
     (tmp_path / "model.owl").touch()
     done = robbdd("check", "model.owl", folder=tmp_path)
     assert done.returncode == 2
-    assert "must end in one of .bdd, .scene, .ttl, .json, .jsonld" in done.stderr
+    assert "model.owl is not a model: its name must end in one of .bdd, .scene, " in done.stderr
+    assert ", .ttl, .json, .jsonld" in done.stderr
 
 
 def test_a_context_that_may_not_be_fetched_ends_the_command(tmp_path: Path) -> None:
