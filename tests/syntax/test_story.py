@@ -15,7 +15,7 @@ from robbdd_tools.syntax.chunk import Parsed, Rejected, parse_chunk
 from robbdd_tools.syntax.convert import convert
 from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.split import split
-from robbdd_tools.syntax.story import cut_story, quotes_scenario
+from robbdd_tools.syntax.story import cut_story, quotes_braces
 from robbdd_tools.syntax.symbols import references, symbols
 from robbdd_tools.syntax.textx import parse_with_textx
 
@@ -147,9 +147,10 @@ def test_a_superfluous_brace_in_a_scenario_is_one_error() -> None:
     assert "unexpected '}'" in fault.message
 
 
-def test_a_string_of_several_lines_may_quote_a_scenario() -> None:
-    text = STORY.replace('"parts fetched"', '"parts fetched:\n    Scenario x {\n    }"')
-    assert quotes_scenario(text)
+@pytest.mark.parametrize("quoted", ["\n    Scenario x {\n    }", "\n}{"])
+def test_a_string_of_several_lines_may_quote_a_scenario_or_braces(quoted: str) -> None:
+    text = STORY.replace('"parts fetched"', f'"parts fetched:{quoted}"')
+    assert quotes_braces(text)
     read = parse_declaration("bdd", text)
     assert read.faults == ()
     assert [symbol.name for symbol in read.symbols] == ["fetching", "bench-to-tray"]

@@ -9,7 +9,7 @@ from robbdd_tools.syntax.declaration import Declaration
 from robbdd_tools.syntax.faults import trailing_fault
 from robbdd_tools.syntax.piece import read_piece
 from robbdd_tools.syntax.salvage import salvage, with_lost
-from robbdd_tools.syntax.story import cut_story, forget_scenarios, quotes_scenario, read_story
+from robbdd_tools.syntax.story import cut_story, forget_scenarios, quotes_braces, read_story
 from robbdd_tools.syntax.symbols import references, symbols
 
 KEPT_LETTERS = 500_000
@@ -63,7 +63,7 @@ def _parsed(language: str, text: str) -> Declaration:
     if cut is None:
         return _whole(language, text)
     found = read_story(cut)
-    if found.faults and quotes_scenario(text):
+    if found.faults and quotes_braces(text):
         whole = _whole(language, text)
         return found if whole.faults else whole
     return found

@@ -34,7 +34,7 @@ _SCANNER = re.compile(
     rf"|(?<![\w\-.<])(?P<scenario>Scenario(?![\w\-])(?P<header>(?:\s+Variant(?=\s+{_NAME}))?\s+{_NAME}\s*{{)?))"
 )
 _LONG_STRINGS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
-_HEADER_LINE = re.compile(rf"\n\s*Scenario\s+{_NAME}[^\n]*{{")
+_BRACE = re.compile(r"[{}]")
 _WORD = "Scenario"
 _NAMELESS = re.compile(rf"{_WORD}\s*{{")
 _STORY = re.compile(r"User\s+Story\b")
@@ -88,12 +88,12 @@ def cut_story(text: str) -> Cut | None:
     return Cut(text, tuple(starts), _closing_line(text, starts[-1]) if end is None else end)
 
 
-def quotes_scenario(text: str) -> bool:
-    """Tell whether a string of several lines holds what would otherwise begin a scenario, which ``cut_story`` misses.
+def quotes_braces(text: str) -> bool:
+    """Tell whether a string of several lines holds braces, which ``cut_story`` takes for those of a scenario.
 
     A quote that is not closed, as while one types, looks like that as well.
     """
-    return any("\n" in match[0] and _HEADER_LINE.search(match[0]) for match in _LONG_STRINGS.finditer(text))
+    return any("\n" in match[0] and _BRACE.search(match[0]) for match in _LONG_STRINGS.finditer(text))
 
 
 def _starts_line(text: str, offset: int) -> bool:
