@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
 import tempfile
@@ -27,6 +28,8 @@ from robbdd_tools.run.scheduler import Policy, Scheduler
 MODEL = EXAMPLES / "pickplace" / "pickplace.bdd"
 SEEDS = 8
 """Executions that are compared with the engine alone."""
+INTERRUPTIONS = 5
+"""Runs that are cancelled in their middle."""
 
 
 def rows() -> Iterator[tuple[str, str]]:
@@ -44,6 +47,7 @@ def rows() -> Iterator[tuple[str, str]]:
     yield "start-up of an agent process", f"{started:.1f} s"
     yield "memory of an agent process, at most", f"{_memory():.0f} MB"
     yield "from `robbdd run` to the first scenario's verdicts", f"{_first_verdict():.1f} s"
+    yield f"from Ctrl-C to the end of `robbdd run`, longest of {INTERRUPTIONS}", f"{_cancelled():.2f} s"
     yield "processor time of `robbdd --version` beyond the interpreter's", f"{_version():.2f} s"
 
 
@@ -110,13 +114,32 @@ print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
 
 def _first_verdict() -> float:
     start = time.perf_counter()
-    command = [sys.executable, "-m", "robbdd_tools.cli", "run", str(MODEL), "--no-store"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8") as process:
+    with _run_of_the_example() as process:
         assert process.stdout is not None
         process.stdout.readline()
         waited = time.perf_counter() - start
         process.stdout.read()
     return waited
+
+
+def _cancelled() -> float:
+    """Return the longest time (s) that runs take to end when they are interrupted behind their first line."""
+    longest = 0.0
+    for _ in range(INTERRUPTIONS):
+        with _run_of_the_example("--repeat", "100", "--jobs", "2") as process:
+            assert process.stdout is not None
+            process.stdout.readline()
+            began = time.perf_counter()
+            process.send_signal(signal.SIGINT)
+            process.stdout.read()
+            assert process.wait() == 130, "the run has not been cancelled"
+        longest = max(longest, time.perf_counter() - began)
+    return longest
+
+
+def _run_of_the_example(*options: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "robbdd_tools.cli", "run", str(MODEL), "--no-store", *options]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8")
 
 
 def _version() -> float:
