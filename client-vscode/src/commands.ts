@@ -6,7 +6,7 @@ import { recordingOf } from "./panels/replay/request";
 import type { ReplayView } from "./panels/replay/view";
 import type { StudyView } from "./panels/study/view";
 import type { PreviewView } from "./preview/view";
-import { modelFor, openModel } from "./models";
+import { RUNNABLE, modelFor, openModel } from "./models";
 import { newProject } from "./projects";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
@@ -29,9 +29,9 @@ export function registerCommands(
   log: vscode.LogOutputChannel,
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
-    "robbdd.runFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri })),
-    "robbdd.rerunFailedOfFile": (target) => withModel(target, (uri) => server.execute("robbdd.rerunFailed", { uri })),
-    "robbdd.recordFile": (target) => withModel(target, (uri) => server.execute("robbdd.record", { uri })),
+    "robbdd.runFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri }), RUNNABLE),
+    "robbdd.rerunFailedOfFile": (target) => withModel(target, (uri) => server.execute("robbdd.rerunFailed", { uri }), RUNNABLE),
+    "robbdd.recordFile": (target) => withModel(target, (uri) => server.execute("robbdd.record", { uri }), RUNNABLE),
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
     "robbdd.generateGherkin": (target) => withModel(target, (uri) => server.execute("robbdd.gherkin", { uri })),
     "robbdd.previewGherkin": (target) => withModel(target, (uri) => previews.open(vscode.Uri.parse(uri))),
@@ -59,8 +59,8 @@ export function registerCommands(
   return Object.entries(handlers).map(([name, handler]) => vscode.commands.registerCommand(name, handler));
 }
 
-async function withModel(target: unknown, task: (uri: string) => unknown): Promise<void> {
-  const uri = await modelFor(target);
+async function withModel(target: unknown, task: (uri: string) => unknown, languages?: string[]): Promise<void> {
+  const uri = await modelFor(target, languages);
   if (uri !== undefined) {
     await task(uri.toString());
   }

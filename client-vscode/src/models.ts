@@ -6,12 +6,17 @@ const NOT_THERE = "**/{node_modules,.venv,.robbdd}/**";
 /** More than anybody wants to choose from. */
 const MOST = 200;
 
+/** What says by itself which scenarios are executed: a model, and the executions of one. */
+export const RUNNABLE = ["robbdd", "robbdd-bddx"];
+
 /**
  * The model that a menu names, else the one in the active editor, else one in another visible editor, else the
  * workspace's only one or the one that the user chooses, which is opened. Undefined, after a message, if there is none.
+ * Editors count that show one of these languages.
  */
-export async function modelFor(target: unknown): Promise<vscode.Uri | undefined> {
-  const isModel = (editor: vscode.TextEditor | undefined): boolean => editor?.document.languageId === "robbdd";
+export async function modelFor(target: unknown, languages = ["robbdd"]): Promise<vscode.Uri | undefined> {
+  const isModel = (editor: vscode.TextEditor | undefined): boolean =>
+    editor !== undefined && languages.includes(editor.document.languageId);
   const { activeTextEditor, visibleTextEditors } = vscode.window;
   const shown = isModel(activeTextEditor) ? activeTextEditor : visibleTextEditors.find(isModel);
   return target instanceof vscode.Uri ? target : (shown?.document.uri ?? (await openModel()));

@@ -4,6 +4,7 @@ import { readdir, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { LONG, TRY, eventually } from "./harness/patience.mjs";
 import { testingStory } from "./harness/testingView.mjs";
+import { verdictAt } from "./harness/verdicts.mjs";
 
 /** A table of two rows, and a clause that says that the part is in the bin before it was picked. */
 const ROWS_FILE = "rows.bdd";
@@ -35,6 +36,15 @@ step("an execution is listed with what it says, and run by itself", async () => 
   await workbench.screenshot("testing-execution");
   assert.equal(await tests.rowsThat("passed", /^\s*tidy-bench/).count(), 0, "the scenarios as they are were not run");
   await tests.collapse("pickplace.bddx");
+});
+
+step("the executions of an open file are run from the palette, and judged where they stand", async () => {
+  await workbench.openFile("pickplace.bddx");
+  const { scenarios } = await session.runOf(() => workbench.command("RobBDD: Run Scenarios of This File"));
+  assert.deepEqual(scenarios.map(({ execution }) => execution), Array(4).fill("exec:in-simulation"));
+  await workbench.goTo((await session.placeOf("pickplace.bddx", "Scenario Exec")).line, 1);
+  await verdictAt(workbench, /Scenario Exec .*in-simulation/, /4\/4 passed/);
+  await workbench.screenshot("testing-executions");
 });
 
 step("the icon beside a row of a table runs this row alone", async () => {
