@@ -155,7 +155,7 @@ def test_a_hang_is_timed_out_and_the_rest_goes_on(tmp_path: Path, fifo: Path) ->
     assert results.complete
 
 
-def test_a_run_ends_sooner_than_it_began_when_it_is_cancelled_though_agents_hang(tmp_path: Path, fifo: Path) -> None:
+def test_a_run_is_cancelled_within_half_a_second_even_when_agents_hang(tmp_path: Path, fifo: Path) -> None:
     hang = [HOLDS, ("given", "a hang")]
     manifest = prepared(tmp_path / "run", [HOLDS], hang, hang, [HOLDS])
     results, first_is_done = RunResults(manifest), threading.Event()
@@ -171,15 +171,14 @@ def test_a_run_ends_sooner_than_it_began_when_it_is_cancelled_though_agents_hang
             results.apply(message)
 
     thread = threading.Thread(target=follow)
-    started = monotonic()
     thread.start()
     fifo.read_bytes()
     first_is_done.wait()
     pids = list(scheduler.busy)
-    cancelled = monotonic()
+    began = monotonic()
     scheduler.cancel()
     thread.join()
-    assert monotonic() - cancelled < cancelled - started
+    assert monotonic() - began < 0.5
     assert scheduler.ending == CANCELLED
     assert not results.complete
     assert results.scenarios[0].verdict == "holds"
