@@ -1,18 +1,12 @@
 // How the extension begins: what its activation costs, that it does nothing before a model is shown; and what Enter does.
 import assert from "node:assert/strict";
-import { execFile } from "node:child_process";
 import { chmod, readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { promisify } from "node:util";
 import { LANGUAGE_SERVER } from "./harness/checkout.mjs";
-import { timed } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
 
-/**
- * What activation may take of the extension host, as the editor itself counts it, in starts of a Node that does nothing:
- * a tenth of a second where that takes 40 ms.
- */
-const LONGEST = 2.5;
+/** Milliseconds that activation may take of the extension host, as the editor itself counts them. */
+const LONGEST = 100;
 /** A busy machine delays whatever it likes: the quickest of so many starts counts. */
 const STARTS = 5;
 const STARTED = "started.txt";
@@ -34,17 +28,15 @@ const step = story("start", (opened) => {
 
 step("in a folder with models the extension is active soon, and starts no server before one is shown", async (context) => {
   const { workbench, workspace } = session;
-  const ratios = [];
-  while (ratios.length < STARTS && Math.min(...ratios) >= LONGEST) {
-    if (ratios.length > 0) {
+  const times = [];
+  while (times.length < STARTS && Math.min(...times) >= LONGEST) {
+    if (times.length > 0) {
       await workbench.reload();
     }
-    const activation = await activationTime(workbench);
-    const unit = await timed(() => promisify(execFile)(process.execPath, ["-e", ""]));
-    context.diagnostic(`activation: ${activation} ms, while Node starts in ${unit.toFixed(0)} ms`);
-    ratios.push(activation / unit);
+    times.push(await activationTime(workbench));
   }
-  assert.ok(Math.min(...ratios) < LONGEST, `${ratios.map((ratio) => ratio.toFixed(1)).join(", ")} starts of Node`);
+  context.diagnostic(`activation: ${times.join(", ")} ms`);
+  assert.ok(Math.min(...times) < LONGEST, `${times.join(", ")} ms`);
   await workbench.screenshot("start-quiet");
   assert.equal(await workbench.status.count(), 0);
   await assert.rejects(readFile(join(workspace, STARTED)), { code: "ENOENT" });
