@@ -229,7 +229,7 @@ def test_a_variation_that_explodes_is_a_warning_with_its_size() -> None:
 
 def test_a_huge_selection_is_not_counted_out() -> None:
     scene = "//- lab.scene\n" + SCENE.replace("count: 3", "count: 9000")
-    for kind in ("permutations", "combinations", "repeated combinations"):
+    for kind in ("permutations", "combinations", "repeated combinations", "repeated permutations"):
         lines = LINES + f"                set var <fetch.goals>: select 4000 {kind} from <washers>\n"
         text = "//- main.bdd\n" + story(lines, SETS.replace("<y>", "<goal>")) + scene
         (finding,) = found(text, "many-scenarios")

@@ -33,6 +33,7 @@ def test_a_table_has_its_rows() -> None:
         ("combinations", False, ["pq", "pr", "qr"]),
         ("combinations", True, ["pp", "pq", "pr", "qq", "qr", "rr"]),
         ("permutations", False, ["pq", "pr", "qp", "qr", "rp", "rq"]),
+        ("permutations", True, ["pp", "pq", "pr", "qp", "qq", "qr", "rp", "rq", "rr"]),
     ],
 )
 def test_selections_follow_the_written_order(kind: str, repeated: bool, expected: list[str]) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from math import comb, perm, prod
+from math import prod
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.selections import SelectionRule
 from robbdd_tools.names.elements import elements_of
 from robbdd_tools.syntax import tree
 
@@ -59,9 +60,7 @@ def _selections(selection: tree.Selection, size: int) -> int | None:
     length = selection.count.value
     if not isinstance(length, int) or length < 1 or not size:
         return None
-    if selection.repeated:
-        # Beyond the limit the exact number is of no use and slow to compute.
-        return UNCOUNTED if size > 1 and length > MOST_SCENARIOS else comb(size + length - 1, length)
     if length > MOST_SCENARIOS:
-        return 0
-    return min(UNCOUNTED, perm(size, length) if selection.kind == "permutations" else comb(size, length))
+        # The exact number is slow to compute and of no use.
+        return UNCOUNTED if selection.repeated and size > 1 else int(selection.repeated)
+    return min(UNCOUNTED, SelectionRule(selection.kind, length, selection.repeated).count(size))

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import combinations, combinations_with_replacement, permutations
-from math import comb, perm, prod
+from math import prod
 
-from robbdd_tools.graph.model import Cell, Iri, Product, Selection, Table, Value
+from robbdd_tools.graph.model import Cell, Iri, Product, Selection, Table
 
 Binding = Mapping[Iri, Cell]
 """Variable → its value in one scenario."""
@@ -38,7 +37,7 @@ def at(variation: Product | Table, index: int) -> Binding:
     cells: list[Cell] = []
     for choices in reversed(variation.choices):
         index, digit = divmod(index, size_of(choices))
-        cells.append(_select(choices, digit) if isinstance(choices, Selection) else choices[digit])
+        cells.append(choices.rule.at(choices.source, digit) if isinstance(choices, Selection) else choices[digit])
     return dict(zip(variation.variables, reversed(cells), strict=True))
 
 
@@ -53,44 +52,10 @@ def _product(choices: tuple[tuple[Cell, ...] | Selection, ...]) -> Iterator[tupl
 
 
 def cells_of(choices: tuple[Cell, ...] | Selection) -> Iterable[Cell]:
-    """Return the values that a variable of a product gets, one after the other."""
-    if not isinstance(choices, Selection):
-        return choices
-    if choices.kind == "permutations":
-        return permutations(choices.source, choices.length)
-    if choices.repeated:
-        return combinations_with_replacement(choices.source, choices.length)
-    return combinations(choices.source, choices.length)
+    """Return the values of a variable of a product in order."""
+    return choices.rule.sets(choices.source) if isinstance(choices, Selection) else choices
 
 
 def size_of(choices: tuple[Cell, ...] | Selection) -> int:
-    """Return the number of values that a variable of a product gets."""
-    if not isinstance(choices, Selection):
-        return len(choices)
-    available, length = len(choices.source), choices.length
-    if choices.kind == "permutations":
-        return perm(available, length)
-    if choices.repeated:
-        return comb(available + length - 1, length) if available else 0
-    return comb(available, length)
-
-
-def _select(selection: Selection, index: int) -> tuple[Value, ...]:
-    """Return the selected set of a rank, counting as ``itertools`` does."""
-    free = list(selection.source)
-    picked: list[Value] = []
-    for left in range(selection.length - 1, -1, -1):
-        if selection.kind == "permutations":
-            place, index = divmod(index, perm(len(free) - 1, left))
-            picked.append(free.pop(place))
-        else:
-            while index >= (block := _continuations(len(free), left, selection.repeated)):
-                index -= block
-                free.pop(0)
-            picked.append(free[0] if selection.repeated else free.pop(0))
-    return tuple(picked)
-
-
-def _continuations(available: int, left: int, repeated: bool) -> int:
-    """Return how many combinations begin with the first of ``available`` elements and have ``left`` more."""
-    return comb(available + left - 1, left) if repeated else comb(available - 1, left)
+    """Return the number of values of a variable of a product."""
+    return choices.rule.count(len(choices.source)) if isinstance(choices, Selection) else len(choices)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from robbdd_tools.base.selections import SelectionRule
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.time import TimeConstraint
@@ -126,6 +127,11 @@ class Selection:
     source: tuple[Value, ...]
     length: int
     repeated: bool
+
+    @property
+    def rule(self) -> SelectionRule:
+        """The rule that counts and lists the sets."""
+        return SelectionRule(self.kind, self.length, self.repeated)
 
 
 @dataclass(frozen=True, slots=True)

@@ -205,6 +205,7 @@ class _VariationWriter:
         source = self.frame.target(selection.source)
         sink.add(node, "bdd:from", source, self.frame.at(selection.source))
         sink.add(node, "bdd:length", sink.literal(count, datatype), self.frame.at(selection.count))
-        if kind == "comb":
+        # The published vocabulary has this property on combinations only.
+        if kind == "comb" or selection.repeated:
             sink.add(node, "bdd:repetition-allowed", sink.literal(selection.repeated), self.frame.at(selection))
         return node

@@ -1,0 +1,58 @@
+"""Sets selected from a set: how many there are, all of them in order, and one by its rank.
+
+A selection has ``length`` elements. Combinations ignore the order of their elements, permutations do not; both may
+repeat elements. The order is that of ``itertools``. Every count of scenarios in the product derives from here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, combinations_with_replacement, permutations, product
+from math import comb, perm
+from typing import TypeVar
+
+PERMUTATIONS = "permutations"
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class SelectionRule:
+    """How sets are selected: ``kind`` is ``combinations`` or ``permutations``."""
+
+    kind: str
+    length: int
+    repeated: bool
+
+    def count(self, available: int) -> int:
+        """Return the number of sets that can be selected from ``available`` elements."""
+        if self.kind == PERMUTATIONS:
+            return available**self.length if self.repeated else perm(available, self.length)
+        if not self.repeated:
+            return comb(available, self.length)
+        return comb(available + self.length - 1, self.length) if available else int(self.length == 0)
+
+    def sets(self, source: Sequence[T]) -> Iterator[tuple[T, ...]]:
+        """Yield the sets in order."""
+        if self.kind == PERMUTATIONS:
+            return product(source, repeat=self.length) if self.repeated else permutations(source, self.length)
+        choose = combinations_with_replacement if self.repeated else combinations
+        return choose(source, self.length)
+
+    def at(self, source: Sequence[T], rank: int) -> tuple[T, ...]:
+        """Return the set at position ``rank``, counted from 0, without the sets before it."""
+        free = list(source)
+        picked: list[T] = []
+        for left in range(self.length - 1, -1, -1):
+            rest = SelectionRule(self.kind, left, self.repeated)
+            if self.kind == PERMUTATIONS:
+                place, rank = divmod(rank, rest.count(len(free) - (not self.repeated)))
+            else:
+                place = 0
+                while rank >= (block := rest.count(len(free) - place - (not self.repeated))):
+                    rank -= block
+                    place += 1
+                del free[:place]
+                place = 0
+            picked.append(free[place] if self.repeated else free.pop(place))
+        return tuple(picked)
