@@ -127,7 +127,7 @@ def test_every_arm_is_compared_with_what_its_maker_publishes() -> None:
 
 @every_robot
 @given(data=st.data())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_forward_kinematics_is_the_product_of_the_published_parameters(name: str, data: st.DataObject) -> None:
     arm = arm_of(ROBOTS[name])
     count = len(arm.home)
@@ -141,7 +141,7 @@ def test_forward_kinematics_is_the_product_of_the_published_parameters(name: str
 
 @every_robot
 @given(data=st.data())
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_inverse_kinematics_puts_the_tool_there_within_the_limits(name: str, data: st.DataObject) -> None:
     arm = arm_of(ROBOTS[name])
     position, rotation = frame_of(data.draw(poses(PUBLISHED[name])))
@@ -171,7 +171,7 @@ def test_what_is_too_far_is_unreachable(name: str) -> None:
 
 @every_robot
 @given(data=st.data())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_a_motion_keeps_the_speed_limits_and_ends_at_its_goal(name: str, data: st.DataObject) -> None:
     robot = ROBOTS[name]
     arm, limits, speed = arm_of(robot), np.array(robot.velocity_limits), robot.tool_speed

@@ -34,7 +34,7 @@ def test_the_seed_decides() -> None:
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_things_lie_apart_before_the_robot_and_clear_of_the_bins(seed: int) -> None:
     cast, poses = cast_scene(MANY), places(MANY, seed)
     things = [name for name, model in cast.objects.items() if model.graspable]
@@ -51,7 +51,7 @@ def test_things_lie_apart_before_the_robot_and_clear_of_the_bins(seed: int) -> N
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_thing_lies_in_the_bin_that_the_scene_names(seed: int) -> None:
     scene = replace(SCENE, places={CUBE: BIN_WS, BALL: BENCH_WS})
     poses = places(scene, seed)

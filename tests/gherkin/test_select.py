@@ -104,7 +104,7 @@ def occurring(rows: Sequence[tuple[Cell, ...]], strength: int) -> set[object]:
     return {combined for row in rows for combined in combinations(enumerate(row), strength)}
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(st.lists(st.integers(1, 4), min_size=1, max_size=4), st.sampled_from([2, 3]), st.integers(0, 3))
 def test_every_combination_that_fits_is_covered(sizes: list[int], strength: int, limit: int) -> None:
     every = list(product(*map(range, sizes)))

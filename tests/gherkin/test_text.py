@@ -51,7 +51,7 @@ def test_all_templates_make_features_that_both_parsers_read_alike(word: str, tem
     ]
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(NASTY)
 def test_a_value_comes_back_from_its_quotes(word: str) -> None:
     told = feature(edited("{ <arms.panda> }", f"{{ {quoted(word)} }}"))
@@ -62,7 +62,7 @@ def test_a_value_comes_back_from_its_quotes(word: str) -> None:
         assert unescaped(match[1]) == word
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(NASTY)
 def test_free_text_comes_back_from_its_step(word: str) -> None:
     clause = "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)"
@@ -72,7 +72,7 @@ def test_free_text_comes_back_from_its_step(word: str) -> None:
         assert unescaped(step) == word.strip()
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(NASTY, NASTY, NASTY)
 def test_names_and_narrative_never_break_a_feature(role: str, goal: str, benefit: str) -> None:
     source = MODEL
@@ -82,20 +82,20 @@ def test_names_and_narrative_never_break_a_feature(role: str, goal: str, benefit
     assert len(read_by_behave(told)) == len(read_officially(told)) == 4
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(st.lists(NASTY, min_size=1, max_size=3))
 def test_a_set_of_strings_comes_back_as_a_list(words: list[str]) -> None:
     assert ast.literal_eval(unescaped(text.set_inside_quotes(words))) == words
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(NASTY)
 def test_guarded_text_neither_opens_nor_closes_nor_splits(word: str) -> None:
     outside = re.sub(r'\\.|"(?:[^"\\]|\\.)*"', "", text.guarded(text.free(f"{word} and not (x) or")))
     assert not re.search(r'[()"]|(?<!\S)(and|or|not)(?!\S)', outside)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(st.text(st.characters(exclude_categories=["Cs"]), min_size=1))
 def test_an_iri_comes_back_from_its_tag(iri: str) -> None:
     tag = text.tag("clause", iri)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robbdd_tools.agent import sentences as read
@@ -66,14 +66,12 @@ def shape_read(clause: read.Clause) -> object:
             return "text"
 
 
-@settings(deadline=None)
 @given(junctions(st.recursive(SIMPLE, junctions, max_leaves=6)), CELLS, CELLS)
 def test_groups_are_read_back_as_they_were_written(clause: Clause, thing: Cell, place: Cell) -> None:
     sentence = WRITER.sentence(clause, {THING: thing, PLACE: place})
     assert shape_read(read.read_clause(sentence)) == shape(clause)
 
 
-@settings(deadline=None)
 @given(CELLS, CELLS, TIMES)
 def test_values_are_read_back_as_they_were_written(thing: Cell, place: Cell, time: TimeConstraint) -> None:
     (sentence,) = WRITER.steps((located(time),), {THING: thing, PLACE: place})

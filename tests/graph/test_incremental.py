@@ -102,9 +102,7 @@ def edited(text: str, other: str, kind: str, where: float, what: float) -> str:
             return text[:place] + other[start : start + length] + text[place:]
 
 
-@settings(
-    max_examples=SEQUENCES, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
-)
+@settings(max_examples=SEQUENCES, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(st.sampled_from(PAIRS), st.lists(EDIT, min_size=2, max_size=8), st.booleans())
 def test_what_an_edit_touched_is_enough(
     shape_files: ProjectShapes, texts: dict[str, str], edits: list[tuple[str, float, float, bool]], with_shapes: bool

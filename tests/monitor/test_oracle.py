@@ -89,7 +89,7 @@ def answer(clause: Clause, story: Story) -> Answer:
             return next(one for one in answers if one.margin == decisive and one.outcome == outcome)
 
 
-@settings(deadline=None, max_examples=500)
+@settings(max_examples=500)
 @given(CLAUSES, stories(events_on_samples=False))
 def test_outcome_margin_and_instants_are_those_of_the_page(clause: Clause, story: Story) -> None:
     expected, found = answer(clause, story), by_the_monitor(clause, story)
@@ -98,7 +98,7 @@ def test_outcome_margin_and_instants_are_those_of_the_page(clause: Clause, story
     assert found.worst_at == pytest.approx(expected.worst)
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(CLAUSES, stories(events_on_samples=False))
 def test_what_is_unknown_has_a_reason_and_what_is_not_has_a_margin(clause: Clause, story: Story) -> None:
     found = by_the_monitor(clause, story)

@@ -72,7 +72,7 @@ def known(clause: Clause, story: Story) -> bool:
     return all(known(part, story) for part in clause.parts)
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(CLAUSES, stories(events_on_samples=True))
 def test_robustness_is_that_of_signal_temporal_logic(clause: Clause, story: Story) -> None:
     # rtamt takes the sampling period from the first two samples.

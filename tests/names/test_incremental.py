@@ -154,9 +154,7 @@ def known(project: Project, uri: str) -> object:
     return fast_diagnostics(snapshot, uri), definitions, targets, analysis.imports, semantic_tokens(snapshot, uri), told
 
 
-@settings(
-    max_examples=SEQUENCES, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
-)
+@settings(max_examples=SEQUENCES, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(st.sampled_from(TEXTS), st.lists(EDITS, min_size=FEWEST, max_size=16))
 def test_an_edited_project_equals_a_fresh_one(texts: dict[str, str], edits: list[Edit]) -> None:
     folder = Path("/fuzz")

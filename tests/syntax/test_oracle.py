@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kit import EXAMPLES, MODEL, SCENE, corpus
@@ -76,7 +76,7 @@ def test_foreign_declarations_give_the_same_trees() -> None:
             same(language, text)
 
 
-@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=400)
 @given(
     st.sampled_from(SOUND),
     st.lists(st.tuples(st.floats(0, 1), st.sampled_from([0, 0, 1, 2, 6, 30]), st.sampled_from(PIECES)), max_size=3),
