@@ -6,19 +6,18 @@ Which ones it reads on its standard input, as they come; it reports on its stand
 from __future__ import annotations
 
 import os
-import signal
 import sys
-from types import FrameType
+
+from robbdd_tools.base.processes import on_end_request
 
 
-def _stop(signum: int, _frame: FrameType | None) -> None:
+def _stop(signum: int) -> None:
     # Every message is written whole and at once, so that there is nothing to flush or to undo.
     os._exit(128 + signum)
 
 
 def _main() -> int:
-    signal.signal(signal.SIGTERM, _stop)
-    signal.signal(signal.SIGINT, _stop)
+    on_end_request(_stop)
     if len(sys.argv) != 2:
         print("usage: python -m robbdd_tools.agent RUN_FOLDER", file=sys.stderr)
         return 2

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import pickle
 import sys
 import threading
@@ -12,13 +11,12 @@ from typing import BinaryIO
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import read_text, uri_to_path
 from robbdd_tools.base.memory import collect_rarely
+from robbdd_tools.base.processes import lower_priority
 from robbdd_tools.features.diagnostics import fast_diagnostics, shape_diagnostics
 from robbdd_tools.graph.incremental import Superseded, Validation
 from robbdd_tools.lsp.frames import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.names.project import Project, Snapshot
 
-IN_PASSING = 10
-"""Niceness: high enough to give way to the editor and the other processes, low enough to get on."""
 MOST_LEFT = 8
 """Validations of a file in a row that are left for a newer one: who types without end sees findings all the same."""
 
@@ -123,8 +121,8 @@ def _document(snapshot: Snapshot, uri: str) -> Document:
 
 def main(in_passing: bool = False) -> None:
     """Answer requests until the input ends; ``in_passing`` with what the others leave of the processor."""
-    if in_passing and hasattr(os, "nice"):
-        os.nice(IN_PASSING)
+    if in_passing:
+        lower_priority()
     stdout = sys.stdout.buffer
     # Whatever a library prints must not get between the frames.
     sys.stdout = sys.stderr

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Sequence
@@ -11,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from time import monotonic
 
+from robbdd_tools.base.processes import describe_exit, end_group, own_group, request_end
 from robbdd_tools.run.protocol import Execute, LogLine, RunMessage, decode, encode
 
 LOGS = "logs"
@@ -30,7 +29,6 @@ class Agent:
         self._log = folder / LOGS / f"agent-{number}.log"
         self._log.parent.mkdir(exist_ok=True)
         with self._log.open("wb") as log:
-            # Its own session: Ctrl-C in a terminal reaches the parent, which then stops the agent in good order.
             self._process = subprocess.Popen(
                 [sys.executable, "-m", module, str(folder), *arguments],
                 stdin=subprocess.PIPE,
@@ -38,7 +36,7 @@ class Agent:
                 stderr=log,
                 text=True,
                 encoding="utf-8",
-                start_new_session=True,
+                **own_group(),
             )
 
     @property
@@ -68,22 +66,18 @@ class Agent:
     def kill(self) -> None:
         """End the process and its children at once."""
         if self._process.poll() is None:
-            if hasattr(os, "killpg"):
-                os.killpg(self._process.pid, signal.SIGKILL)
-            else:
-                self._process.kill()
+            end_group(self._process)
 
     def ending(self) -> str:
         """Say how the process ended, for clauses that it left open."""
         code = self._process.wait()
-        how = f"signal {signal.Signals(-code).name}" if code < 0 else f"code {code}"
         tail = self._last_log_line()
-        return f"the agent process ended unexpectedly with {how}" + (f": {tail}" if tail else "")
+        return f"the agent process ended unexpectedly with {describe_exit(code)}" + (f": {tail}" if tail else "")
 
     def terminate(self) -> None:
         """Ask the process to end now."""
         if self._process.poll() is None:
-            self._process.terminate()
+            request_end(self._process)
 
     def wait(self, seconds: float) -> None:
         """Wait for the process's end, at most for a time."""

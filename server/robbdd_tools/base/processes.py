@@ -1,0 +1,117 @@
+"""Ends processes together with their children, on POSIX and on Windows.
+
+The only module that knows the signals, process groups and priorities of operating systems.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Protocol, TypedDict
+
+NICENESS = 10
+"""POSIX niceness of background work: it yields to the editor, but still makes progress."""
+WINDOWS_ERRORS = {
+    0xC0000005: "access violation",
+    0xC0000017: "out of memory",
+    0xC00000FD: "stack overflow",
+    0xC0000409: "stack buffer overrun",
+    0xC000013A: "interrupted by Ctrl-C",
+}
+"""Exit codes of processes that Windows ends, from its ``ntstatus.h``."""
+_LEAST_ERROR = 0xC0000000
+
+
+class RunningProcess(Protocol):
+    """The common part of ``subprocess.Popen`` and ``asyncio.subprocess.Process``."""
+
+    @property
+    def pid(self) -> int:
+        """Number of the process; on POSIX also of the group that it leads."""
+        ...
+
+    def terminate(self) -> None:
+        """Send SIGTERM on POSIX; end the process at once on Windows."""
+        ...
+
+    def kill(self) -> None:
+        """End the process at once."""
+        ...
+
+
+class GroupArguments(TypedDict, total=False):
+    """Arguments of ``Popen``."""
+
+    creationflags: int
+    start_new_session: bool
+
+
+def own_group() -> GroupArguments:
+    """Return the arguments of ``Popen`` that make the new process the leader of a group.
+
+    Ctrl-C in a terminal then reaches the parent alone, which can stop its children one by one.
+    """
+    if sys.platform == "win32":
+        return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+    return {"start_new_session": True}
+
+
+def request_end(process: RunningProcess) -> None:
+    """Ask the leader of a group to end; ``on_end_request`` lets it react."""
+    with suppress(OSError):
+        if sys.platform == "win32":
+            try:
+                os.kill(process.pid, signal.CTRL_BREAK_EVENT)
+            except OSError:
+                # Without a console there are no console events.
+                process.terminate()
+        else:
+            process.terminate()
+
+
+def end_group(process: RunningProcess) -> None:
+    """End the leader of a group and its children at once."""
+    with suppress(OSError):
+        if sys.platform == "win32":
+            # Windows finds children through their parent: the tree has to be ended before its root is gone.
+            command = ["taskkill", "/pid", str(process.pid), "/t", "/f"]
+            try:
+                ended = subprocess.run(command, capture_output=True, check=False).returncode == 0
+            except OSError:
+                ended = False
+            if not ended:
+                process.kill()
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
+
+
+def on_end_request(handle: Callable[[int], None]) -> None:
+    """Call ``handle`` with the signal's number when this process is asked to end. Only for the main thread."""
+    for name in ("SIGINT", "SIGTERM", "SIGBREAK"):
+        number: int | None = getattr(signal, name, None)
+        if number is not None:
+            signal.signal(number, lambda received, _: handle(received))
+
+
+def lower_priority() -> None:
+    """Let other processes go first from now on."""
+    if sys.platform == "win32":
+        kernel = ctypes.windll.kernel32
+        kernel.SetPriorityClass(kernel.GetCurrentProcess(), subprocess.BELOW_NORMAL_PRIORITY_CLASS)
+    else:
+        os.nice(NICENESS)
+
+
+def describe_exit(code: int) -> str:
+    """Return an exit code of ``Popen`` in words: ``code 7``, ``signal SIGKILL``, ``code 0xC0000005 (…)``."""
+    if code < 0:
+        known = {each.value: each.name for each in signal.Signals}
+        return f"signal {known.get(-code, -code)}"
+    if code >= _LEAST_ERROR:
+        return f"code 0x{code:X} ({WINDOWS_ERRORS.get(code, 'ended by Windows')})"
+    return f"code {code}"
