@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 EVENTS = ("a", "b", "c")
+ITERATIONS = (1, 2)
 
 
 def _height(evidence: Evidence, arguments: Arguments) -> FloatArray:
@@ -53,13 +54,14 @@ class Story:
     """What happened: heights by thing, one per sample, and stamped events."""
 
     paths: dict[str, list[float]]
-    events: tuple[tuple[str, float], ...]
+    events: tuple[tuple[str, float, int], ...]
+    """Name, time and iteration."""
 
     @property
     def trace(self) -> Trace:
         """The same as a trace."""
         found = trace_of({name: heights(path) for name, path in self.paths.items()})
-        stamps = tuple(EventStamp(name, time) for name, time in self.events)
+        stamps = tuple(EventStamp(*event) for event in self.events)
         return Trace(found.names, found.times, found.positions, found.orientations, {}, stamps)
 
 
@@ -81,24 +83,36 @@ MARGINS = st.integers(-16, 16).map(lambda number: number / 8)
 
 @st.composite
 def stories(draw: st.DrawFn, *, events_on_samples: bool) -> Story:
-    """Traces of two things; events may be missing, or come twice, unless they are to lie on samples, once each."""
+    """Traces of two things; events may be missing, or come twice, unless they are to lie on samples.
+
+    There, each occurs once in each iteration.
+    """
     count = draw(st.integers(1, 12))
     paths = {name: draw(st.lists(MARGINS, min_size=count, max_size=count)) for name in ("x", "y")}
     instants = st.integers(0, count - 1).map(lambda row: row * STEP)
     if events_on_samples:
-        return Story(paths, tuple((name, draw(instants)) for name in EVENTS))
+        return Story(paths, tuple((name, draw(instants), number) for name in EVENTS for number in ITERATIONS))
     anywhere = instants | st.floats(0.0, count * STEP)
-    stamps = draw(st.lists(st.tuples(st.sampled_from(EVENTS), anywhere), max_size=5))
+    stamps = draw(st.lists(st.tuples(st.sampled_from(EVENTS), anywhere, st.sampled_from((0, *ITERATIONS))), max_size=8))
     return Story(paths, tuple(sorted(stamps, key=lambda stamp: stamp[1])))
 
 
 _EVENT = st.sampled_from(EVENTS)
 _HORIZON = st.none() | st.integers(0, 8).map(lambda steps: steps * STEP)
-TIMES: st.SearchStrategy[TimeConstraint] = (
-    st.builds(Before, _EVENT, _HORIZON) | st.builds(After, _EVENT, _HORIZON) | st.builds(During, _EVENT, _EVENT)
-)
-OBSERVED: st.SearchStrategy[Clause] = st.builds(Holds, st.sampled_from(["x", "y"]), TIMES)
-FLUENTS: st.SearchStrategy[Clause] = OBSERVED | st.builds(Holds, st.just("missing"), TIMES)
+
+
+def _times(iterations: tuple[int, ...]) -> st.SearchStrategy[TimeConstraint]:
+    number = st.sampled_from(iterations)
+    return (
+        st.builds(Before, _EVENT, _HORIZON, number)
+        | st.builds(After, _EVENT, _HORIZON, number)
+        | st.builds(During, _EVENT, _EVENT, st.tuples(number, number))
+    )
+
+
+OBSERVED: st.SearchStrategy[Clause] = st.builds(Holds, st.sampled_from(["x", "y"]), _times(ITERATIONS))
+"""Clauses that name an iteration each, of things that are recorded."""
+FLUENTS: st.SearchStrategy[Clause] = st.builds(Holds, st.sampled_from(["x", "y", "missing"]), _times((0, *ITERATIONS)))
 
 
 def _joined(parts: st.SearchStrategy[Clause]) -> st.SearchStrategy[Clause]:

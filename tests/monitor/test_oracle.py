@@ -27,8 +27,10 @@ class Answer:
 UNKNOWN = Answer("unknown")
 
 
-def occurrence(story: Story, event: str) -> float | None:
-    times = [time for name, time in story.events if name == event]
+def occurrence(story: Story, event: str, iteration: int) -> float | None:
+    """t(e) of the page: of iteration k, those stamped k or 0 count; without a loop (k = 0) all do."""
+    stamped = [(time, number) for name, time, number in story.events if name == event]
+    times = [time for time, number in stamped if iteration == 0 or number == 0 or number == iteration]
     return min(times) if times else None
 
 
@@ -39,18 +41,18 @@ def in_window(time: TimeConstraint, story: Story, samples: list[float]) -> list[
         return [row for row, t in enumerate(samples) if low - TOLERANCE <= t <= high + TOLERANCE]
 
     match time:
-        case Before(event, horizon):
-            t = occurrence(story, event)
+        case Before(event, horizon, k):
+            t = occurrence(story, event, k)
             if t is None or (horizon is not None and t - horizon < -TOLERANCE):
                 return None
             return between(0.0, t)[-1:] if horizon is None else between(t - horizon, t)
-        case After(event, horizon):
-            t = occurrence(story, event)
+        case After(event, horizon, k):
+            t = occurrence(story, event, k)
             if t is None or max(samples) < t + (horizon or 0.0) - TOLERANCE:
                 return None
             return between(t, float("inf"))[:1] if horizon is None else between(t, t + horizon)
-        case During(start, end):
-            a, b = occurrence(story, start), occurrence(story, end)
+        case During(start, end, (first, last)):
+            a, b = occurrence(story, start, first), occurrence(story, end, last)
             return None if a is None or b is None or b < a else between(a, b)
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from monitor.random_traces import EVENTS, OBSERVED, Clause, Holds, Joined, Story, by_the_monitor, stories
+from monitor.random_traces import OBSERVED, Clause, Holds, Joined, Story, by_the_monitor, stories
 from monitor.traces import STEP
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 
@@ -33,25 +33,25 @@ def formula(clause: Clause) -> str:
 
 def when(time: TimeConstraint) -> str:
     match time:
-        case Before(event, horizon):
-            return f"(eventually{steps(horizon)} ({event} >= 0))"
-        case After(event, horizon):
-            return f"(once{steps(horizon)} ({event} >= 0))"
-        case During(start, end):
-            return f"((once ({start} >= 0)) and (eventually ({end} >= 0)))"
+        case Before(event, horizon, k):
+            return f"(eventually{steps(horizon)} ({event}{k} >= 0))"
+        case After(event, horizon, k):
+            return f"(once{steps(horizon)} ({event}{k} >= 0))"
+        case During(start, end, (first, last)):
+            return f"((once ({start}{first} >= 0)) and (eventually ({end}{last} >= 0)))"
 
 
 def by_rtamt(clause: Clause, story: Story) -> float:
     """Robustness at the first sample."""
     # rtamt has no types.
     specification: Any = import_module("rtamt").StlDiscreteTimeSpecification()
-    for name in (*story.paths, *EVENTS):
+    instants = {f"{name}{number}": round(time / STEP) for name, time, number in story.events}
+    for name in (*story.paths, *instants):
         specification.declare_var(name, "float")
     specification.spec = formula(clause)
     specification.parse()
     count = len(story.paths["x"])
-    instants = {name: round(time / STEP) for name, time in story.events}
-    marks = {name: [HUGE if row == instants[name] else -HUGE for row in range(count)] for name in EVENTS}
+    marks = {name: [HUGE if row == instant else -HUGE for row in range(count)] for name, instant in instants.items()}
     found = specification.evaluate({"time": list(range(count)), **story.paths, **marks})
     return float(found[0][1])
 
@@ -80,7 +80,18 @@ def test_robustness_is_that_of_signal_temporal_logic(clause: Clause, story: Stor
     assert by_the_monitor(clause, story).robustness == by_rtamt(clause, story)
 
 
-@pytest.mark.parametrize("time", [Before("a"), After("a"), Before("a", 0.2), After("a", 0.2), During("a", "b")])
+@pytest.mark.parametrize(
+    "time",
+    [
+        Before("a", None, 2),
+        After("a", None, 1),
+        Before("a", 0.2, 2),
+        After("a", 0.2, 1),
+        During("a", "b", (1, 1)),
+        During("a", "b", (1, 2)),
+    ],
+)
 def test_every_kind_of_window_is_compared(time: TimeConstraint) -> None:
-    story = Story({"x": [0.5, -1.0, 0.25, -2.0, 0.75, -3.0], "y": [0.0] * 6}, (("a", 0.2), ("b", 0.4), ("c", 0.0)))
+    events = (("a", 0.2, 1), ("b", 0.4, 1), ("a", 0.3, 2), ("b", 0.5, 2))
+    story = Story({"x": [0.5, -1.0, 0.25, -2.0, 0.75, -3.0], "y": [0.0] * 6}, events)
     assert by_the_monitor(Holds("x", time), story).robustness == by_rtamt(Holds("x", time), story)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from monitor.traces import STEP, still, trace_of
-from robbdd_tools.monitor.time import After, Before, During, NoWindow, TimeConstraint, Window, window
+from robbdd_tools.monitor.time import After, Before, During, NoWindow, TimeConstraint, Window, in_iterations, window
+from robbdd_tools.monitor.trace import EventStamp
 
 COUNT = 21
 
@@ -119,3 +122,31 @@ def test_an_interval_grows_with_its_end(start: float, length: float) -> None:
         assert longer.last >= shorter.last
     elif isinstance(longer, Window):
         assert end - start < STEP + 1e-9
+
+
+def test_an_occurrence_is_that_of_its_iteration_or_of_none() -> None:
+    events = (EventStamp("e", 0.2, 1), EventStamp("e", 0.4, 2), EventStamp("e", 0.5, 2), EventStamp("end", 0.6))
+    trace = replace(trace_of({"x": still(11)}), events=events)
+    assert [trace.event_time("e", iteration) for iteration in (0, 1, 2, 3)] == [0.2, 0.2, 0.4, None]
+    assert trace.event_time("end", 2) == 0.6
+    assert window(During("e", "e", (1, 2)), trace) == Window(2, 4)
+    found = window(After("e", None, 3), trace)
+    assert isinstance(found, NoWindow)
+    assert found.reason == "event e never occurred in iteration 3"
+
+
+@pytest.mark.parametrize(
+    ("constraint", "role", "expected"),
+    [
+        (Before("e", 0.5), "given", Before("e", 0.5, 1)),
+        (Before("e"), "then", Before("e", None, 3)),
+        (After("e", 0.5), "then", After("e", 0.5, 3)),
+        (During("a", "b"), "given", During("a", "b", (1, 3))),
+        (During("a", "b"), "then", During("a", "b", (1, 3))),
+    ],
+)
+def test_a_clause_outside_a_loop_refers_to_its_first_or_last_iteration(
+    constraint: TimeConstraint, role: str, expected: TimeConstraint
+) -> None:
+    assert in_iterations(constraint, role, (1, 3)) == expected
+    assert in_iterations(constraint, role, ()) == constraint

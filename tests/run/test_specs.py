@@ -94,3 +94,40 @@ def test_users_code_is_told_the_arguments_of_its_clause_and_no_other(tmp_path: P
         ("when", ()),
     ]
     assert read_manifest(tmp_path).scenarios == (only,)
+
+
+def test_clauses_refer_to_the_behaviours_of_their_iteration(tmp_path: Path) -> None:
+    nested = edited(
+        "    for all ( var x in <parts> ) {",
+        "    Given: first: holds(<parts> are sorted into <goals>, before <pick-start>)\n"
+        "    for all ( var y in <parts> ) {\n"
+        "    Given: outer: holds(<y> is held by <arm>, before <pick-start>)\n"
+        "    for all ( var x in <parts> ) {",
+        QUANTIFIED,
+    )
+    nested = edited(
+        "<arm> picks <x> }\n    }\n",
+        "<arm> picks <x> }\n    }\n"
+        "    Then: inner: holds(<y> is held by <arm>, after <place-end>)\n    }\n"
+        "    Then: last: holds(<parts> are sorted into <goals>, after <place-end>)\n",
+        nested,
+    )
+    nested = nested.replace("located at <places.bench_ws>", "held by <arm>").replace(
+        "<parts> are sorted into <goals>", "pred('all is well')"
+    )
+    (only,) = specs(tmp_path, nested)
+    found = [(clause.name.partition("-")[0], clause.iterations) for clause in only.clauses]
+    one, two = [("there", (1, 1)), ("when", (1, 1))], [("there", (2, 2)), ("when", (2, 2))]
+    three, four = [("there", (3, 3)), ("when", (3, 3))], [("there", (4, 4)), ("when", (4, 4))]
+    assert found == [
+        ("first", (1, 4)),
+        *[("outer", (1, 2)), *one, *two, ("inner", (1, 2))],
+        *[("outer", (3, 4)), *three, *four, ("inner", (3, 4))],
+        ("last", (1, 4)),
+    ]
+
+
+def test_a_single_behaviour_needs_no_iteration(tmp_path: Path) -> None:
+    text = QUANTIFIED.replace("{ <parts.bolt>, <parts.nut> }", "{ <parts.bolt> }")
+    (only,) = specs(tmp_path, text.replace("located at <places.bench_ws>", "held by <arm>"))
+    assert {clause.iterations for clause in only.clauses} == {()}

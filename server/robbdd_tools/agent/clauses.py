@@ -12,7 +12,7 @@ from robbdd_tools.agent.streams import Unobserved
 from robbdd_tools.agent.user_code import UserCodeError
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.monitor.judge import judge, margin_range
-from robbdd_tools.monitor.time import After, Before, During, NoWindow, TimeConstraint, window
+from robbdd_tools.monitor.time import NoWindow, occurrences, window
 from robbdd_tools.monitor.vacuity import Range, joined
 from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation, unknown
 from robbdd_tools.run.protocol import NO_STEP
@@ -61,15 +61,6 @@ def is_closed(clause: Clause, trace: Trace, events: AbstractSet[str]) -> bool:
     return all(_closed(fluent, trace, events) for fluent in fluents_of(clause))
 
 
-def events_of(constraint: TimeConstraint) -> tuple[str, ...]:
-    """Return the events that a time constraint names."""
-    match constraint:
-        case Before(event) | After(event):
-            return (event,)
-        case During(start, end):
-            return (start, end)
-
-
 def ways(fluent: Fluent) -> Iterator[Iterator[Arguments]]:
     """Yield the ways in which a fluent may hold, each with the arguments for all of which it then must."""
     slots = fluent.predicate.slots
@@ -78,14 +69,14 @@ def ways(fluent: Fluent) -> Iterator[Iterator[Arguments]]:
 
 
 def _closed(fluent: Fluent, trace: Trace, events: AbstractSet[str]) -> bool:
-    if fluent.predicate.evaluate is None or not events >= set(events_of(fluent.time)):
+    if fluent.predicate.evaluate is None or not events >= {event for event, _ in occurrences(fluent.time)}:
         return True
     selected = window(fluent.time, trace)
     return not (isinstance(selected, NoWindow) and selected.open)
 
 
 def _fluent(fluent: Fluent, trace: Trace, regions: Regions, events: AbstractSet[str]) -> Verdict:
-    silent = [event for event in events_of(fluent.time) if event not in events]
+    silent = [event for event, _ in occurrences(fluent.time) if event not in events]
     if silent and fluent.predicate.evaluate is not None:
         return unknown(f"nothing in the scenario emits event {silent[0]}")
     return disjunction(

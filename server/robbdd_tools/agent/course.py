@@ -82,6 +82,7 @@ class Course:
         self.remark = ""
         self.finished = False
         self._muted = False
+        self._iteration = 0
         self.completed = 0
         self.broken = ""
         self.regions: Regions = world.cast.regions
@@ -132,8 +133,10 @@ class Course:
         yield from _idle(self._timing.tail)
 
     def _in_turn(self) -> Iterator[None]:
-        for call in self._calls:
+        for iteration, call in enumerate(self._calls, start=1):
+            self._iteration = iteration
             failure = yield from self.attempt(call)
+            self._iteration = 0
             if failure:
                 return
             self.completed += 1
@@ -199,7 +202,7 @@ class Course:
 
     def stamp(self, name: str) -> None:
         """Note that an emitter, by its name, emits its event now."""
-        self.stamps.append(EventStamp(name, self.simulation.time))
+        self.stamps.append(EventStamp(name, self.simulation.time, self._iteration))
 
     def _emit(self, event: str) -> None:
         if self._muted:

@@ -37,15 +37,19 @@ def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False
             return
 
 
-def behaviour_curves(doing: Doing, trace: Trace, emitters: Mapping[str, str], node: str = "") -> tuple[Curve, ...]:
+def behaviour_curves(
+    doing: Doing, trace: Trace, emitters: Mapping[str, str], node: str = "", iteration: int = 0
+) -> tuple[Curve, ...]:
     """Return the duration of a behaviour, without a margin; ``emitters`` maps events to what emits them.
 
-    ``node`` is that of the behaviour tree which executes it, if one does.
+    ``node`` is that of the behaviour tree which executes it, if one does; ``iteration`` is 0 for a behaviour that is
+    executed once.
     """
     limits = doing.behaviour.events[0], doing.behaviour.events[-1]
     if node:
         limits = emitter(node, START), emitter(node, END)
-    times = [stamp.time for stamp in trace.events if emitters.get(stamp.name) in limits]
+    stamps = [stamp for stamp in trace.events if stamp.iteration == iteration or not iteration]
+    times = [stamp.time for stamp in stamps if emitters.get(stamp.name) in limits]
     return (Curve(min(times), max(times)),) if times else ()
 
 
@@ -58,7 +62,9 @@ def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tu
         "scenario": scenario,
         "duration": trace.end,
         "remark": trace.remark,
-        "events": [asdict(stamp) for stamp in sorted(trace.events, key=lambda stamp: stamp.time)],
+        "events": [
+            {"name": stamp.name, "time": stamp.time} for stamp in sorted(trace.events, key=lambda stamp: stamp.time)
+        ],
         "clauses": {str(line): [asdict(one) for one in found] for line, found in by_line.items()},
     }
     path.parent.mkdir(exist_ok=True)

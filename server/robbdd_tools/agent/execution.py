@@ -11,7 +11,7 @@ from robbdd_tools.agent.course import Call, Course, Timing
 from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.quantities import wanting
 from robbdd_tools.monitor.time import Window, window
-from robbdd_tools.monitor.trace import EventStamp, Trace
+from robbdd_tools.monitor.trace import Trace
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.sentences import Clause
@@ -78,9 +78,7 @@ class Execution:
     def trace(self) -> Trace:
         """What happened so far."""
         course = self.course
-        events = tuple(
-            EventStamp(name, stamp.time) for stamp in course.stamps for name in self._names.get(stamp.name, ())
-        )
+        events = tuple(replace(stamp, name=name) for stamp in course.stamps for name in self._names.get(stamp.name, ()))
         trace = course.simulation.trace(events, course.finished, course.remark)
         unreached = self._unreached()
         return replace(trace, unreached=unreached) if unreached else trace

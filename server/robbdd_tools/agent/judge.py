@@ -13,11 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from robbdd_tools.agent.channel import Lines
-from robbdd_tools.agent.clauses import decide, events_of, ranges
-from robbdd_tools.agent.policies import with_policies
-from robbdd_tools.agent.sentences import Clause, fluents_of, read_clause, read_event
+from robbdd_tools.agent.clauses import decide, ranges
+from robbdd_tools.agent.sentences import fluents_of, read_clause, read_event
+from robbdd_tools.agent.stated import stated_clause, stated_iteration
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
+from robbdd_tools.monitor.time import never_occurred, occurrences
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
@@ -63,7 +64,7 @@ class StoredTraces:
             if stored is None or evidence is None or reason:
                 yield clause, unknown(reason)
             elif clause.role == "when":
-                yield clause, self._done(clause, evidence, index)
+                yield clause, self._done(clause, evidence, index, spec)
             else:
                 yield clause, _decided(clause, evidence, spec, stored)
 
@@ -83,20 +84,22 @@ class StoredTraces:
             if found:
                 yield clause.line, found
 
-    def _done(self, clause: ClauseSpec, evidence: Evidence, index: int) -> Verdict:
+    def _done(self, clause: ClauseSpec, evidence: Evidence, index: int, spec: ScenarioSpec) -> Verdict:
         """Return the verdict on a When clause: an event of the trace, or what the run said of the behaviour."""
         event = read_event(clause.sentence)
         if event is not None:
-            time = evidence.trace.event_time(event)
-            if time is None and evidence.trace.unreached:
-                return unknown(evidence.trace.unreached)
-            return unknown(f"event {event} never occurred") if time is None else Verdict(Outcome.HOLDS, at=time)
-        for entry in self._results[index]["clauses"]:
-            if entry["sentence"] == clause.sentence:
-                return Verdict(
-                    Outcome(entry["verdict"]), entry["robustness"], entry["unit"], entry["at"], entry["reason"]
-                )
-        return unknown(CHANGED.format("the behaviour"))
+            trace, iteration = evidence.trace, stated_iteration(clause)
+            time = trace.event_time(event, iteration)
+            if time is None:
+                return unknown(trace.unreached or never_occurred(trace, event, iteration))
+            return Verdict(Outcome.HOLDS, at=time)
+        # Iterations may state one behaviour several times.
+        same = [one for one in spec.clauses if one.sentence == clause.sentence]
+        found = [entry for entry in self._results[index]["clauses"] if entry["sentence"] == clause.sentence]
+        if len(same) != len(found):
+            return unknown(CHANGED.format("the behaviour"))
+        entry = found[same.index(clause)]
+        return Verdict(Outcome(entry["verdict"]), entry["robustness"], entry["unit"], entry["at"], entry["reason"])
 
 
 def _change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
@@ -115,19 +118,15 @@ def _behaviours(spec: ScenarioSpec) -> list[str]:
 
 
 def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored: ScenarioSpec) -> Verdict:
-    read, trace = _read(clause, spec), evidence.trace
+    read, trace = stated_clause(clause.sentence, clause, spec), evidence.trace
     for fluent in fluents_of(read):
-        for event in events_of(fluent.time):
+        for event, iteration in occurrences(fluent.time):
             if event in spec.events and spec.events[event] != stored.events.get(event):
                 return unknown(f"the stored trace has no record of event {event}")
             # The run went no further than its own clauses asked for.
-            if event in spec.events and not trace.finished and trace.event_time(event) is None:
+            if event in spec.events and not trace.finished and trace.event_time(event, iteration) is None:
                 return unknown(f"the stored trace ends at {trace.end:.2f} s, before event {event}")
     return decide(read, trace, evidence.regions, spec.events.keys())
-
-
-def _read(clause: ClauseSpec, spec: ScenarioSpec) -> Clause:
-    return with_policies(read_clause(clause.sentence), clause, spec)
 
 
 def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:

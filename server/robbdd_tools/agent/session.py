@@ -15,12 +15,13 @@ from robbdd_tools.agent.curves import behaviour_curves, curves, write_curves
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
-from robbdd_tools.agent.policies import with_policies
 from robbdd_tools.agent.sentences import read_clause, read_doing, read_event
+from robbdd_tools.agent.stated import stated_clause, stated_iteration
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import verdict_views, write_trace
 from robbdd_tools.agent.viewer import NoViewer, Viewer
 from robbdd_tools.agent.views import views
+from robbdd_tools.monitor.time import never_occurred
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.protocol import (
     NO_STEP,
@@ -67,11 +68,9 @@ class ScenarioRun:
         self._moments = moments
         self._open = {clause.line: clause.sentence for clause in spec.clauses}
         self._doings = {line: doing for line, role, text in texts if role == "when" and (doing := read_doing(text))}
-        known = {clause.line: clause for clause in spec.clauses}
+        self._stated = {clause.line: clause for clause in spec.clauses}
         self._clauses = {
-            line: with_policies(read_clause(text), known.get(line), spec)
-            for line, role, text in texts
-            if role != "when"
+            line: stated_clause(text, self._stated.get(line), spec) for line, role, text in texts if role != "when"
         }
         self._execution: Execution | None = None
         self._viewer: Viewer | None = None
@@ -141,17 +140,17 @@ class ScenarioRun:
 
     def event(self, line: int, text: str) -> Verdict:
         """Run on until the event that a When step names has occurred."""
-        event = read_event(text) or text
+        event, iteration = read_event(text) or text, stated_iteration(self._stated.get(line))
 
         def verdict(execution: Execution) -> Verdict:
             if event not in self._spec.events:
                 return unknown(f"nothing in the scenario emits event {event}")
-            trace = execution.advance_until(lambda trace: trace.event_time(event) is not None)
-            time = trace.event_time(event)
+            trace = execution.advance_until(lambda trace: trace.event_time(event, iteration) is not None)
+            time = trace.event_time(event, iteration)
             if trace.unreached:
                 return unknown(trace.unreached)
             if time is None:
-                return unknown(f"event {event} never occurred" + (f": {trace.remark}" if trace.remark else ""))
+                return unknown(never_occurred(trace, event, iteration))
             return Verdict(Outcome.HOLDS, at=time)
 
         return self._judged(line, verdict)
@@ -201,7 +200,8 @@ class ScenarioRun:
             if line in self._clauses:
                 yield line, tuple(curves(self._clauses[line], trace, execution.regions))
             elif line in self._doings:
-                yield line, behaviour_curves(self._doings[line], trace, self._spec.events, self._spec.node)
+                iteration = stated_iteration(self._stated[line])
+                yield line, behaviour_curves(self._doings[line], trace, self._spec.events, self._spec.node, iteration)
 
     def _judged(self, line: int, verdict: Callable[[Execution], Verdict]) -> Verdict:
         if line in self._open:

@@ -86,6 +86,8 @@ def _restored(value: Any, arrays: _Arrays) -> Any:
         case {"array": kind, "shape": shape}:
             return arrays.take(kind, shape)
         case {"kind": name, "fields": entries}:
+            if entries.keys() != {field.name for field in fields(KINDS[name])}:
+                raise TypeError(f"another version wrote this {name}")
             return KINDS[name](**{field: _restored(inner, arrays) for field, inner in entries.items()})
         case {"map": entries}:
             return {_restored(key, arrays): _restored(inner, arrays) for key, inner in entries}

@@ -34,7 +34,7 @@ class Step:
     """One step: keyword, text, and the clause that it states. ``role`` is ``given``, ``when`` or ``then``.
 
     ``parts`` are the fluents and texts of a group, in the order of the text; nothing for a clause that stands alone.
-    ``source`` is what it was written from.
+    ``source`` is what it was written from. ``scope`` is the iterations that it belongs to, outermost first.
     """
 
     keyword: str
@@ -43,6 +43,7 @@ class Step:
     role: str
     parts: tuple[Iri, ...] = ()
     source: Bound | None = field(default=None, compare=False, repr=False)
+    scope: Scope = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +63,8 @@ class Placeholder:
 Filler = Cell | AnyOf | Placeholder
 Bound = tuple[Clause, Mapping[Iri, Filler]]
 """A clause with what its variables stand for."""
+Scope = tuple[tuple[Iri, int], ...]
+"""Iterations of ``for all``, outermost first: the quantifier and the number of its element, from 0."""
 
 
 class UnknownElements(Exception):
@@ -83,24 +86,25 @@ class StepWriter:
             found = self._curies[iri] = self.model.curie(iri)
         return found
 
-    def steps(self, clauses: tuple[Clause, ...], values: Mapping[Iri, Filler]) -> Iterator[Step]:
+    def steps(self, clauses: tuple[Clause, ...], values: Mapping[Iri, Filler], scope: Scope = ()) -> Iterator[Step]:
         """Yield the steps of clauses in order; ``for all`` is repeated per element, ``and`` becomes several steps."""
         for clause in clauses:
             match clause:
                 case ForAll():
-                    for element in self.elements(clause.in_set, values):
-                        yield from self.steps(clause.clauses, {**values, clause.variable: element})
+                    for index, element in enumerate(self.elements(clause.in_set, values)):
+                        inner = (*scope, (clause.iri, index))
+                        yield from self.steps(clause.clauses, {**values, clause.variable: element}, inner)
                 case Exists() if self._is_one_choice(clause, values):
-                    yield from self.steps(clause.clauses, self._some(clause, values))
+                    yield from self.steps(clause.clauses, self._some(clause, values), scope)
                 case Junction(operator="and"):
-                    yield from self.steps(clause.operands, values)
+                    yield from self.steps(clause.operands, values, scope)
                 case BehaviourClause() | EventClause():
-                    yield Step("When", self.sentence(clause, values), clause.iri, "when", (), (clause, values))
+                    yield Step("When", self.sentence(clause, values), clause.iri, "when", (), (clause, values), scope)
                 case _:
                     alone = isinstance(clause, Fluent | TextFluent | TextClause)
                     parts = () if alone else tuple(part.iri for part, _ in self.parts(clause, values))
                     sentence, bound = self.sentence(clause, values), (clause, values)
-                    yield Step(clause.role.capitalize(), sentence, clause.iri, clause.role, parts, bound)
+                    yield Step(clause.role.capitalize(), sentence, clause.iri, clause.role, parts, bound, scope)
 
     def sentence(self, clause: Clause, values: Mapping[Iri, Filler], *, within: bool = False) -> str:
         """Return the sentence of one clause with its values; ``within`` tells that it is a part of a group."""

@@ -180,8 +180,8 @@ def template_text(names: Names, reader: ClauseReader, template: Iri, variables: 
         own = names.declare(variable, "variable", owner=name, namespace=namespace, before="var-")
         writer.variables[variable] = f"<{own}>"
         lines.append(f"{'set ' if records.is_a(variable, 'bdd:Set') else ''}var {own}\n")
-    duration = During(*(records.one(template, f"time:{side}-event") for side in ("after", "before")))
-    head = f"duration: {writer.time(duration)}\n"
+    start, end = (records.one(template, f"time:{side}-event") for side in ("after", "before"))
+    head = f"duration: {writer.time(During(start, end))}\n"
     for scenario in records.iris(records.all(template, "bdd:of-scenario")):
         for task in records.iris(records.all(scenario, "task:of-task"))[:1]:
             head += f"task: {names.lazily(task, 'task')}\n"

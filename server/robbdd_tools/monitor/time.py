@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -14,26 +14,38 @@ TOLERANCE = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Before:
-    """At the last sample at or before ``event``, or throughout the ``horizon`` (s) that ends at it."""
+    """At the last sample at or before ``event``, or throughout the ``horizon`` (s) that ends at it.
+
+    ``iteration`` selects the occurrence of the event, as in ``Trace.event_time``.
+    """
 
     event: str
     horizon: float | None = None
+    iteration: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class After:
-    """At the first sample at or after ``event``, or throughout the ``horizon`` (s) that starts at it."""
+    """At the first sample at or after ``event``, or throughout the ``horizon`` (s) that starts at it.
+
+    ``iteration`` selects the occurrence of the event, as in ``Trace.event_time``.
+    """
 
     event: str
     horizon: float | None = None
+    iteration: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class During:
-    """From event ``start`` until event ``end``, both included."""
+    """From event ``start`` until event ``end``, both included.
+
+    ``iterations`` selects the occurrences of start and end, as in ``Trace.event_time``.
+    """
 
     start: str
     end: str
+    iterations: tuple[int, int] = (0, 0)
 
 
 TimeConstraint = Before | After | During
@@ -64,23 +76,46 @@ def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
 
     docs/semantics.md is its definition.
 
-    With ``t_e`` the time of an event's first occurrence and ``h`` the horizon: ``before``: the last sample in
+    With ``t_e`` the time of the selected occurrence of an event and ``h`` the horizon: ``before``: the last sample in
     ``[0, t_e]``, or all in ``[t_e - h, t_e]``; ``after``: the first sample in ``[t_e, ∞)``, or all in
     ``[t_e, t_e + h]``; ``from a until b``: all in ``[t_a, t_b]``.
     """
     match constraint:
-        case Before(event, horizon):
-            return _before(trace, event, horizon)
-        case After(event, horizon):
-            return _after(trace, event, horizon)
-        case During(start, end):
-            return _during(trace, start, end)
+        case Before(event, horizon, iteration):
+            return _before(trace, event, horizon, iteration)
+        case After(event, horizon, iteration):
+            return _after(trace, event, horizon, iteration)
+        case During(start, end, iterations):
+            return _during(trace, start, end, iterations)
 
 
-def _before(trace: Trace, event: str, horizon: float | None) -> Window | NoWindow:
-    time = trace.event_time(event)
+def occurrences(constraint: TimeConstraint) -> tuple[tuple[str, int], ...]:
+    """Return the events that a time constraint names, each with its iteration."""
+    match constraint:
+        case Before(event, _, iteration) | After(event, _, iteration):
+            return ((event, iteration),)
+        case During(start, end, (first, last)):
+            return (start, first), (end, last)
+
+
+def in_iterations(constraint: TimeConstraint, role: str, iterations: tuple[int, ...]) -> TimeConstraint:
+    """Return a constraint with the occurrences that a clause refers to (docs/semantics.md, "Occurrences").
+
+    ``iterations`` are the first and the last iteration of the clause's scope, nothing without a loop. An interval
+    spans the scope; else a Given or When clause (``role``) refers to its first iteration, a Then clause to its last.
+    """
+    if not iterations:
+        return constraint
+    first, last = iterations[0], iterations[-1]
+    if isinstance(constraint, During):
+        return replace(constraint, iterations=(first, last))
+    return replace(constraint, iteration=last if role == "then" else first)
+
+
+def _before(trace: Trace, event: str, horizon: float | None, iteration: int) -> Window | NoWindow:
+    time = trace.event_time(event, iteration)
     if time is None:
-        return _missing(trace, event)
+        return _missing(trace, event, iteration)
     last = trace.last_at_or_before(time + TOLERANCE)
     if horizon is None:
         return Window(last, last) if last >= 0 else NoWindow(f"no sample was taken before event {event}", False, True)
@@ -92,10 +127,10 @@ def _before(trace: Trace, event: str, horizon: float | None) -> Window | NoWindo
     return _closed(trace.first_at_or_after(time - horizon - TOLERANCE), last)
 
 
-def _after(trace: Trace, event: str, horizon: float | None) -> Window | NoWindow:
-    time = trace.event_time(event)
+def _after(trace: Trace, event: str, horizon: float | None, iteration: int) -> Window | NoWindow:
+    time = trace.event_time(event, iteration)
     if time is None:
-        return _missing(trace, event)
+        return _missing(trace, event, iteration)
     first = trace.first_at_or_after(time - TOLERANCE)
     end = time + (horizon or 0.0)
     if first >= len(trace.times) or trace.times[-1] < end - TOLERANCE:
@@ -106,12 +141,13 @@ def _after(trace: Trace, event: str, horizon: float | None) -> Window | NoWindow
     return _closed(first, trace.last_at_or_before(end + TOLERANCE))
 
 
-def _during(trace: Trace, start: str, end: str) -> Window | NoWindow:
-    begin, finish = trace.event_time(start), trace.event_time(end)
+def _during(trace: Trace, start: str, end: str, iterations: tuple[int, int]) -> Window | NoWindow:
+    first, last = iterations
+    begin, finish = trace.event_time(start, first), trace.event_time(end, last)
     if begin is None:
-        return _missing(trace, start)
+        return _missing(trace, start, first)
     if finish is None:
-        return _missing(trace, end)
+        return _missing(trace, end, last)
     if finish < begin:
         return NoWindow(f"event {end} occurred before event {start}", False)
     return _closed(trace.first_at_or_after(begin - TOLERANCE), trace.last_at_or_before(finish + TOLERANCE))
@@ -121,6 +157,12 @@ def _closed(first: int, last: int) -> Window | NoWindow:
     return Window(first, last) if first <= last else NoWindow("no sample was taken in the window", False, True)
 
 
-def _missing(trace: Trace, event: str) -> NoWindow:
+def _missing(trace: Trace, event: str, iteration: int) -> NoWindow:
+    return NoWindow(never_occurred(trace, event, iteration), not trace.finished)
+
+
+def never_occurred(trace: Trace, event: str, iteration: int = 0) -> str:
+    """Return the reason why a clause is unknown that needs an event which is missing."""
+    where = f" in iteration {iteration}" if iteration else ""
     why = f": {trace.remark}" if trace.remark else ""
-    return NoWindow(f"event {event} never occurred{why}", not trace.finished)
+    return f"event {event} never occurred{where}{why}"

@@ -15,10 +15,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class EventStamp:
-    """An event's name (CURIE) and the simulated time (s) at which it occurred."""
+    """An event's name (CURIE) and the simulated time (s) at which it occurred.
+
+    ``iteration`` counts the behaviours that the scenario executes, from 1; 0 for an event outside of them.
+    """
 
     name: str
     time: float
+    iteration: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,9 +76,14 @@ class Trace:
         """Return the index of a body in ``names``; raises ``KeyError`` when the trace does not hold it."""
         return self._index[name]
 
-    def event_time(self, name: str) -> float | None:
-        """Return when an event first occurred, or ``None``."""
-        return min((stamp.time for stamp in self.events if stamp.name == name), default=None)
+    def event_time(self, name: str, iteration: int = 0) -> float | None:
+        """Return when an event first occurred, or ``None``.
+
+        With an ``iteration``, only that one and what belongs to none count.
+        """
+        counted = (0, iteration)
+        stamps = (stamp for stamp in self.events if stamp.name == name)
+        return min((stamp.time for stamp in stamps if not iteration or stamp.iteration in counted), default=None)
 
     def first_at_or_after(self, time: float) -> int:
         """Return the index of the first sample in ``[time, ∞)``; ``len(times)`` when there is none."""

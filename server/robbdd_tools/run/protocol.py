@@ -73,7 +73,9 @@ class ClauseSpec:
     """One clause of one scenario: the feature line of its step, the IRI it judges, its place in the scenario.
 
     ``parts`` are the IRIs of the fluents of a group, in the order of the sentence. ``arguments`` are, for a clause that
-    users' code judges, what fills the slots and quantified variables of each of these fluents, by name.
+    users' code judges, what fills the slots and quantified variables of each of these fluents, by name. ``iterations``
+    are the first and the last behaviour of the clause's scope, counted from 1 within the scenario; nothing where the
+    scenario executes a single one.
     """
 
     line: int
@@ -83,6 +85,7 @@ class ClauseSpec:
     sentence: str
     parts: tuple[str, ...] = ()
     arguments: tuple[Mapping[str, Any], ...] = ()
+    iterations: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

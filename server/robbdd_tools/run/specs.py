@@ -26,6 +26,7 @@ from robbdd_tools.graph.model import (
     Variant,
 )
 from robbdd_tools.monitor.policy import Observation, Policy
+from robbdd_tools.run.iterations import behaviour_scopes, iterations_of
 from robbdd_tools.run.protocol import (
     ClauseSpec,
     ConfigSpec,
@@ -120,6 +121,9 @@ class SpecWriter:
         variant = scenario.variant
         shared = self._known(variant)
         curie = self._curie
+        # A template may leave a step out; there is nothing to judge or to execute then.
+        steps = [(line, step) for line, step in zip(scenario.lines, scenario.steps, strict=True) if line]
+        scopes = behaviour_scopes(step for _, step in steps)
         return ScenarioSpec(
             feature=feature,
             line=scenario.line,
@@ -131,12 +135,7 @@ class SpecWriter:
             seed=scenario_seed(self._seed, variant.iri, scenario.number),
             scene=self._scene(shared, variant.scene, scenario.values),
             events=shared.events,
-            clauses=tuple(
-                self._clause(line, step)
-                for line, step in zip(scenario.lines, scenario.steps, strict=True)
-                # A template may leave a step out; there is nothing to judge then.
-                if line
-            ),
+            clauses=tuple(self._clause(line, step, iterations_of(step.scope, scopes)) for line, step in steps),
             execution=self.execution,
             model=self._name,
         )
@@ -147,9 +146,9 @@ class SpecWriter:
             shared = self._variants[variant.iri] = self._shared(variant)
         return shared
 
-    def _clause(self, line: int, step: Step) -> ClauseSpec:
+    def _clause(self, line: int, step: Step, iterations: tuple[int, ...]) -> ClauseSpec:
         name = self._curie(step.clause).rsplit(":", 1)[-1]
-        found = ClauseSpec(line, step.clause, name, step.role, step.text, step.parts)
+        found = ClauseSpec(line, step.clause, name, step.role, step.text, step.parts, iterations=iterations)
         if step.source is None or not self._by_code & {step.clause, *step.parts}:
             return found
         return replace(found, arguments=tuple(map(self._arguments, self._steps.parts(*step.source))))
