@@ -126,6 +126,10 @@ def _parser() -> argparse.ArgumentParser:
     )
     new.add_argument("--template", metavar="NAME", default="pickplace", help="default: pickplace")
     new.set_defaults(command=_new)
+    doctor = commands.add_parser("doctor", help="test the installation part by part, and say how to fix it")
+    doctor.add_argument("path", metavar="FILE|DIR", nargs="?", type=Path, default=Path(), help="whose store to test")
+    doctor.add_argument("--json", action="store_true", help="print one JSON object")
+    doctor.set_defaults(command=_doctor)
     _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
 
@@ -199,6 +203,12 @@ def _new(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.new import list_templates, new_project
 
     return list_templates() if options.path is None else new_project(options.path, options.template)
+
+
+def _doctor(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.doctor import doctor
+
+    return doctor(options.path, as_json=options.json)
 
 
 def _replay(options: argparse.Namespace) -> int:

@@ -23,6 +23,7 @@ from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.png import SIGNATURE, write_png
 from robbdd_tools.agent.video import NoVideo, write_video
 from robbdd_tools.agent.viewer import NoViewer, Viewer
+from robbdd_tools.run.pictures import advice, back_ends
 from robbdd_tools.run.protocol import Execute, encode
 
 
@@ -171,3 +172,18 @@ def test_a_window_that_cannot_be_opened_leaves_the_simulation_alone(monkeypatch:
     with pytest.raises(NoViewer, match="no window can be opened"):
         Viewer(simulation)
     assert not simulation.watchers
+
+
+@pytest.mark.parametrize(
+    ("platform", "names", "word"),
+    [("linux", ("egl", "osmesa"), "libegl1"), ("win32", ("wgl",), "driver"), ("darwin", ("cgl", "glfw"), "driver")],
+)
+def test_each_system_has_back_ends_of_its_own(
+    monkeypatch: pytest.MonkeyPatch, platform: str, names: tuple[str, ...], word: str
+) -> None:
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    monkeypatch.setattr(sys, "platform", platform)
+    assert back_ends() == names
+    assert word in advice()
+    monkeypatch.setenv("MUJOCO_GL", "glfw")
+    assert back_ends() == ("glfw",)

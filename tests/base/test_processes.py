@@ -167,3 +167,16 @@ def test_windows_lowers_the_priority_class(windows: pytest.MonkeyPatch) -> None:
 )
 def test_an_exit_code_in_words(code: int, words: str) -> None:
     assert processes.describe_exit(code) == words
+
+
+@posix
+def test_a_program_that_takes_too_long_is_ended_with_its_children() -> None:
+    ending = processes.run_for(0.5, [sys.executable, "-c", PARENT])
+    assert ending.code is None
+
+
+def test_a_program_reads_and_writes() -> None:
+    code = "import sys; print(sys.stdin.read().upper()); print('é', file=sys.stderr); sys.exit(3)"
+    environment = {**os.environ, "PYTHONUTF8": "1"}
+    ending = processes.run_for(60, [sys.executable, "-c", code], environment, "text")
+    assert ending == processes.Ending(3, "TEXT\n", "é\n")

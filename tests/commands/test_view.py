@@ -46,7 +46,7 @@ def test_verdicts_stand_without_pictures(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("MUJOCO_GL", "nonsense")
-    assert main(["run", MODEL, "--record", str(tmp_path / "pictures")]) == 0
+    assert main(["run", MODEL, "--no-store", "--record", str(tmp_path / "pictures")]) == 0
     said = capsys.readouterr()
     assert "4 hold" in said.out
     assert said.err.startswith("robbdd: no pictures: nothing here can render without a display")

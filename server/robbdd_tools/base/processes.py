@@ -10,8 +10,9 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Protocol, TypedDict
 
 NICENESS = 10
@@ -59,6 +60,38 @@ def own_group() -> GroupArguments:
     if sys.platform == "win32":
         return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
     return {"start_new_session": True}
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a program ended (``code`` is ``None`` when it had to be ended) and what it wrote."""
+
+    code: int | None
+    output: str
+    errors: str
+
+
+def run_for(
+    seconds: float, command: Sequence[str], environment: Mapping[str, str] | None = None, sent: str = ""
+) -> Ending:
+    """Run a program that reads ``sent``; after ``seconds`` it is ended with its children. Raises ``OSError``."""
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        command,
+        stdin=pipe,
+        stdout=pipe,
+        stderr=pipe,
+        env=environment,
+        encoding="utf-8",
+        errors="replace",
+        **own_group(),
+    ) as process:
+        try:
+            output, errors = process.communicate(sent, seconds)
+        except subprocess.TimeoutExpired:
+            end_group(process)
+            return Ending(None, *process.communicate())
+    return Ending(process.returncode, output, errors)
 
 
 def request_end(process: RunningProcess) -> None:

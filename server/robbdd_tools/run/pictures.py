@@ -8,19 +8,34 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-BACK_ENDS = ("egl", "osmesa")
-"""Ways to render without a display, best first."""
 NO_GRAPHICS = 3
 """Exit code of the rendering process when a back end does not work."""
-ADVICE = (
-    "nothing here can render without a display: install EGL (libegl1 and libgl1) or OSMesa (libosmesa6), "
-    "or set MUJOCO_GL=glfw where there is a display"
-)
 MOMENTS, VIDEOS, THUMBNAILS = "moments", "videos", "thumbnails"
 
 
 class NoPictures(Exception):
     """There are no pictures; the message says why, and what to do about it."""
+
+
+def back_ends() -> tuple[str, ...]:
+    """Return the values of ``MUJOCO_GL`` that may render here without a display, best first, or the one that is set."""
+    chosen = os.environ.get("MUJOCO_GL")
+    if chosen:
+        return (chosen,)
+    match sys.platform:
+        case "win32":
+            return ("wgl",)
+        case "darwin":
+            return ("cgl", "glfw")
+        case _:
+            return ("egl", "osmesa")
+
+
+def advice() -> str:
+    """Return what to do where no back end works."""
+    if sys.platform in ("win32", "darwin"):
+        return "install the driver of the graphics card and start this in a session with a desktop"
+    return "install EGL (libegl1 and libgl1) or OSMesa (libosmesa6), or set MUJOCO_GL=glfw where there is a display"
 
 
 def no_display() -> str:
@@ -52,10 +67,9 @@ def render_thumbnails(folder: Path, output: Path, chosen: Iterable[tuple[int, in
 
 def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> list[str]:
     """Return the names of the pictures."""
-    chosen = os.environ.get("MUJOCO_GL")
     command = [sys.executable, "-m", "robbdd_tools.agent.render", str(folder), what, str(output.absolute()), *more]
     tried: list[str] = []
-    for back_end in (chosen,) if chosen else BACK_ENDS:
+    for back_end in back_ends():
         environment = {**os.environ, "MUJOCO_GL": back_end}
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
         if done.returncode == 0:
@@ -64,4 +78,4 @@ def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> 
         if done.returncode != NO_GRAPHICS:
             raise NoPictures(said)
         tried.append(f"{back_end}: {said}")
-    raise NoPictures(f"{ADVICE} ({'; '.join(tried)})")
+    raise NoPictures(f"nothing here can render without a display: {advice()} ({'; '.join(tried)})")

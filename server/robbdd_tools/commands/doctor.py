@@ -1,0 +1,78 @@
+"""``robbdd doctor``: prints versions, tests every part of the installation, and says how to fix what fails."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+
+from robbdd_tools.commands import FINDINGS, OK, installation, selftest
+from robbdd_tools.commands.installation import Unavailable
+
+REPORT = "this is a fault of RobBDD: report it with the output of `robbdd doctor --json`"
+
+
+class State(StrEnum):
+    """How a part is. An optional part that is missing does not fail the command."""
+
+    WORKS = "works"
+    MISSING = "missing"
+    FAILED = "failed"
+
+
+SIGNS = {State.WORKS: "✔", State.MISSING: "–", State.FAILED: "✗"}
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One part of the installation, what was found out about it, and how to fix it (``""``: nothing to fix)."""
+
+    name: str
+    state: State
+    detail: str
+    fix: str = ""
+
+
+def doctor(path: Path, as_json: bool) -> int:
+    """Test the installation and the store of the project at ``path``; returns the exit code."""
+    parts: list[Part] = []
+    for part in _parts(path):
+        parts.append(part)
+        if not as_json:
+            _print(part)
+    healthy = all(part.state is not State.FAILED for part in parts)
+    if as_json:
+        print(json.dumps({"healthy": healthy, "parts": [asdict(part) for part in parts]}, indent=1))
+    return OK if healthy else FINDINGS
+
+
+def _parts(path: Path) -> Iterator[Part]:
+    for name, test in installation.TESTS.items():
+        yield examine(name, test)
+    with tempfile.TemporaryDirectory(prefix="robbdd-", ignore_cleanup_errors=True) as folder:
+        for name, test in selftest.TESTS.items():
+            yield examine(name, partial(test, Path(folder) / "project"))
+    yield examine("store", partial(selftest.store, path))
+
+
+def examine(name: str, test: Callable[[], str]) -> Part:
+    """Return the state of a part; ``test`` returns what it found, or raises ``Unavailable`` or anything else."""
+    try:
+        return Part(name, State.WORKS, test())
+    except Unavailable as reason:
+        return Part(name, State.MISSING if reason.optional else State.FAILED, str(reason), reason.fix)
+    except Exception as error:  # A doctor that falls ill helps nobody: whatever breaks here is what users report.
+        return Part(name, State.FAILED, f"{type(error).__name__}: {error}", REPORT)
+
+
+def _print(part: Part) -> None:
+    first, *others = part.detail.splitlines() or [""]
+    print(f"{SIGNS[part.state]} {part.name:<12}{first}", flush=True)
+    for line in others:
+        print(f"  {'':<12}{line}")
+    if part.fix:
+        print(f"  {'':<12}Fix: {part.fix}", flush=True)

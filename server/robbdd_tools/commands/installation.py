@@ -1,0 +1,150 @@
+"""The parts of ``robbdd doctor`` that are looked up: versions, libraries, extras, the editor."""
+
+from __future__ import annotations
+
+import json
+import platform
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+from robbdd_tools import __version__
+from robbdd_tools.base.data import PACKAGE
+
+DISTRIBUTION = "robbdd-tools"
+REINSTALL = f"python -m pip install --force-reinstall {DISTRIBUTION}"
+EXTENSION = "robbdd.robbdd-workbench"
+EDITORS = (".vscode", ".vscode-insiders", ".vscode-oss", ".vscode-server", ".cursor")
+"""Folders in the home folder in which editors of the VS Code family keep their extensions."""
+SECONDS = 120.0
+"""Wall time after which a program that is tested is taken to hang."""
+_NAME = re.compile(r"[\w.-]+")
+_EXTRA = re.compile(r"extra\s*==\s*['\"]([\w-]+)['\"]")
+_OPTIONAL = ("video", "fast-queries")
+
+
+class Unavailable(Exception):
+    """A part does not work; the message says why, ``fix`` what to do. An ``optional`` one may be missing."""
+
+    def __init__(self, reason: str, fix: str, *, optional: bool = False) -> None:
+        super().__init__(reason)
+        self.fix = fix
+        self.optional = optional
+
+
+def package() -> str:
+    """Return version and place of this package."""
+    return f"{DISTRIBUTION} {__version__} in {PACKAGE}"
+
+
+def python() -> str:
+    """Return version and place of the interpreter."""
+    return f"{platform.python_implementation()} {platform.python_version()} ({sys.executable})"
+
+
+def system() -> str:
+    """Return the operating system and the processor's architecture."""
+    return f"{platform.platform()} ({platform.machine()})"
+
+
+def libraries() -> str:
+    """Return the versions of the libraries that are needed; raises ``Unavailable`` when one is missing."""
+    found = _versions(_required(None))
+    missing = [name for name, number in found.items() if number is None]
+    if missing:
+        raise Unavailable(f"not installed: {', '.join(missing)}", REINSTALL)
+    return ", ".join(f"{name} {number}" for name, number in found.items())
+
+
+def extras() -> str:
+    """Return the versions of the optional libraries; raises ``Unavailable`` when one is missing."""
+    words: list[str] = []
+    missing: list[str] = []
+    for extra in _OPTIONAL:
+        for name, number in _versions(_required(extra)).items():
+            words.append(f"{extra}: {name} {number or 'is not installed'}")
+            if number is None:
+                missing.append(extra)
+    if missing:
+        fix = f"python -m pip install '{DISTRIBUTION}[{','.join(missing)}]'"
+        raise Unavailable(", ".join(words), fix, optional=True)
+    return ", ".join(words)
+
+
+def editor() -> str:
+    """Return the VS Code extensions and the Node found here; raises ``Unavailable`` without an extension."""
+    node = f"Node {_node()}"
+    found = list(_extensions())
+    if not found:
+        fix = "install the VSIX of this release (docs/editors.md configures other editors)"
+        raise Unavailable(f"no VS Code extension is installed for this user; {node}", fix, optional=True)
+    others = [folder for folder, number in found if number != __version__]
+    told = "\n".join(f"{EXTENSION} {number} in {folder}" for folder, number in found)
+    if others:
+        fix = f"install the VSIX of version {__version__}: extension and server are released together"
+        raise Unavailable(f"{told}\n{node}", fix, optional=True)
+    return f"{told}\n{node}"
+
+
+def _required(extra: str | None) -> list[str]:
+    """Return the names of the distributions that this one, or an extra of it, needs."""
+    try:
+        stated = metadata.requires(DISTRIBUTION) or []
+    except metadata.PackageNotFoundError:
+        raise Unavailable(f"{DISTRIBUTION} runs without being installed", REINSTALL) from None
+    found: list[str] = []
+    for requirement in stated:
+        name, belongs_to = _NAME.match(requirement), _EXTRA.search(requirement)
+        if name is not None and (belongs_to[1] if belongs_to else None) == extra:
+            found.append(name[0])
+    return found
+
+
+def _versions(names: list[str]) -> dict[str, str | None]:
+    found: dict[str, str | None] = {}
+    for name in names:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = None
+    return found
+
+
+def _node() -> str:
+    """Return the version of Node, which only the extension's developers need."""
+    program = shutil.which("node")
+    if program is None:
+        return "is not on PATH (only needed to build the extension)"
+    try:
+        done = subprocess.run(
+            [program, "--version"], capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS, check=True
+        )
+    except (OSError, subprocess.SubprocessError) as error:
+        return f"cannot be started: {error}"
+    return f"{done.stdout.strip()} ({program})"
+
+
+def _extensions() -> Iterator[tuple[Path, str]]:
+    """Yield the folders of the extension that editors have installed for this user, with their versions."""
+    for editor_folder in EDITORS:
+        for manifest in sorted((Path.home() / editor_folder / "extensions").glob(f"{EXTENSION}-*/package.json")):
+            try:
+                stated: dict[str, Any] = json.loads(manifest.read_text(encoding="utf-8"))
+                yield manifest.parent, str(stated.get("version"))
+            except (OSError, ValueError, AttributeError):
+                yield manifest.parent, "unreadable"
+
+
+TESTS: Mapping[str, Callable[[], str]] = {
+    "package": package,
+    "python": python,
+    "system": system,
+    "libraries": libraries,
+    "extras": extras,
+    "editor": editor,
+}
