@@ -126,3 +126,18 @@ def test_heavy_libraries_wait_until_they_are_needed(code: str) -> None:
 def test_the_version_is_told_without_loading_anything() -> None:
     loaded = loaded_after("from robbdd_tools.cli import main\ntry: main(['--version'])\nexcept SystemExit: pass")
     assert loaded.isdisjoint({"textx", "rdflib", "pygls", "rich", "numpy", "mujoco"})
+
+
+def prints(path: Path) -> Iterator[str]:
+    """What a module prints with: ``print``, a standard stream's ``write``, a console of its own."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call):
+            called = ast.unparse(node.func)
+            if called in ("print", "sys.stdout.write", "sys.stderr.write", "Console") or called.endswith(".Console"):
+                yield called
+
+
+@pytest.mark.parametrize(("module", "path"), [entry for entry in modules() if layer(entry[0]) in ("commands", "cli")])
+def test_commands_print_only_through_what_escapes(module: str, path: Path) -> None:
+    homes = {"commands.output": {"print", "sys.stdout.write"}, "commands.terminal": {"Console"}}
+    assert set(prints(path)) <= homes.get(module, set())

@@ -10,11 +10,14 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from robbdd_tools import __version__
 from robbdd_tools.base.memory import collect_rarely
+from robbdd_tools.base.printable import printable
 from robbdd_tools.commands import FAILED, INTERRUPTED, OK
 from robbdd_tools.commands.arguments import allow_selection, wanted
+from robbdd_tools.commands.output import print_note
 from robbdd_tools.commands.run_arguments import allow_policy, allow_run, allow_store, policy, run_options
 
 FORMATS = ("ttl", "json-ld", "json-ld-expanded", "nt", "xml")
@@ -38,8 +41,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return FAILED
 
 
+class _Parser(argparse.ArgumentParser):
+    """Refuses arguments, file names among them, without letting them act on the terminal."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print what is wrong and end the process."""
+        super().error(printable(message))
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser("robbdd", description="Acceptance tests of robots, from models to verdicts.")
+    parser = _Parser("robbdd", description="Acceptance tests of robots, from models to verdicts.")
     parser.add_argument("--version", action="version", version=f"robbdd {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
@@ -153,7 +164,7 @@ def _fetch_contexts(options: argparse.Namespace) -> int:
     failure = fetch_contexts(getattr(options, "paths", None) or [options.path], options.allow_host or ())
     if failure is None:
         return OK
-    print(failure, file=sys.stderr)
+    print_note(failure)
     return FAILED
 
 

@@ -2,51 +2,26 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
-import pty
 import re
-import struct
 import subprocess
 import sys
-import termios
 from functools import cache
 
 import pytest
 
+from commands.terminals import environment, on_a_terminal, screen_lines
 from kit import EXAMPLES
 
 pytestmark = pytest.mark.physics
 MODEL = EXAMPLES / "pickplace" / "pickplace.bdd"
 COMMAND = [sys.executable, "-m", "robbdd_tools.cli", "run", str(MODEL), "--first", "1", "--no-store"]
 ESCAPE = "\x1b"
-CONTROL = re.compile(r"\r|\x1b\[[?\d;]*[A-Za-z]")
 COLOUR = re.compile(r"\x1b\[[\d;]+m")
 
 
-def environment(**variables: str) -> dict[str, str]:
-    steering = {"COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE"}
-    return {name: value for name, value in os.environ.items() if name not in steering} | variables
-
-
 @cache
-def on_a_terminal(columns: int, term: str = "xterm-256color", **variables: str) -> str:
-    """All that a run writes to a terminal, with its escape sequences."""
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 40, columns, 0, 0))
-    with subprocess.Popen(
-        COMMAND, stdin=theirs, stdout=theirs, stderr=theirs, env=environment(TERM=term, **variables)
-    ) as run:
-        os.close(theirs)
-        written = bytearray()
-        try:
-            while part := os.read(ours, 65536):
-                written += part
-        except OSError:  # how a terminal says that nobody writes to it any more
-            pass
-        os.close(ours)
-    assert run.returncode == 0, written
-    return written.decode().replace("\r\n", "\n")
+def on_terminal(columns: int, term: str = "xterm-256color", **variables: str) -> str:
+    return on_a_terminal(COMMAND, columns, TERM=term, **variables)
 
 
 @cache
@@ -68,11 +43,11 @@ def test_elsewhere_there_are_plain_lines() -> None:
 
 
 def test_a_terminal_without_cursor_gets_the_same_plain_lines() -> None:
-    assert without_times(on_a_terminal(60, "dumb")) == without_times(elsewhere())
+    assert without_times(on_terminal(60, "dumb")) == without_times(elsewhere())
 
 
 def test_a_terminal_has_a_bar_and_colours_and_ends_with_a_line_of_its_own() -> None:
-    written = on_a_terminal(160)
+    written = on_terminal(160)
     assert COLOUR.search(written)
     assert "━" in written
     assert "0/1" in written
@@ -81,15 +56,14 @@ def test_a_terminal_has_a_bar_and_colours_and_ends_with_a_line_of_its_own() -> N
 
 
 def test_colours_can_be_refused() -> None:
-    written = on_a_terminal(160, NO_COLOR="1")
+    written = on_terminal(160, NO_COLOR="1")
     assert "━" in written
     assert not COLOUR.search(written)
 
 
 def test_a_narrow_terminal_breaks_lines_between_words() -> None:
-    written = on_a_terminal(60)
-    erased_before = (line.rpartition("\x1b[2K")[2] for line in written.split("\n"))
-    lines = [line for line in (CONTROL.sub("", line) for line in erased_before) if "━" not in line]
+    written = on_terminal(60)
+    lines = screen_lines(written)
     assert max(map(len, lines)) <= 60
     shown, expected = (without_times(" ".join(text.split())) for text in (" ".join(lines), elsewhere()))
     assert sorted(shown.split()) == sorted(expected.split())

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.output import print_document
 from robbdd_tools.commands.results import graph_with_results
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def print_graph(path: Path, form: str, results: str | None) -> int:
     built = graph_with_results(snapshot, path, results)
     if built is None:
         return FAILED
-    sys.stdout.write(_picture(snapshot, built, path) if form == PICTURE else serialize(built.graph, form))
+    print_document(_picture(snapshot, built, path) if form == PICTURE else serialize(built.graph, form))
     return OK
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.output import fail, print_line
 from robbdd_tools.commands.selection import selection
 
 if TYPE_CHECKING:
@@ -47,11 +47,11 @@ def write_gherkin(options: GherkinOptions) -> int:
     built = build_graph(snapshot, path_to_uri(options.path))
     model = placed_model(built, snapshot)
     if not model.stories:
-        return _failed(f"{options.path} has no user story with a scenario, so there is no feature to write")
+        return fail(f"{options.path} has no user story with a scenario, so there is no feature to write")
     try:
         template = sheet(options.template)
     except TemplateProblem as error:
-        return _failed(str(error))
+        return fail(str(error))
     selected = selection(model, [variant for story in model.stories for variant in story.variants], options.wanted)
     if selected is None:
         return FAILED
@@ -60,21 +60,21 @@ def write_gherkin(options: GherkinOptions) -> int:
     try:
         _write(plan, selected.total, options, serialize(built.graph, "json-ld"))
     except TemplateProblem as error:
-        return _failed(str(error))
+        return fail(str(error))
     except OSError as error:
-        return _failed(f"cannot write to {options.folder}: {error.strerror or error}")
+        return fail(f"cannot write to {options.folder}: {error.strerror or error}")
     return OK
 
 
 def _write(plan: FeaturePlan, total: int | None, options: GherkinOptions, json_ld: str) -> None:
-    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+    from robbdd_tools.commands.terminal import terminal
     from robbdd_tools.run.prepare import bring_steps, lay_out, write_surroundings
 
     write_surroundings(options.folder, options.path.stem, json_ld)
     bring_steps(str(options.path), options.folder)
-    console = Console(stderr=True)
+    console = terminal(stderr=True)
     columns = (TextColumn("writing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("writing", total=total)
@@ -87,7 +87,7 @@ def _write(plan: FeaturePlan, total: int | None, options: GherkinOptions, json_l
                 progress.update(task, completed=written)
     for feature in features:
         _check_gherkin(options.folder / feature, template=options.template)
-        print(options.folder / feature)
+        print_line(str(options.folder / feature))
 
 
 def _check_gherkin(feature: Path, *, template: str) -> None:
@@ -101,8 +101,3 @@ def _check_gherkin(feature: Path, *, template: str) -> None:
     except Exception as error:  # of behave's own types, which it does not declare
         said = " ".join(str(error).split())
         raise TemplateProblem(template, 0, f"what it makes is no Gherkin: {said}") from None
-
-
-def _failed(message: str) -> int:
-    print(f"robbdd: {message}", file=sys.stderr)
-    return FAILED

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.names.project import Project
 
 if TYPE_CHECKING:
@@ -27,13 +27,11 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     from robbdd_tools.graph.text import write_model
 
     if output.suffix != ".bdd":
-        print(f"robbdd: {output} cannot hold the text: its name must end in .bdd", file=sys.stderr)
-        return FAILED
+        return fail(f"{output} cannot hold the text: its name must end in .bdd")
     scene = output.with_suffix(".scene")
     present = [file for file in (output, scene) if file.exists()]
     if present and not overwrite:
-        print(f"robbdd: {present[0]} is there already; --force replaces it", file=sys.stderr)
-        return FAILED
+        return fail(f"{present[0]} is there already; --force replaces it")
     snapshot = sound_model(path)
     if snapshot is None:
         return FAILED
@@ -48,10 +46,9 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
         for file, content in ((output, text.criteria), (scene, text.scene)):
             if content:
                 file.write_text(content, encoding="utf-8", newline="\n")
-                print(file)
+                print_line(str(file))
     except OSError as error:
-        print(f"robbdd: cannot write {error.filename or output}: {error.strerror or error}", file=sys.stderr)
-        return FAILED
+        return fail(f"cannot write {error.filename or output}: {error.strerror or error}")
     return OK
 
 
@@ -68,10 +65,10 @@ def graph_of(text: ModelText, scene_name: str, asked: str = _MODEL) -> BuiltGrap
 
 def _report(path: Path, text: ModelText, losses: Losses) -> None:
     for node, reason in text.left_out.items():
-        print(f"{path}: warning: {node} is not written: {reason} [left-out]", file=sys.stderr)
+        print_note(f"{path}: warning: {node} is not written: {reason} [left-out]")
     for old, new in losses.renamed:
-        print(f"{path}: warning: {old} becomes {new}: the language makes names so [renamed]", file=sys.stderr)
+        print_note(f"{path}: warning: {old} becomes {new}: the language makes names so [renamed]")
     for line in losses.lost:
-        print(f"{path}: warning: the language cannot say: {line} [lost]", file=sys.stderr)
+        print_note(f"{path}: warning: the language cannot say: {line} [lost]")
     for line in losses.added:
-        print(f"{path}: warning: the text says besides: {line} [added]", file=sys.stderr)
+        print_note(f"{path}: warning: the text says besides: {line} [added]")

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
-import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.printable import printable_json
 from robbdd_tools.commands import FAILED, FINDINGS, OK
+from robbdd_tools.commands.output import fail
 from robbdd_tools.commands.progress import Display
 from robbdd_tools.commands.requests import Choice, load_models, requests
 from robbdd_tools.commands.runs import store_at
@@ -43,7 +43,7 @@ def judge(options: JudgeOptions) -> int:
         manifest = stored.manifest()
         stored.results()
     except NoSuchRun as error:
-        return _failed(str(error))
+        return fail(str(error))
     models = load_models(options.path)
     if models is None:
         return FAILED
@@ -54,14 +54,14 @@ def judge(options: JudgeOptions) -> int:
     )
     found = requests(models, choice)
     if isinstance(found, str):
-        return _failed(found)
+        return fail(found)
     with tempfile.TemporaryDirectory(prefix="robbdd-") as name:
         judged = prepare_all(found, str(options.path), manifest.seed, Path(name))
         if not judged.scenarios:
-            return _failed(f"no scenario of {options.path} has the values of one in run {options.run}")
+            return fail(f"no scenario of {options.path} has the values of one in run {options.run}")
         results = _judged(Path(name), judged, stored)
     if options.report is not None:
-        options.report.write_text(json.dumps(results.as_json(), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        options.report.write_text(printable_json(results.as_json(), indent=1) + "\n", encoding="utf-8")
     if not results.complete:
         return FAILED
     return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS
@@ -85,8 +85,3 @@ def _judged(folder: Path, manifest: Manifest, stored: StoredRun) -> RunResults:
             display.broken(ending or agent.ending())
         display.summary()
     return results
-
-
-def _failed(message: str) -> int:
-    print(f"robbdd: {message}", file=sys.stderr)
-    return FAILED

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from robbdd_tools.base.files import Unreadable, read_text
 from robbdd_tools.commands import FAILED, FINDINGS, OK
 from robbdd_tools.commands.models import model_files, not_a_model
+from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.features.layout import lay_out
 
 
@@ -17,24 +17,23 @@ def format_models(paths: Sequence[Path], check: bool) -> int:
     files = model_files(paths)
     stranger = not_a_model(files)
     if stranger is not None or not files:
-        print(stranger or f"robbdd: there is no model in {', '.join(map(str, paths))}", file=sys.stderr)
+        print_note(stranger or f"robbdd: there is no model in {', '.join(map(str, paths))}")
         return FAILED
     changed: list[Path] = []
     for path in files:
         text = read_text(path)
         if isinstance(text, Unreadable):
-            print(f"{path}:1:1: error: {text.reason} [{text.code}]", file=sys.stderr)
+            print_note(f"{path}:1:1: error: {text.reason} [{text.code}]")
             return FAILED
         laid_out = lay_out(text)
         if laid_out == text:
             continue
         changed.append(path)
-        print(f"{path}: {'would change' if check else 'changed'}")
+        print_line(f"{path}: {'would change' if check else 'changed'}")
         if not check:
             try:
                 path.write_text(laid_out, encoding="utf-8", newline="\n")
             except OSError as error:
-                print(f"robbdd: {path}: {error.strerror or error}", file=sys.stderr)
-                return FAILED
-    print(f"{len(changed)} of {len(files)} files {'would change' if check else 'changed'}")
+                return fail(f"{path}: {error.strerror or error}")
+    print_line(f"{len(changed)} of {len(files)} files {'would change' if check else 'changed'}")
     return FINDINGS if check and changed else OK

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import os
-import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.files import path_to_uri, read_text, uri_to_path
+from robbdd_tools.base.printable import printable_json
+from robbdd_tools.commands.output import print_note
 from robbdd_tools.features.diagnostics import all_diagnostics
 from robbdd_tools.graph.foreign import GRAPH_FORMATS, graph_format
 from robbdd_tools.names.index import FileIndex, language_of
@@ -102,22 +102,22 @@ def sound_model(path: Path) -> Snapshot | None:
     """Load one model for a command that needs it whole; prints its errors and returns ``None`` if it has any."""
     stranger = not_a_model([path])
     if stranger is not None:
-        print(stranger, file=sys.stderr)
+        print_note(stranger)
         return None
     snapshot, (uri,) = load([path])
     errors = [found for found in all_diagnostics(snapshot, uri) if found.severity is Severity.ERROR]
     for error in errors:
-        print_diagnostic(snapshot, error, sys.stderr)
+        print_diagnostic(snapshot, error, print_note)
     return None if errors else snapshot
 
 
-def print_diagnostic(snapshot: Snapshot, diagnostic: Diagnostic, stream: TextIO) -> None:
+def print_diagnostic(snapshot: Snapshot, diagnostic: Diagnostic, print_: Callable[[str], None]) -> None:
     """Print a diagnostic as ``file:line:column: severity: message [code]`` with its related places below."""
     severity = diagnostic.severity.name.lower()
     place = _place(snapshot, diagnostic.uri, diagnostic.span)
-    print(f"{place}: {severity}: {diagnostic.message} [{diagnostic.code}]", file=stream)
+    print_(f"{place}: {severity}: {diagnostic.message} [{diagnostic.code}]")
     for related in diagnostic.related:
-        print(f"    {_place(snapshot, related.uri, related.span)}: {related.message}", file=stream)
+        print_(f"    {_place(snapshot, related.uri, related.span)}: {related.message}")
 
 
 def diagnostic_json(snapshot: Snapshot, diagnostic: Diagnostic) -> str:
@@ -134,7 +134,7 @@ def diagnostic_json(snapshot: Snapshot, diagnostic: Diagnostic) -> str:
         "message": diagnostic.message,
         "related": related,
     }
-    return json.dumps(document, ensure_ascii=False)
+    return printable_json(document)
 
 
 def _document(snapshot: Snapshot, uri: str) -> Document:

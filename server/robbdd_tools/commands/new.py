@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import shlex
-import sys
 from pathlib import Path
 
 from robbdd_tools.base.scaffold import ScaffoldProblem, begin_project, templates
-from robbdd_tools.commands import FAILED, OK
+from robbdd_tools.commands import OK
+from robbdd_tools.commands.output import fail, print_line
 
 
 def new_project(folder: Path, template: str) -> int:
@@ -15,13 +15,11 @@ def new_project(folder: Path, template: str) -> int:
     try:
         begin_project(folder, template)
     except ScaffoldProblem as problem:
-        print(f"robbdd: {problem}", file=sys.stderr)
-        return FAILED
+        return fail(str(problem))
     except OSError as error:
-        print(f"robbdd: {error.filename or folder}: {error.strerror or error}", file=sys.stderr)
-        return FAILED
-    print(f"{folder}: {', '.join(path.name for path in sorted(folder.iterdir()) if path.name != '.gitignore')}")
-    print(f"Next: robbdd run {shlex.quote(str(folder))}")
+        return fail(f"{error.filename or folder}: {error.strerror or error}")
+    print_line(f"{folder}: {', '.join(path.name for path in sorted(folder.iterdir()) if path.name != '.gitignore')}")
+    print_line(f"Next: robbdd run {shlex.quote(str(folder))}")
     return OK
 
 
@@ -30,5 +28,5 @@ def list_templates() -> int:
     known = templates()
     width = max(map(len, known))
     for name, template in known.items():
-        print(f"{name:{width}}  {template.about}")
+        print_line(f"{name:{width}}  {template.about}")
     return OK

@@ -5,18 +5,29 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from rich.console import Console
 from rich.padding import Padding
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Column, Table
 from rich.text import Text
 
+from robbdd_tools.base.printable import printable
+from robbdd_tools.commands.terminal import plain, terminal
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.protocol import ClauseJudged, LogLine, RunMessage, RunStarted, ScenarioFinished, ScenarioStarted
 from robbdd_tools.run.report import SIGNS, margin, plain_sentence, values_words
 
 if TYPE_CHECKING:
     from types import TracebackType
+
+    from rich.progress import Task
 
     from robbdd_tools.run.results import RunResults, ScenarioResult
 
@@ -39,11 +50,11 @@ class Display:
     def __init__(self, results: RunResults, total: int | None = None) -> None:
         self._results = results
         self._total = len(results.scenarios) if total is None else total
-        self._console = Console(highlight=False)
+        self._console = terminal()
         self._drawn = self._console.is_terminal and not self._console.is_dumb_terminal
         self._console.soft_wrap = not self._drawn
         self._progress = Progress(
-            TextColumn("{task.description}"),
+            _Counts(),
             BarColumn(),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
@@ -55,7 +66,7 @@ class Display:
         )
         self._held = self._failed = 0
         self._fails: set[int] = set()
-        self._task = self._progress.add_task("starting", total=self._total)
+        self._task = self._progress.add_task("", total=self._total, counts=Text("starting"))
 
     def __enter__(self) -> Display:
         self._progress.start()
@@ -75,7 +86,7 @@ class Display:
                 failed = message.index in self._fails
                 self._failed += failed
                 self._held += not failed
-                self._progress.update(self._task, description=self._counts(), advance=1)
+                self._progress.update(self._task, counts=self._counts(), advance=1)
             case _:
                 pass
 
@@ -83,24 +94,24 @@ class Display:
         """Show what a message means to a reader, after the results have taken it."""
         match message:
             case RunStarted():
-                self._progress.update(self._task, description=self._counts())
+                self._progress.update(self._task, counts=self._counts())
             case ScenarioFinished():
                 self._scenario(self._results.scenarios[message.index])
             case LogLine(level, text) if level != "info":
-                self._console.print(Text(f"{level}: {text}", STYLES[Outcome.UNKNOWN]))
+                self._console.print(plain(f"{level}: {text}", STYLES[Outcome.UNKNOWN]))
             case _:
                 pass
 
     def broken(self, reason: str) -> None:
         """Say why the run did not come to its end, and show the scenarios that it left open."""
         self._progress.stop()
-        self._console.print(Text(f"the run is incomplete: {reason}", STYLES[Outcome.VIOLATED]))
+        self._console.print(plain(f"the run is incomplete: {reason}", STYLES[Outcome.VIOLATED]))
 
     def summary(self) -> None:
         """Print how many scenarios have which verdict."""
         self._progress.stop()
         for name, reason in self._vacuous():
-            self._console.print(Text(f"{name} could not have failed: {reason}", STYLES[Outcome.UNKNOWN]))
+            self._console.print(plain(f"{name} could not have failed: {reason}", STYLES[Outcome.UNKNOWN]))
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
         shown = self._results.scenarios if self._total == len(self._results.scenarios) else finished
         outcomes = [scenario.verdict for scenario in shown]
@@ -116,9 +127,9 @@ class Display:
             f"  (seed {self._results.manifest.seed}; {simulated:.1f} s simulated in {wall:.1f} s{shared}{again})"
         )
 
-    def _counts(self) -> str:
-        failed = f"[{STYLES[Outcome.VIOLATED]}]{self._failed} failed[/]" if self._failed else "0 failed"
-        return f"[{STYLES[Outcome.HOLDS]}]{self._held} hold[/], {failed}"
+    def _counts(self) -> Text:
+        failed = (f"{self._failed} failed", STYLES[Outcome.VIOLATED] if self._failed else "")
+        return Text.assemble((f"{self._held} hold", STYLES[Outcome.HOLDS]), ", ", failed)
 
     def _vacuous(self) -> Iterator[tuple[str, str]]:
         """Yield name and reason of every clause that could not have failed, in the order of the model."""
@@ -130,9 +141,9 @@ class Display:
     def _scenario(self, scenario: ScenarioResult) -> None:
         spec = scenario.spec
         outcome = scenario.verdict
-        self._console.print(Text(f"{spec.name}  {values_words(spec)}", STYLES[outcome]))
+        self._console.print(plain(f"{spec.name}  {values_words(spec)}", STYLES[outcome]))
         rows = [
-            (judged, plain_sentence(clause.sentence))
+            (judged, printable(plain_sentence(clause.sentence)))
             for clause in spec.clauses
             if (judged := scenario.judged.get(clause.line)) is not None
         ]
@@ -145,8 +156,16 @@ class Display:
                 self._console.print(_clause_line(judged, sentence, width))
             below = rows[number + 1][0].reason if number + 1 < len(rows) else ""
             if judged.verdict != Outcome.HOLDS and judged.reason not in ("", below):
-                reason = Text(judged.reason, STYLES[Outcome(judged.verdict)])
+                reason = plain(judged.reason, STYLES[Outcome(judged.verdict)])
                 self._console.print(Padding(reason, INDENT) if self._drawn else Text("      ").append(reason))
+
+
+class _Counts(ProgressColumn):
+    """The field ``counts`` of a task, which is text with styles of its own."""
+
+    def render(self, task: Task) -> Text:
+        """Return what the field holds now."""
+        return task.fields["counts"]
 
 
 def _executions(finished: Iterable[ScenarioResult]) -> list[ScenarioResult]:
@@ -169,7 +188,7 @@ def _clause_cells(judged: ClauseJudged, sentence: str, width: int) -> Table:
     """Lay a clause out where lines break: a long sentence goes on below itself, margin and instant stay whole."""
     cells = Table.grid(Column(width=4), Column(width=width), Column(no_wrap=True))
     sign, shown = _verdict(judged)
-    cells.add_row(Text("  ").append(sign), sentence, shown)
+    cells.add_row(Text("  ").append(sign), Text(sentence), shown)
     return cells
 
 
@@ -177,7 +196,7 @@ def _verdict(judged: ClauseJudged) -> tuple[Text, Text]:
     """Return a clause's sign, and its margin and instant where it has them."""
     outcome = Outcome(judged.verdict)
     style = STYLES[outcome]
-    shown = margin(judged.robustness, judged.unit)
+    shown = printable(margin(judged.robustness, judged.unit))
     instant = f"  at {judged.at:.2f} s" if outcome is Outcome.VIOLATED and judged.at is not None else ""
     return Text(SIGNS[outcome], style), Text(f"  {shown:>9}{instant}" if shown or instant else "", style)
 

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import csv
-import json
-import sys
+import re
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text
+from robbdd_tools.base.printable import printable, printable_json
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.output import print_document, print_line, print_note
 from robbdd_tools.commands.results import graph_with_results
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.query import Rows, Term
+
+FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+"""How a cell begins that a spreadsheet takes for a formula, the full-width forms included."""
+NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
 
 def query(path: Path, text: str | None, file: Path | None, name: str | None, form: str, results: str | None) -> int:
@@ -39,7 +45,7 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
         rows = run_query(built.graph, asked)
     except BadQuery as error:
         start = Document("", 0, asked).position(error.offset)
-        print(f"{place}:{start.line + 1}:{start.column + 1}: error: {error} [query]", file=sys.stderr)
+        print_note(f"{place}:{start.line + 1}:{start.column + 1}: error: {error} [query]")
         return FAILED
     {"table": _table, "csv": _csv, "json": _json}[form](rows)
     return OK
@@ -50,21 +56,21 @@ def _source(text: str | None, file: Path | None, name: str | None) -> tuple[str,
     from robbdd_tools.graph.query import ready_queries, ready_query
 
     if sum(given is not None for given in (text, file, name)) != 1:
-        print("robbdd: give one query: 'SELECT …', -f FILE, or --name with one of these", file=sys.stderr)
+        print_note("robbdd: give one query: 'SELECT …', -f FILE, or --name with one of these")
         for ready, tells in ready_queries().items():
-            print(f"  {ready:22} {tells}", file=sys.stderr)
+            print_note(f"  {ready:22} {tells}")
         return None
     if text is not None:
         return "query", text
     if file is not None:
         content = read_text(file)
         if isinstance(content, Unreadable):
-            print(f"robbdd: {content.reason}", file=sys.stderr)
+            print_note(f"robbdd: {content.reason}")
             return None
         return str(file), content
     found = ready_query(name or "")
     if found is None:
-        print(f"robbdd: there is no query '{name}'; there are {', '.join(ready_queries())}", file=sys.stderr)
+        print_note(f"robbdd: there is no query '{name}'; there are {', '.join(ready_queries())}")
         return None
     return f"{name}.rq", found
 
@@ -82,17 +88,25 @@ def _short(term: Term | None, prefixes: dict[str, str]) -> str:
 
 def _table(rows: Rows) -> None:
     lines = [list(rows.columns), *([_short(term, rows.prefixes) for term in row] for row in rows.rows)]
-    lines = [[" ".join(cell.split()) for cell in line] for line in lines]
+    lines = [[printable(" ".join(cell.split())) for cell in line] for line in lines]
     widths = [max(len(line[column]) for line in lines) for column in range(len(rows.columns))]
     lines.insert(1, ["-" * width for width in widths])
     for line in lines:
-        print("  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip())
+        print_line("  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip())
 
 
 def _csv(rows: Rows) -> None:
-    writer = csv.writer(sys.stdout, lineterminator="\n")
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
     writer.writerow(rows.columns)
-    writer.writerows(["" if term is None else term.value for term in row] for row in rows.rows)
+    writer.writerows(["" if term is None else _cell(term.value) for term in row] for row in rows.rows)
+    print_document(text.getvalue())
+
+
+def _cell(value: str) -> str:
+    """Return a value as one line that no spreadsheet takes for a formula; a number stays one, whatever its sign."""
+    cell = printable(value)
+    return f"'{cell}" if cell.lstrip().startswith(FORMULA) and not NUMBER.fullmatch(cell) else cell
 
 
 def _json(rows: Rows) -> None:
@@ -102,7 +116,7 @@ def _json(rows: Rows) -> None:
         for row in rows.rows
     ]
     document = {"head": {"vars": list(rows.columns)}, "results": {"bindings": bindings}}
-    print(json.dumps(document, indent=1, ensure_ascii=False))
+    print_document(printable_json(document, indent=1) + "\n")
 
 
 def _binding(term: Term) -> dict[str, str]:

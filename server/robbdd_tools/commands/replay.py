@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
+from robbdd_tools.commands import FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.execute import execute
+from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.requests import digest, load_models
 from robbdd_tools.commands.runs import store_at
 from robbdd_tools.run.manifest import MANIFEST
@@ -49,10 +50,10 @@ def replay(options: ReplayOptions) -> int:
         stored = store_at(Path(), options.store).find(options.run)
         record, manifest = stored.record(), stored.manifest()
     except NoSuchRun as error:
-        return _failed(str(error))
+        return fail(str(error))
     refusal = "" if options.force else _refusal(stored, record)
     if refusal:
-        return _failed(refusal)
+        return fail(refusal)
     wanted = [
         index
         for index, spec in enumerate(manifest.scenarios)
@@ -60,7 +61,7 @@ def replay(options: ReplayOptions) -> int:
     ]
     indices = [index for index in wanted if trace_file(stored.folder, index).is_file()]
     if not indices:
-        return _failed(f"run {options.run} keeps no trace of {' or '.join(options.names) or 'any scenario'}")
+        return fail(f"run {options.run} keeps no trace of {' or '.join(options.names) or 'any scenario'}")
     with tempfile.TemporaryDirectory(prefix="robbdd-") as name:
         folder = Path(name)
         shutil.copy(stored.folder / MANIFEST, folder)
@@ -69,9 +70,9 @@ def replay(options: ReplayOptions) -> int:
         if interrupted:
             return INTERRUPTED
         if record.simulator != simulator:
-            print(f"robbdd: the run was made with {record.simulator}, this is {simulator}", file=sys.stderr)
+            print_note(f"robbdd: the run was made with {record.simulator}, this is {simulator}")
         for index in sorted({*wanted}.difference(indices)):
-            print(f"{manifest.scenarios[index].name}: the run kept no trace of it")
+            print_line(f"{manifest.scenarios[index].name}: the run kept no trace of it")
         return _compare(stored, folder, manifest, indices)
 
 
@@ -100,21 +101,16 @@ def _compare(stored: StoredRun, folder: Path, manifest: Manifest, indices: Seque
     command = [sys.executable, "-m", "robbdd_tools.agent.compare", str(stored.folder), str(folder)]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
     if done.returncode:
-        return _failed(f"the traces cannot be compared: {(done.stderr.strip().splitlines() or [''])[-1]}")
+        return fail(f"the traces cannot be compared: {(done.stderr.strip().splitlines() or [''])[-1]}")
     found = {entry["index"]: entry["difference"] for entry in map(json.loads, done.stdout.splitlines())}
     same = 0
     for index in indices:
         difference = found.get(index, "it could not be simulated again")
         same += not difference
-        print(f"{manifest.scenarios[index].name}: {difference or 'the same to the last bit'}")
-    print(f"{same} of {len(indices)} traces are the same")
+        print_line(f"{manifest.scenarios[index].name}: {difference or 'the same to the last bit'}")
+    print_line(f"{same} of {len(indices)} traces are the same")
     return OK if same == len(indices) else FINDINGS
 
 
 def _local(name: str) -> str:
     return name.replace("#", "/").rpartition("/")[2].rpartition(":")[2]
-
-
-def _failed(message: str) -> int:
-    print(f"robbdd: {message}", file=sys.stderr)
-    return FAILED

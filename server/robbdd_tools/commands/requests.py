@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands.models import model_files, sound_model
+from robbdd_tools.commands.output import print_note
 from robbdd_tools.commands.selection import describe
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def load_models(path: Path) -> list[Loaded] | None:
     if not found:
         place = f"robbdd: {path}: " if path.is_dir() else f"{path}:1:1: error: "
         code = "" if path.is_dir() else " [no-scenario]"
-        print(f"{place}the model has no scenario to run{code}", file=sys.stderr)
+        print_note(f"{place}the model has no scenario to run{code}")
         return None
     return found
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import Unreadable, path_to_uri, read_text
+from robbdd_tools.commands.output import print_note
 from robbdd_tools.run.store import LATEST, RESULTS, NoSuchRun, store_beside
 
 if TYPE_CHECKING:
@@ -34,9 +34,9 @@ def graph_with_results(snapshot: Snapshot, path: Path, results: str | None) -> B
             raise NoSuchRun(text.reason)
         add_results(built.graph, read_results(text))
     except NoSuchRun as error:
-        print(f"robbdd: {error}", file=sys.stderr)
+        print_note(f"robbdd: {error}")
         return None
     except BadResults as error:
-        print(f"robbdd: {file} holds no results of a run: {error}", file=sys.stderr)
+        print_note(f"robbdd: {file} holds no results of a run: {error}")
         return None
     return built

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import os
-import sys
 import tempfile
 from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
@@ -13,8 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools import __version__
+from robbdd_tools.base.printable import printable_json
 from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.execute import execute
+from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.requests import Choice, digest, load_models, requests
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.pictures import NoPictures, no_display, render_moments, render_videos
@@ -65,11 +65,11 @@ def run(options: RunOptions) -> int:
     outputs = options.outputs
     for report in (outputs.report, outputs.junit):
         if report is not None and not report.absolute().parent.is_dir():
-            return _failed(f"cannot write {report}: there is no folder {report.parent}")
+            return fail(f"cannot write {report}: there is no folder {report.parent}")
     if options.viewer:
         problem = no_display()
         if problem:
-            return _failed(problem)
+            return fail(problem)
         os.environ[VIEWER] = "1"
         options = replace(options, policy=replace(options.policy, jobs=1))
     models = load_models(options.path)
@@ -81,29 +81,29 @@ def run(options: RunOptions) -> int:
         try:
             last = _last_results(store, options.path)
         except NoSuchRun as error:
-            return _failed(str(error))
+            return fail(str(error))
         failed = {_key(entry) for entry in last["scenarios"] if entry["verdict"] != Outcome.HOLDS}
         if not failed:
-            print("nothing failed in the last run")
+            print_line("nothing failed in the last run")
             return OK
         choice = _failed_ones(choice, last, failed)
     found = requests(models, choice)
     if isinstance(found, str):
-        return _failed(found)
+        return fail(found)
     try:
         with _place(store, outputs) as place:
             start = origin(options.path, place.folder)
             record = RunRecord(shown_path(options.path), start, digest(models), choice.wanted.seed, __version__)
             return _run(options, found, record, place)
     except OSError as error:
-        return _failed(f"{error.filename or outputs.folder or outputs.report}: {error.strerror or error}")
+        return fail(f"{error.filename or outputs.folder or outputs.report}: {error.strerror or error}")
 
 
 def _run(options: RunOptions, found: list[RunRequest], record: RunRecord, place: StoredRun) -> int:
     outputs = options.outputs
     manifest = prepare_all(found, str(options.path), record.seed, place.folder, place.kept)
     if not manifest.scenarios:
-        return _failed("no scenario fits the selection")
+        return fail("no scenario fits the selection")
     record = replace(record, files=digests(manifest, place.folder))
     place.write_record(record)
     results, simulator, interrupted = execute(place.folder, manifest, options.policy)
@@ -113,7 +113,7 @@ def _run(options: RunOptions, found: list[RunRequest], record: RunRecord, place:
         _record(place.folder, outputs.record)
     _report(results, outputs)
     if place.number:
-        print(f"kept as run {place.number}", file=sys.stderr)
+        print_note(f"kept as run {place.number}")
     if interrupted:
         return INTERRUPTED
     return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS
@@ -123,8 +123,7 @@ def _report(results: RunResults, outputs: Outputs) -> None:
     from robbdd_tools.run.junit import junit
 
     if outputs.report is not None:
-        text = json.dumps(results.as_json(), indent=1, ensure_ascii=False)
-        outputs.report.write_text(text + "\n", encoding="utf-8")
+        outputs.report.write_text(printable_json(results.as_json(), indent=1) + "\n", encoding="utf-8")
     if outputs.junit is not None:
         outputs.junit.write_text(junit(results), encoding="utf-8")
 
@@ -138,9 +137,9 @@ def _record(folder: Path, target: Path) -> None:
         try:
             count = render(folder, target)
         except NoPictures as error:
-            print(f"robbdd: no {what}s: {error}", file=sys.stderr)
+            print_note(f"robbdd: no {what}s: {error}")
         else:
-            print(f"{count} {what}{'' if count == 1 else 's'} of {of} in {target}", file=sys.stderr)
+            print_note(f"{count} {what}{'' if count == 1 else 's'} of {of} in {target}")
 
 
 @contextmanager
@@ -155,7 +154,7 @@ def _place(store: RunStore, outputs: Outputs) -> Generator[StoredRun]:
             place = store.begin()
         except OSError as error:
             reason = error.strerror or str(error)
-            print(f"robbdd: this run is not kept: {store.folder} cannot be written: {reason}", file=sys.stderr)
+            print_note(f"robbdd: this run is not kept: {store.folder} cannot be written: {reason}")
         else:
             yield place
             return
@@ -200,8 +199,3 @@ def _is_among(failed: set[tuple[object, ...]]) -> Callable[[ScenarioSpec], bool]
         return (spec.variant, spec.variation, execution, spec.repetition) in failed
 
     return chosen
-
-
-def _failed(message: str) -> int:
-    print(f"robbdd: {message}", file=sys.stderr)
-    return FAILED

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
 from pathlib import Path
 
 from robbdd_tools.commands import OK
+from robbdd_tools.commands.output import print_line, print_note
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, store_beside
 
@@ -21,9 +21,9 @@ def list_runs(path: Path, store: Path | None) -> int:
     found = store_at(path, store)
     runs = found.runs()
     for run in runs:
-        print(_line(run))
+        print_line(_line(run))
     if not runs:
-        print(f"no runs in {found.folder}", file=sys.stderr)
+        print_note(f"no runs in {found.folder}")
     return OK
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from robbdd_tools.commands.output import print_note
 from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
 
 if TYPE_CHECKING:
@@ -17,10 +17,10 @@ def selection(model: AcceptanceModel, variants: Sequence[Variant], wanted: Wante
     try:
         selected = Selected(model, variants, wanted)
     except SelectionError as error:
-        print(f"robbdd: {error}", file=sys.stderr)
+        print_note(f"robbdd: {error}")
         return None
     if selected.is_empty():
-        print("robbdd: no scenario fits the selection", file=sys.stderr)
+        print_note("robbdd: no scenario fits the selection")
         return None
     describe(model, selected)
     return selected
@@ -31,4 +31,4 @@ def describe(model: AcceptanceModel, selected: Selected) -> None:
     for iri, cover in selected.covers.items():
         number = len(cover.indices)
         covered = f"{cover.covered} of {cover.possible} combinations"
-        print(f"{model.curie(iri)}: {number} scenario{'' if number == 1 else 's'} with {covered}", file=sys.stderr)
+        print_note(f"{model.curie(iri)}: {number} scenario{'' if number == 1 else 's'} with {covered}")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.output import fail, print_document, print_line
 
 
 def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> int:
@@ -26,17 +26,14 @@ def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> 
     wanted = free_patterns(model) if undefined else patterns(model)
     try:
         if target is None:
-            sys.stdout.write(skeleton(wanted, None, path.name)[0])
+            print_document(skeleton(wanted, None, path.name)[0])
             return OK
         new = add_steps(wanted, target, path.name)
     except SyntaxError as error:
-        print(f"robbdd: {target}:{error.lineno or 1}: {error.msg}: mend the file first", file=sys.stderr)
-        return FAILED
+        return fail(f"{target}:{error.lineno or 1}: {error.msg}: mend the file first")
     except UnicodeDecodeError:
-        print(f"robbdd: {target} is not UTF-8 text", file=sys.stderr)
-        return FAILED
+        return fail(f"{target} is not UTF-8 text")
     except OSError as error:
-        print(f"robbdd: {target}: {error.strerror or error}", file=sys.stderr)
-        return FAILED
-    print(f"{target}: {new} new step{'' if new == 1 else 's'}, {len(wanted) - new} there already")
+        return fail(f"{target}: {error.strerror or error}")
+    print_line(f"{target}: {new} new step{'' if new == 1 else 's'}, {len(wanted) - new} there already")
     return OK

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.output import fail, print_line
 from robbdd_tools.run.pictures import NoPictures, render_scene
 from robbdd_tools.run.prepare import RunRequest, prepare
 
@@ -34,14 +34,12 @@ def view(path: Path, name: str | None, seed: int | None, output: Path | None) ->
         if index is None:
             known = dict.fromkeys(_variant(scenario.name) for scenario in manifest.scenarios)
             wanted = "no scenario" if name is None else f"no scenario '{name}'; the model has {', '.join(known)}"
-            print(f"robbdd: there is {wanted}", file=sys.stderr)
-            return FAILED
+            return fail(f"there is {wanted}")
         try:
             render_scene(Path(folder), index, target)
         except NoPictures as error:
-            print(f"robbdd: {error}", file=sys.stderr)
-            return FAILED
-    print(f"{target}: {manifest.scenarios[index].name}")
+            return fail(str(error))
+    print_line(f"{target}: {manifest.scenarios[index].name}")
     return OK
 
 

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from itertools import groupby
 from xml.etree import ElementTree
 
+from robbdd_tools.base.printable import printable
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.protocol import ClauseJudged
 from robbdd_tools.run.report import plain_sentence, values_words, verdict_words
 from robbdd_tools.run.results import RunResults, ScenarioResult
-
-UNWRITABLE = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""What XML 1.0 has no way to write."""
 
 
 def junit(results: RunResults) -> str:
@@ -27,7 +24,7 @@ def junit(results: RunResults) -> str:
 
 def _suite(root: ElementTree.Element, story: str, scenarios: list[ScenarioResult]) -> None:
     outcomes = [scenario.verdict for scenario in scenarios]
-    suite = ElementTree.SubElement(root, "testsuite", name=_text(story.replace("#", "/").rsplit("/", 1)[-1]))
+    suite = ElementTree.SubElement(root, "testsuite", name=printable(story.replace("#", "/").rsplit("/", 1)[-1]))
     suite.set("tests", str(len(scenarios)))
     suite.set("failures", str(outcomes.count(Outcome.VIOLATED)))
     suite.set("errors", str(outcomes.count(Outcome.UNKNOWN)))
@@ -42,17 +39,17 @@ def _case(suite: ElementTree.Element, scenario: ScenarioResult) -> None:
     group = spec.variant.replace("#", "/").rsplit("/", 1)[-1]
     group = group if spec.execution is None else f"{group}.{spec.execution.name.rpartition(':')[2]}"
     name = f"{spec.name} [{values_words(spec)}]" if spec.values else spec.name
-    case = ElementTree.SubElement(suite, "testcase", name=_text(name), classname=_text(group))
+    case = ElementTree.SubElement(suite, "testcase", name=printable(name), classname=printable(group))
     case.set("time", f"{_wall(scenario):.3f}")
     failed = list(_failed(scenario))
     outcome = scenario.verdict
     if outcome is not Outcome.HOLDS:
         tag = "failure" if outcome is Outcome.VIOLATED else "error"
         worst = next((words for verdict, words in failed if verdict is outcome), "no clause was judged")
-        element = ElementTree.SubElement(case, tag, message=_text(worst), type=str(outcome))
-        element.text = _text("\n".join(words for _, words in failed))
+        element = ElementTree.SubElement(case, tag, message=printable(worst), type=str(outcome))
+        element.text = _lines(words for _, words in failed)
     output = ElementTree.SubElement(case, "system-out")
-    output.text = _text("\n".join((f"seed {spec.seed}", *(words for _, words in _clauses(scenario)))))
+    output.text = _lines((f"seed {spec.seed}", *(words for _, words in _clauses(scenario))))
 
 
 def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
@@ -73,5 +70,5 @@ def _wall(scenario: ScenarioResult) -> float:
     return 0.0 if scenario.finished is None else scenario.finished.wall
 
 
-def _text(text: str) -> str:
-    return UNWRITABLE.sub("�", text)
+def _lines(words: Iterable[str]) -> str:
+    return "\n".join(map(printable, words))

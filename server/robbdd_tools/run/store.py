@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from robbdd_tools.base.files import full_path
+from robbdd_tools.base.printable import printable_json
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import Manifest
 
@@ -173,5 +174,5 @@ def shown_path(path: Path) -> str:
 def _write(path: Path, document: object) -> None:
     """Write a document as a whole: who reads meanwhile, an editor that follows the runs, gets the old one or this."""
     fresh = path.with_suffix(".new")
-    fresh.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8", newline="\n")
+    fresh.write_text(printable_json(document, indent=1) + "\n", encoding="utf-8", newline="\n")
     fresh.replace(path)

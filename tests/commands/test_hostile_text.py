@@ -1,0 +1,129 @@
+"""Names and sentences that try to be markup, escape sequences, CI commands or formulas are shown as text."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from commands.terminals import environment, on_a_terminal, screen_lines
+from commands.test_graph_models import PICKPLACE, robbdd
+from kit import EXAMPLES
+
+SENTENCE = "the part is [/nope] fine [bold]really[/bold] :smile: ['a', 'b'] 12"
+HOSTILE = "[red]x[/] \x1b[2J\x9b2J\r\n::error::forged \u202e"
+DISPLAY = """
+import sys
+from robbdd_tools.commands.progress import Display
+from robbdd_tools.run.protocol import *
+from robbdd_tools.run.results import RunResults
+from robbdd_tools.monitor.verdict import Outcome
+text = sys.argv[1]
+clauses = tuple(ClauseSpec(line, f"https://x/c{line}", "c", "then", text) for line in (5, 6))
+spec = ScenarioSpec("f.feature", 3, text, "s", "v", 1, {text: text}, 7, SceneSpec(), {}, clauses)
+results = RunResults(Manifest("m.bdd", 1, (spec,)))
+with Display(results) as display:
+    for message in (
+        RunStarted(1, "s"), ScenarioStarted(0), LogLine("warning", text),
+        ClauseJudged(0, 5, Outcome.VIOLATED, -1.0, text, 1.0, text),
+        ClauseJudged(0, 6, Outcome.UNKNOWN, None, "", None, "why " + text),
+        ScenarioFinished(0, 1.0, 1.0, 1.0),
+    ):
+        results.apply(message)
+        display.watch(message)
+        display.show(message)
+    display.broken(text)
+    display.summary()
+"""
+
+
+def shown(text: str, columns: int) -> list[str]:
+    return screen_lines(on_a_terminal([sys.executable, "-c", DISPLAY, text], columns))
+
+
+@pytest.mark.parametrize("text", [SENTENCE, HOSTILE.replace("\x00", "")])
+def test_a_terminal_shows_what_a_pipe_gets(text: str) -> None:
+    piped = subprocess.run(
+        [sys.executable, "-c", DISPLAY, text], capture_output=True, encoding="utf-8", check=True, env=environment()
+    ).stdout
+    assert [" ".join(line.split()) for line in shown(text, 400)] == [
+        " ".join(line.split()) for line in piped.split("\n")
+    ]
+
+
+def test_a_sentence_is_shown_with_its_brackets() -> None:
+    assert sum(SENTENCE in line for line in shown(SENTENCE, 300)) >= 5
+
+
+def test_nothing_in_a_run_acts_on_the_terminal_or_begins_a_line() -> None:
+    lines = shown(HOSTILE, 600)
+    assert not any(re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]", line) for line in lines)
+    assert not any(line.lstrip().startswith("::") for line in lines)
+    assert any(r"\x1b[2J\x9b2J\r\n::error::forged \u202e" in line for line in lines)
+
+
+def test_findings_cannot_forge_lines(tmp_path: Path) -> None:
+    name = "::error file=x::\x1b[31m\nforged.bdd"
+    (tmp_path / name).write_text('import "a\x1b]0;t\x07\u202e.scene"\n', encoding="utf-8")
+    done = robbdd("check", ".", folder=tmp_path)
+    assert done.returncode == 1
+    assert "\x1b" not in done.stdout
+    assert "\u202e" not in done.stdout
+    assert done.stdout.startswith(r"\x3a:error file=x::\x1b[31m\nforged.bdd:1:")
+    assert len(done.stdout.splitlines()) == 3
+    findings = map(json.loads, robbdd("check", "--json", ".", folder=tmp_path).stdout.splitlines())
+    assert {finding["file"] for finding in findings} == {name}
+
+
+def test_a_missing_file_with_a_hostile_name_is_refused_on_one_line(tmp_path: Path) -> None:
+    for command in ("check", "run", "graph", "format"):
+        done = robbdd(command, "x\n::error::\x1b.bdd", folder=tmp_path)
+        assert done.returncode == 2
+        assert "\x1b" not in done.stderr + done.stdout
+        assert len(done.stderr.splitlines()) <= 1
+
+
+def test_an_unknown_argument_is_refused_without_acting(tmp_path: Path) -> None:
+    assert "\x1b" not in robbdd("check", ".", "--\x1b[2J", folder=tmp_path).stderr
+
+
+def model_with_role(tmp_path: Path, role: str) -> Path:
+    shutil.copytree(EXAMPLES / "pickplace", tmp_path, dirs_exist_ok=True)
+    model = tmp_path / "pickplace.bdd"
+    text = model.read_text(encoding="utf-8")
+    assert "line operator" in text
+    model.write_text(text.replace("line operator", role), encoding="utf-8")
+    return model
+
+
+ASK = "SELECT ?role { ?story a bdd:UserStory ; rbw:role ?role }"
+
+
+@pytest.mark.parametrize("role", ["=1+1", "+cmd", "-2+3", "@SUM(A1)", " =1", "\uff1d1", "\t=1", "\r=1"])
+def test_a_cell_is_no_formula(tmp_path: Path, role: str) -> None:
+    text = robbdd("query", model_with_role(tmp_path, role), ASK, "--format", "csv").stdout
+    (_, (cell,)) = csv.reader(io.StringIO(text))
+    assert cell.startswith(("'", "\\"))
+
+
+def test_numbers_stay_numbers_whatever_their_sign() -> None:
+    ask = "SELECT * { VALUES ?x { '-1.5'^^xsd:decimal 2 '-3e-7'^^xsd:double '-12' } }"
+    text = robbdd("query", PICKPLACE, ask, "--format", "csv").stdout
+    assert sorted(map(float, text.split()[1:])) == [-12, -1.5, -3e-7, 2]
+
+
+def test_answers_to_queries_are_escaped(tmp_path: Path) -> None:
+    model = model_with_role(tmp_path, "::error::a\x1b[2J\u202e")
+    for form in ("table", "csv"):
+        last = robbdd("query", model, ASK, "--format", form).stdout.splitlines()[-1]
+        assert last == r"\x3a:error::a\x1b[2J\u202e"
+    text = robbdd("query", model, ASK, "--format", "json").stdout
+    assert json.loads(text)["results"]["bindings"][0]["role"]["value"] == "::error::a\x1b[2J\u202e"
+    assert "\x1b" not in text
