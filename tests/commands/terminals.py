@@ -19,8 +19,8 @@ def environment(**variables: str) -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name not in STEERING} | variables
 
 
-def on_a_terminal(command: Sequence[str], columns: int, **variables: str) -> str:
-    """All that a command writes to a terminal, with its escape sequences; fails where the command does."""
+def on_a_terminal(command: Sequence[str], columns: int, expected: int = 0, **variables: str) -> str:
+    """All that a command writes to a terminal, with its escape sequences; it must end with the expected exit code."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 40, columns, 0, 0))
     variables = {"TERM": "xterm-256color", **variables}
@@ -33,7 +33,7 @@ def on_a_terminal(command: Sequence[str], columns: int, **variables: str) -> str
         except OSError:  # how a terminal says that nobody writes to it any more
             pass
         os.close(ours)
-    assert run.returncode == 0, written
+    assert run.returncode == expected, written
     return written.decode().replace("\r\n", "\n")
 
 

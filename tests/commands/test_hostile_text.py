@@ -62,6 +62,19 @@ def test_a_sentence_is_shown_with_its_brackets() -> None:
     assert sum(SENTENCE in line for line in shown(SENTENCE, 300)) >= 5
 
 
+@pytest.mark.physics
+def test_a_run_of_a_model_with_brackets_keeps_its_results(tmp_path: Path) -> None:
+    model = model_with(
+        "in-hand: holds(<thing> is held by <robot>, after <evt-pick-end>)",
+        f'"{SENTENCE}" after <evt-pick-end>',
+        tmp_path,
+    )
+    command = [sys.executable, "-m", "robbdd_tools.cli", "run", str(model), "--first", "1", "--no-store"]
+    lines = screen_lines(on_a_terminal(command, 300, expected=1))
+    assert any(line.startswith(f"  ? {SENTENCE}") for line in lines)
+    assert lines[-2].startswith("1 scenario: 0 hold, 0 violated, 1 unknown")
+
+
 def test_nothing_in_a_run_acts_on_the_terminal_or_begins_a_line() -> None:
     lines = shown(HOSTILE, 600)
     assert not any(re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]", line) for line in lines)
@@ -94,13 +107,17 @@ def test_an_unknown_argument_is_refused_without_acting(tmp_path: Path) -> None:
     assert "\x1b" not in robbdd("check", ".", "--\x1b[2J", folder=tmp_path).stderr
 
 
-def model_with_role(tmp_path: Path, role: str) -> Path:
+def model_with(old: str, new: str, tmp_path: Path) -> Path:
     shutil.copytree(EXAMPLES / "pickplace", tmp_path, dirs_exist_ok=True)
     model = tmp_path / "pickplace.bdd"
     text = model.read_text(encoding="utf-8")
-    assert "line operator" in text
-    model.write_text(text.replace("line operator", role), encoding="utf-8")
+    assert old in text
+    model.write_text(text.replace(old, new), encoding="utf-8")
     return model
+
+
+def model_with_role(tmp_path: Path, role: str) -> Path:
+    return model_with("line operator", role, tmp_path)
 
 
 ASK = "SELECT ?role { ?story a bdd:UserStory ; rbw:role ?role }"
