@@ -179,3 +179,8 @@ def test_foreign_models_mean_the_same_afterwards() -> None:
         once = lay_out(text)
         assert lay_out(once) == once
         assert graph(once, lay_out(scene)) == graph(text, scene)
+
+
+def test_an_address_outside_a_string_stays_whole() -> None:
+    # A quote too many, or one that is missing, puts the next string outside.
+    assert "'https://example.org/x/'" in lay_out("the world's end\nns x = 'https://example.org/x/'\n")

@@ -131,7 +131,10 @@ def _lines(text: str) -> Iterator[Line]:
             first = number = number + 1
         if pieces and gap:
             pieces.append(" ")
-        if match["comment"] is not None:
+        if match["comment"] is not None and not gap and pieces[-1:] == [":"]:
+            # The end of an IRI, which a quote that is missing further up has put outside its string.
+            pieces.append(match["comment"].rstrip())
+        elif match["comment"] is not None:
             comment = match["comment"].rstrip()
         elif match["reference"] is not None:
             pieces.append("<" + match["reference"][1:-1].strip() + ">")

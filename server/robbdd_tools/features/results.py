@@ -6,7 +6,6 @@ import hashlib
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.plain import from_plain
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.variants import PlacedVariant
 
 _TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|//[^\n]*|\s+|.", re.DOTALL)
+MOST_DIGESTS = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,11 +202,25 @@ def execution_digest(snapshot: Snapshot, execution: PlacedExecution) -> str:
     return " ".join((*own, variant_digest(snapshot, execution.variant)))
 
 
-@lru_cache(maxsize=20_000)
+_digests: dict[bytes, str] = {}
+"""Digests by the hash of the whole text: the texts themselves would fill the memory, one more with each edit."""
+
+
 def _digest(text: str) -> str:
-    tokens = (match[0] for match in _TOKEN.finditer(text))
-    words = ("" if token.startswith("//") or token.isspace() else token for token in tokens)
-    return hashlib.sha256("\0".join(word for word in words if word).encode("utf-8", "surrogatepass")).hexdigest()[:16]
+    key = hashlib.sha256(_bytes(text)).digest()
+    found = _digests.get(key)
+    if found is None:
+        if len(_digests) >= MOST_DIGESTS:
+            _digests.clear()
+        tokens = (match[0] for match in _TOKEN.finditer(text))
+        words = ("" if token.startswith("//") or token.isspace() else token for token in tokens)
+        found = hashlib.sha256(_bytes("\0".join(word for word in words if word))).hexdigest()[:16]
+        _digests[key] = found
+    return found
+
+
+def _bytes(text: str) -> bytes:
+    return text.encode("utf-8", "surrogatepass")
 
 
 def as_json(scenario: JudgedScenario) -> dict[str, Any]:

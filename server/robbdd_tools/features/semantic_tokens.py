@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration, Reference
 
 COMMENT, STRING, NUMBER, KEYWORD = "comment", "string", "number", "keyword"
-KEPT_DECLARATIONS = 2000
+KEPT_COMMENTS = 200
 NAME = "name"
 """A name that is used; only what it leads to tells its concept, so that no token carries this one."""
 PREDICATE, ACTION, TIME, ARGUMENT, CODE = "predicate", "action", "time constraint", "argument", "python"
@@ -191,9 +191,18 @@ class _Names:
         return next((declared.symbol.kind for _, declared in found), None)
 
 
-@lru_cache(maxsize=KEPT_DECLARATIONS)
+_own_tokens: WeakKeyDictionary[Declaration, tuple[Token, ...]] = WeakKeyDictionary()
+
+
 def _own(language: str, declaration: Declaration) -> tuple[Token, ...]:
-    """Return what a declaration tells by itself; spans count from its start."""
+    """Return a declaration's own tokens, kept as long as the declaration; spans count from its start."""
+    found = _own_tokens.get(declaration)
+    if found is None:
+        found = _own_tokens[declaration] = _read_tokens(language, declaration)
+    return found
+
+
+def _read_tokens(language: str, declaration: Declaration) -> tuple[Token, ...]:
     concepts = dict(_concepts(declaration))
     used = {reference.ref.span for reference in declaration.references}
     keywords = _keywords(language)
@@ -268,7 +277,7 @@ def _keywords(language: str) -> frozenset[str]:
     return frozenset(re.findall(r"'([^\W\d][^']*)'", grammar_text(language)))
 
 
-@lru_cache(maxsize=KEPT_DECLARATIONS)
+@lru_cache(maxsize=KEPT_COMMENTS)
 def _between(text: str) -> Coloured:
     """Return the comments between two declarations."""
     found = re.finditer(r"//[^\n]*", text)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
+from robbdd_tools.base.memory import collect_recent
 from robbdd_tools.names.project import Project, Snapshot
 
 Result = TypeVar("Result")
@@ -31,7 +32,10 @@ class Background:
             self._project.replace(texts)
             for uri in unopened:
                 self._project.load(uri)
-            return work(self._project.snapshot())
+            try:
+                return work(self._project.snapshot())
+            finally:
+                collect_recent()
 
         return await asyncio.get_running_loop().run_in_executor(self._thread, on_snapshot)
 

@@ -48,6 +48,15 @@ class Protocol(LanguageServerProtocol):
             _LOG.warning("%s cannot be read: %s", data.get("method", "a response"), error)
             return JsonRPCNotification(method="$/unreadable", jsonrpc=self.VERSION, params=None)
 
+    def _execute_handler(
+        self, msg_id: Any, handler: Any, callback: Any, args: Any = None, kwargs: dict[str, Any] | None = None
+    ) -> None:
+        """Call a handler and drop its future when it is done: pygls keeps those of edits for ever."""
+        super()._execute_handler(msg_id, handler, callback, args, kwargs)
+        future = self._request_futures.get(msg_id)
+        if future is not None:
+            future.add_done_callback(lambda _: self._request_futures.pop(msg_id, None))
+
     def _send_data(self, data: Any) -> None:
         self._outbox.submit(self._write, data)
 

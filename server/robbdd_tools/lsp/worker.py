@@ -10,7 +10,7 @@ from typing import BinaryIO
 
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import read_text, uri_to_path
-from robbdd_tools.base.memory import collect_rarely
+from robbdd_tools.base.memory import collect_rarely, collect_recent
 from robbdd_tools.base.processes import lower_priority
 from robbdd_tools.features.diagnostics import fast_diagnostics, shape_diagnostics
 from robbdd_tools.graph.incremental import Superseded, Validation
@@ -139,3 +139,4 @@ def main(in_passing: bool = False) -> None:
             continue
         tell(Begun(message.uri))
         tell(worker.answer(message) or Begun(""))
+        collect_recent()

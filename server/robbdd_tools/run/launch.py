@@ -50,7 +50,7 @@ class Agent:
         try:
             self._process.stdin.write(encode(Execute(index)) + "\n")
             self._process.stdin.flush()
-        except OSError:
+        except (OSError, ValueError):  # its pipe is broken, or closed already
             pass
 
     def messages(self) -> Iterator[RunMessage]:
@@ -62,6 +62,14 @@ class Agent:
             except ValueError:
                 yield LogLine("warning", line.rstrip())
         self._process.wait()
+        self._close()
+
+    def _close(self) -> None:
+        """Give back the descriptors of a process that has ended: this object may live on."""
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                with suppress(OSError):
+                    pipe.close()
 
     def kill(self) -> None:
         """End the process and its children at once."""

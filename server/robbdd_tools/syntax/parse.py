@@ -12,7 +12,7 @@ from robbdd_tools.syntax.salvage import salvage, with_lost
 from robbdd_tools.syntax.story import cut_story, forget_scenarios, quotes_braces, read_story
 from robbdd_tools.syntax.symbols import references, symbols
 
-KEPT_LETTERS = 500_000
+KEPT_LETTERS = 100_000
 """Letters of text whose declarations are kept without being in use; a declaration takes about 100 bytes for each."""
 LANGUAGES = ("bdd", "scene", "scenex", "ktree", "bddx")
 

@@ -1,0 +1,140 @@
+"""Memory follows the project, not the keystrokes: what work leaves behind is freed, and caches stay small."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import io
+import sys
+import threading
+import tracemalloc
+import weakref
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+
+import psutil
+import pytest
+
+from kit import MODEL, SCENE
+from robbdd_tools.features import results
+from robbdd_tools.features.diagnostics import fast_diagnostics
+from robbdd_tools.features.semantic_tokens import semantic_tokens
+from robbdd_tools.graph.user_shapes import EditorShapes
+from robbdd_tools.lsp import worker
+from robbdd_tools.lsp.background import Background
+from robbdd_tools.lsp.frames import Request, frame
+from robbdd_tools.lsp.handlers import create_server
+from robbdd_tools.names.project import Project
+from robbdd_tools.run.launch import Agent
+from robbdd_tools.syntax.declaration import Declaration
+from robbdd_tools.syntax.parse import forget_declarations
+
+
+class Cycle:
+    """What only a search for cycles frees, as every rdflib graph."""
+
+    def __init__(self) -> None:
+        self.me = self
+
+
+@pytest.fixture
+def no_searches() -> Iterator[None]:
+    """Python searches for no cycles by itself."""
+    thresholds = gc.get_threshold()
+    gc.collect()
+    gc.disable()
+    yield
+    gc.set_threshold(*thresholds)
+    gc.enable()
+
+
+@pytest.mark.usefixtures("no_searches")
+def test_background_work_leaves_no_graph_behind() -> None:
+    background = Background()
+    left = asyncio.run(background.work({}, lambda _: weakref.ref(Cycle())))
+    background.stop()
+    assert left() is None
+
+
+@pytest.mark.usefixtures("no_searches")
+def test_a_validation_leaves_no_graph_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    left: list[weakref.ref[Cycle]] = []
+    begun = threading.Event()
+
+    def validate(*_: object) -> list[object]:
+        left.append(weakref.ref(Cycle()))
+        begun.set()
+        return []
+
+    uri = "file:///m/lab.scene"
+    requests = (Request(1, uri, {uri: (1, SCENE)}, EditorShapes()),)
+    monkeypatch.setattr(worker, "shape_diagnostics", validate)
+    # The answer stays unread; the input stays open until the cycle is made, else the worker ends before it begins.
+    monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=Stream(frame(requests), begun)))
+    monkeypatch.setattr(sys, "stdout", SimpleNamespace(buffer=io.BytesIO()))
+    worker.main()
+    assert [reference() for reference in left] == [None]
+
+
+class Stream(io.BytesIO):
+    """Ends when a validation has begun."""
+
+    def __init__(self, data: bytes, begun: threading.Event) -> None:
+        super().__init__(data)
+        self._begun = begun
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        found = super().read(size)
+        if not found:
+            self._begun.wait()
+        return found
+
+
+def test_declarations_of_the_past_live_in_the_bounded_cache_only() -> None:
+    project, uri = Project(), "file:///m/main.bdd"
+    project.open("file:///m/lab.scene", 1, SCENE)
+    for version in range(100):
+        project.open(uri, version, MODEL.replace("in-tray", f"in-tray-{version}"))
+        semantic_tokens(project.snapshot(), uri)
+        fast_diagnostics(project.snapshot(), uri)
+    forget_declarations()
+    gc.collect()
+    alive = (entry for entry in gc.get_objects() if isinstance(entry, Declaration))
+    assert sum("in-tray-" in declaration.text for declaration in alive) < 20
+
+
+async def test_a_handler_that_is_done_leaves_no_future_behind() -> None:
+    server = create_server()
+    done = asyncio.Event()
+
+    async def handle(*_: object) -> None:
+        done.set()
+
+    # As pygls calls the handlers of edits: with an identifier that no answer will name.
+    server.protocol._execute_handler("edit", handle, lambda _: None)  # pyright: ignore[reportPrivateUsage]
+    await done.wait()
+    await asyncio.sleep(0)
+    await asyncio.sleep(0)
+    assert not server.protocol._request_futures  # pyright: ignore[reportPrivateUsage]
+    server.stop()
+
+
+def test_digests_do_not_keep_the_texts_that_they_were_made_of() -> None:
+    tracemalloc.start()
+    for number in range(300):
+        results._digest(f"{number} " + "long " * 2000)  # pyright: ignore[reportPrivateUsage]
+    used, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert used < 1_000_000
+
+
+@pytest.mark.skipif(not psutil.POSIX, reason="descriptors")
+def test_an_agent_that_has_ended_holds_no_descriptors(tmp_path: Path) -> None:
+    process = psutil.Process()
+    before = process.num_fds()
+    agent = Agent(tmp_path, module="robbdd_tools.cli", arguments=["--version"])
+    for _ in agent.messages():
+        pass
+    assert process.num_fds() == before
+    agent.execute(1)
