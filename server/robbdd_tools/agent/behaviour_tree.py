@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from py_trees.behaviour import Behaviour
@@ -11,7 +12,7 @@ from py_trees.composites import Selector, Sequence
 
 from robbdd_tools.agent.errors import SceneError, SimulationError, UserError
 from robbdd_tools.agent.frames import at
-from robbdd_tools.agent.user_code import UserCodeError, called, load_attribute
+from robbdd_tools.agent.user_code import UserCodeError, called, definition_of, load_attribute, refused
 from robbdd_tools.catalog.coordination import END, START, emitter
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ class TreeRun:
         except UserCodeError as error:
             if isinstance(error.__cause__, UserError | SimulationError):
                 raise error.__cause__ from None
-            raise UserError(f"{at(source.origin)}{error}") from error
+            raise UserError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
 
     def _take_note(self) -> None:
         """Stamp what has begun or ended with this tick."""
@@ -176,11 +177,13 @@ def _made(spec: TreeSpec, leaf: Callable[[str], Behaviour]) -> Behaviour:
     assert source is not None
     place, model = at(source.origin), "" if source.origin is None else source.origin.file
     try:
-        root: object = called(source.name, lambda: load_attribute(source.name, model)(leaf))
+        make = load_attribute(source.name, model)
+        root: object = called(source.name, make, leaf)
+        if not isinstance(root, Behaviour):
+            message = f"'{source.name}' returned a {type(root).__name__}, not a behaviour of py_trees"
+            raise refused(source.name, message, definition_of(make))
     except UserCodeError as error:
-        raise SceneError(f"{place}{error}") from error
-    if not isinstance(root, Behaviour):
-        raise SceneError(f"{place}'{source.name}' returned a {type(root).__name__}, not a behaviour of py_trees")
+        raise SceneError(f"{place}{error}", replace(error.fault, origin=source.iri)) from error
     return root
 
 

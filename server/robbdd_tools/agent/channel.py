@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+from threading import Lock
 from typing import TYPE_CHECKING
 
-from robbdd_tools.run.protocol import encode
+from robbdd_tools.run.protocol import ScenarioFinished, ScenarioStarted, encode
 
 if TYPE_CHECKING:
     from robbdd_tools.run.protocol import RunMessage
@@ -23,15 +24,39 @@ class Lines(Channel):
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
+        self._writing = Lock()
 
     def send(self, message: RunMessage) -> None:
         """Write a message; the process ends quietly when nobody reads any more."""
         data = (encode(message) + "\n").encode()
         try:
-            while data:
-                data = data[os.write(self._descriptor, data) :]
+            # Threads of users' code print, too.
+            with self._writing:
+                while data:
+                    data = data[os.write(self._descriptor, data) :]
         except BrokenPipeError:
             os._exit(1)
+
+
+class Reports(Lines):
+    """The channel of an agent: knows the scenario that is being executed, if any, and which ones are finished."""
+
+    def __init__(self, descriptor: int) -> None:
+        super().__init__(descriptor)
+        self.scenario: int | None = None
+        self.finished: set[int] = set()
+
+    def send(self, message: RunMessage) -> None:
+        """Write a message."""
+        super().send(message)
+        match message:
+            case ScenarioStarted(index):
+                self.scenario = index
+            case ScenarioFinished(index):
+                self.scenario = None
+                self.finished.add(index)
+            case _:
+                pass
 
 
 _current = Channel()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.sentences import AnyOf, Clause, Filler, Fluent, Junction, Unmatched, fluents_of
 from robbdd_tools.agent.streams import Unobserved
-from robbdd_tools.agent.user_code import UserCodeError
+from robbdd_tools.agent.user_code import UserCodeError, fault_of
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import NoWindow, occurrences, window
@@ -87,10 +87,13 @@ def _fluent(fluent: Fluent, trace: Trace, regions: Regions, events: AbstractSet[
 def _judged(fluent: Fluent, arguments: Arguments, trace: Trace, regions: Regions) -> Verdict:
     try:
         return judge(fluent.predicate, arguments, fluent.time, trace, regions)
-    except (Unobserved, UserCodeError) as error:
+    except Unobserved as error:
         return unknown(str(error))
+    except UserCodeError as error:
+        return unknown(str(error), fault=error.fault)
     except Exception as error:  # an evaluator may come from any package; its failure is missing evidence
-        return unknown(f"the evaluator of '{fluent.predicate.name}' failed: {type(error).__name__}: {error}")
+        fault = fault_of(error, fluent.predicate.name, fluent.predicate.evaluate)
+        return unknown(f"the evaluator of '{fluent.predicate.name}' failed: {fault.summary}", fault=fault)
 
 
 def _choices(arguments: Mapping[str, Filler], some: list[Slot]) -> Iterator[Mapping[str, Filler]]:

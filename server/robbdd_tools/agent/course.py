@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from robbdd_tools.agent.behaviour_tree import TreeRun
     from robbdd_tools.catalog.coordination import TreeSpec
     from robbdd_tools.catalog.executable import Implementation
+    from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.run.protocol import ScenarioSpec
 
@@ -61,7 +62,8 @@ class Course:
     ``stamps`` are what emitters have emitted so far; ``completed`` counts the behaviours that went through, of those
     that are executed one after the other; ``tree`` is the behaviour tree, if one is executed. ``remark`` is the last
     word on what went wrong; ``broken`` says what is wrong with the user's code or model, if anything is, so that
-    nothing can be concluded. ``wall`` is the time spent, s. Raises ``SceneError`` when the scene cannot be set up.
+    nothing can be concluded, and ``fault`` describes an error in that code. ``wall`` is the time spent, s. Raises
+    ``SceneError`` when the scene cannot be set up.
     """
 
     def __init__(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing | None = None) -> None:
@@ -85,6 +87,7 @@ class Course:
         self._iteration = 0
         self.completed = 0
         self.broken = ""
+        self.fault: Fault | None = None
         self.regions: Regions = world.cast.regions
         self.settings = read_back(self.simulation, spec.scene)
         self.outlines = {name: outline_of(model) for name, model in world.cast.objects.items()}
@@ -115,6 +118,7 @@ class Course:
         except UserError as error:
             self.finished = True
             self.remark = self.broken = str(error)
+            self.fault = error.fault
             return
         except SimulationError as error:
             self.finished = True

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from robbdd_tools.agent.sentences import Clause
     from robbdd_tools.agent.simulation import Simulation
     from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.run.protocol import ScenarioSpec
 
@@ -58,6 +59,11 @@ class Execution:
     def broken(self) -> str:
         """What is wrong with the user's code or model, if anything is, so that nothing can be concluded."""
         return self.course.broken
+
+    @property
+    def fault(self) -> Fault | None:
+        """The error in the user's code that the execution is broken for."""
+        return self.course.fault
 
     @property
     def simulated(self) -> float:

@@ -5,11 +5,13 @@ behave has no types; this module and ``steps`` are the only ones that see its ob
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from robbdd_tools.agent.channel import current_channel
 from robbdd_tools.agent.session import Session
+from robbdd_tools.agent.user_code import fault_of, original
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.manifest import MANIFEST, read_manifest
 
@@ -37,7 +39,8 @@ def before_scenario(context: Any, scenario: Any) -> None:
 
 def after_step(context: Any, step: Any) -> None:
     """Tell the outcome of a step that a user's own function carried out; ours have told their verdict already."""
-    context.session.told(int(step.line), _verdict(step))
+    sources = context.session.sources
+    context.session.told(int(step.line), _verdict(step, sources))
 
 
 def after_scenario(context: Any, _scenario: Any) -> None:
@@ -52,8 +55,11 @@ def after_all(context: Any) -> None:
         session.finish()
 
 
-def _verdict(step: Any) -> Verdict:
-    """Return what the outcome of a step says of its clause: a failed assertion violates it."""
+def _verdict(step: Any, sources: Mapping[str, str]) -> Verdict:
+    """Return what the outcome of a step says of its clause: a failed assertion violates it.
+
+    ``sources`` maps copies of files of steps to the files that users edit.
+    """
     error: BaseException | None = step.exception
     said = " ".join(str(error or "").split())
     match str(step.status.name):
@@ -64,4 +70,5 @@ def _verdict(step: Any) -> Verdict:
         case status if error is None:
             return unknown(f"behave calls the step {status}")
         case _:
-            return unknown(f"the step failed: {type(error).__name__}" + (f": {said}" if said else ""))
+            fault = original(fault_of(error.with_traceback(step.exc_traceback), str(step.name)), sources)
+            return unknown(f"the step failed: {type(error).__name__}" + (f": {said}" if said else ""), fault=fault)

@@ -12,8 +12,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from robbdd_tools.agent.channel import Lines
+from robbdd_tools.agent.channel import Reports
 from robbdd_tools.agent.clauses import decide, ranges
+from robbdd_tools.agent.output import Printed, finish_output
 from robbdd_tools.agent.sentences import fluents_of, read_clause, read_event
 from robbdd_tools.agent.stated import stated_clause, stated_iteration
 from robbdd_tools.agent.trace_codec import Evidence
@@ -32,6 +33,7 @@ from robbdd_tools.run.protocol import (
     ScenarioFinished,
     ScenarioSpec,
     ScenarioStarted,
+    UserCodeFailed,
     judged,
     scenario_key,
     trace_file,
@@ -133,18 +135,24 @@ def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
     yield RunStarted(len(manifest.scenarios), "stored traces")
     for index, spec in enumerate(manifest.scenarios):
         yield ScenarioStarted(index)
+        faults: set[str] = set()
         for clause, verdict in traces.judged(spec):
+            if verdict.fault is not None and verdict.fault.id not in faults:
+                faults.add(verdict.fault.id)
+                yield UserCodeFailed(index, verdict.fault)
             yield judged(index, clause.line, verdict)
         for line, found in traces.ranges(spec):
             yield MarginRanges(index, line, found)
+        finish_output()
         yield ScenarioFinished(index, 0.0, 0.0, 0.0)
     yield RunFinished(True)
 
 
 def _main() -> int:
-    channel = Lines(os.dup(1))
+    channel = Reports(os.dup(1))
     # Users' evaluators may print; that must not end up among the messages.
     os.dup2(2, 1)
+    sys.stdout = Printed(channel, sys.stdout)
     folder, run = map(Path, sys.argv[1:])
     try:
         for message in _messages(read_manifest(folder), StoredTraces(run)):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,7 @@ import numpy as np
 from robbdd_tools.agent.engine import mujoco
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.frames import at
-from robbdd_tools.agent.user_code import UserCodeError, called, load_attribute
+from robbdd_tools.agent.user_code import UserCodeError, called, definition_of, load_attribute, refused
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 
 if TYPE_CHECKING:
@@ -81,15 +81,16 @@ def _from_code(source: ModelSource) -> Any:
     """Call the code, which returns MJCF text, the path of a file, or the engine's own description."""
     model = "" if source.origin is None else source.origin.file
     try:
-        made = called(source.name, load_attribute(source.name, model))
+        make = load_attribute(source.name, model)
+        made = called(source.name, make)
+        try:
+            if isinstance(made, str) and made.lstrip().startswith("<"):
+                return mujoco.MjSpec.from_string(made)
+            return mujoco.MjSpec.from_file(str(made)) if isinstance(made, str | Path) else made.copy()
+        except (ValueError, AttributeError) as error:
+            raise refused(source.name, f"{source.name} made no model: {error}", definition_of(make)) from error
     except UserCodeError as error:
-        raise SceneError(f"{at(source.origin)}{error}") from error
-    try:
-        if isinstance(made, str) and made.lstrip().startswith("<"):
-            return mujoco.MjSpec.from_string(made)
-        return mujoco.MjSpec.from_file(str(made)) if isinstance(made, str | Path) else made.copy()
-    except (ValueError, AttributeError) as error:
-        raise SceneError(f"{at(source.origin)}{source.name} made no model: {error}") from error
+        raise SceneError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from robbdd_tools.agent.sentences import Clause, Fluent, Junction, Unmatched, read_timed_text
 from robbdd_tools.agent.streams import Stream, Unobserved
-from robbdd_tools.agent.user_code import UserCodeError, called, load_attribute
+from robbdd_tools.agent.user_code import UserCodeError, called, definition_of, load_attribute, refused
 from robbdd_tools.catalog.api import Predicate
 from robbdd_tools.monitor.time import After, Before, TimeConstraint
 from robbdd_tools.run.protocol import plain_name
@@ -106,8 +106,11 @@ class Judge:
 
     def _by_code(self, name: str, evidence: Observed) -> FloatArray:
         arguments = {**{plain_name(variable): value for variable, value in self.spec.values.items()}, **self.own}
-        evaluate = load_attribute(name, self.spec.model)
-        return _as_margins(name, called(name, lambda: evaluate(evidence, arguments)), len(evidence.times))
+        try:
+            evaluate = load_attribute(name, self.spec.model)
+            return _as_margins(name, evaluate, called(name, evaluate, evidence, arguments), len(evidence.times))
+        except UserCodeError as error:
+            raise UserCodeError(str(error), replace(error.fault, origin=self.policy.iri)) from error
 
 
 class Observed:
@@ -153,11 +156,15 @@ def distance_margins(rule: Rule, one: Stream, other: Stream) -> FloatArray:
             raise Unobserved(f"there is no comparison '{form}' of a distance with {len(bounds)} bounds")
 
 
-def _as_margins(name: str, answer: Any, count: int) -> FloatArray:
+def _as_margins(name: str, evaluate: object, answer: Any, count: int) -> FloatArray:
     """Return the user's answer as margins: numbers as they are, true and false as 1 and -1, one for all or one each."""
     values = np.asarray(answer)
     if values.dtype == bool:
         values = np.where(values, 1.0, -1.0)
     if values.dtype.kind not in "fiu" or values.shape not in ((), (count,)):
-        raise UserCodeError(f"{name} must return one number or truth value, or one for each of the {count} samples")
+        message = f"{name} must return one number or truth value, or one for each of the {count} samples"
+        raise refused(name, message, definition_of(evaluate))
+    if not np.all(np.isfinite(values)):
+        message = f"{name} must return finite numbers, but {np.count_nonzero(~np.isfinite(values))} are not"
+        raise refused(name, message, definition_of(evaluate))
     return np.broadcast_to(values.astype(float), (count,))

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator
+from contextlib import redirect_stdout
 from copy import copy
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.agent.channel import Channel, Lines, use_channel
+from robbdd_tools.agent.channel import Channel, Reports, use_channel
 from robbdd_tools.agent.engine import version
 from robbdd_tools.agent.hooks import EXECUTION
+from robbdd_tools.agent.output import Printed, finish_output
 from robbdd_tools.agent.session import STRANGER
+from robbdd_tools.agent.user_code import fault_of, original
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
     ClauseJudged,
     LogLine,
     RunFinished,
-    RunMessage,
     RunStarted,
     ScenarioFinished,
     ScenarioStarted,
+    UserCodeFailed,
     decode_order,
 )
 
@@ -42,7 +46,9 @@ def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
         channel.send(RunFinished(False))
         return 2
     channel.send(RunStarted(len(manifest.scenarios), version()))
-    problem = _behave(Features(folder, manifest, channel), orders)
+    with redirect_stdout(Printed(channel, sys.stdout)):
+        problem = _behave(Features(folder, manifest, channel), orders)
+        finish_output()
     if problem:
         channel.send(LogLine("error", problem))
     channel.send(RunFinished(not problem))
@@ -60,25 +66,14 @@ def _behave(features: Features, orders: Iterable[str]) -> str:
         with runner.path_manager:
             runner.context = behave.Context(runner)
             runner.load_hooks()
-            runner.load_step_definitions()
+            try:
+                runner.load_step_definitions()
+            except (Exception, SystemExit) as error:
+                return features.report_broken_steps(error)
             runner.run_model(features.ordered(orders, config.userdata))
     except Exception as error:  # behave's own failures (a broken hooks or steps file) are of many types
         return f"behave cannot run the features: {' '.join(str(error).split())}"
     return ""
-
-
-class Reports(Lines):
-    """The channel to the parent; knows which scenarios it was told to be finished."""
-
-    def __init__(self, descriptor: int) -> None:
-        super().__init__(descriptor)
-        self.finished: set[int] = set()
-
-    def send(self, message: RunMessage) -> None:
-        """Pass a message on."""
-        super().send(message)
-        if isinstance(message, ScenarioFinished):
-            self.finished.add(message.index)
 
 
 class Features:
@@ -104,6 +99,16 @@ class Features:
                 self._unknown(index, reason)
             if index not in self._channel.finished:
                 self._unknown(index, "behave did not execute the scenario")
+
+    def report_broken_steps(self, error: BaseException) -> str:
+        """Report that the users' steps cannot be loaded; returns the reason."""
+        sources = {str((self.folder / copy).resolve()): source for copy, source in self._manifest.sources.items()}
+        fault = original(fault_of(error, "steps"), sources)
+        place = fault.place
+        if place is not None and place.own:
+            self._channel.send(UserCodeFailed(None, fault))
+            return f"the steps cannot be loaded: {fault.summary} ({place.file}:{place.line})"
+        return f"behave cannot run the features: {fault.summary}"
 
     def _feature(self, index: int) -> Any:
         spec = self._manifest.scenarios[index]

@@ -15,10 +15,12 @@ from robbdd_tools.agent.curves import behaviour_curves, curves, write_curves
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
+from robbdd_tools.agent.output import finish_output
 from robbdd_tools.agent.sentences import read_clause, read_doing, read_event
 from robbdd_tools.agent.stated import stated_clause, stated_iteration
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import verdict_views, write_trace
+from robbdd_tools.agent.user_code import fault_of
 from robbdd_tools.agent.viewer import NoViewer, Viewer
 from robbdd_tools.agent.views import views
 from robbdd_tools.monitor.time import never_occurred
@@ -32,6 +34,7 @@ from robbdd_tools.run.protocol import (
     MarginRanges,
     ScenarioFinished,
     ScenarioStarted,
+    UserCodeFailed,
     curves_file,
     judged,
     trace_file,
@@ -77,14 +80,15 @@ class ScenarioRun:
         self._keep = keep
         self._courses = courses or Courses()
         self._verdicts: list[ClauseJudged] = []
-        self._broken = ""
+        self._broken: SceneError | None = None
+        self._faults: set[str] = set()
         self._began = perf_counter()
         channel.send(ScenarioStarted(index))
 
     def set_up(self) -> None:
         """Build the scene, unless that was done; raises ``SceneError``."""
         if self._broken:
-            raise SceneError(self._broken)
+            raise self._broken
         if self._execution is None:
             try:
                 doings = self._doings.values()
@@ -98,7 +102,7 @@ class ScenarioRun:
                     self._channel.send(LogLine("info", text))
                 self._show(self._execution)
             except SceneError as error:
-                self._broken = str(error)
+                self._broken = error
                 raise
 
     def _show(self, execution: Execution) -> None:
@@ -117,10 +121,10 @@ class ScenarioRun:
             events = self._spec.events.keys()
             trace = execution.advance_until(lambda trace: is_closed(clause, trace, events))
             if execution.broken:
-                return unknown(execution.broken)
+                return unknown(execution.broken, fault=execution.fault)
             return decide(clause, execution.measured(clause, trace), execution.regions, events)
 
-        return self._judged(line, verdict)
+        return self._judged(line, text, verdict)
 
     def behaviour(self, line: int, text: str) -> Verdict:
         """Run to the end of a behaviour; its clause holds when the behaviour went through."""
@@ -132,11 +136,11 @@ class ScenarioRun:
             if execution.run_behaviour(index):
                 return Verdict(Outcome.HOLDS)
             if execution.broken:
-                return unknown(execution.broken)
+                return unknown(execution.broken, fault=execution.fault)
             unreached = execution.trace.unreached
             return unknown(unreached) if unreached else Verdict(Outcome.VIOLATED, reason=execution.failure)
 
-        return self._judged(line, verdict)
+        return self._judged(line, text, verdict)
 
     def event(self, line: int, text: str) -> Verdict:
         """Run on until the event that a When step names has occurred."""
@@ -153,7 +157,7 @@ class ScenarioRun:
                 return unknown(never_occurred(trace, event, iteration))
             return Verdict(Outcome.HOLDS, at=time)
 
-        return self._judged(line, verdict)
+        return self._judged(line, text, verdict)
 
     def told(self, line: int, verdict: Verdict) -> None:
         """Take the verdict of a user's step on a clause that has none yet."""
@@ -162,7 +166,7 @@ class ScenarioRun:
     def finish(self) -> None:
         """Report what was left open as unknown, and the scenario as finished."""
         for line, sentence in list(self._open.items()):
-            self._report(line, unknown(self._broken or f"{NO_STEP} for '{sentence}'"))
+            self._report(line, _unknown(self._broken) if self._broken else unknown(f"{NO_STEP} for '{sentence}'"))
         execution = self._execution
         if self._viewer is not None:
             self._viewer.close()
@@ -174,6 +178,7 @@ class ScenarioRun:
         stepping = execution.stepping if execution is not None else 0.0
         resampled = execution.simulation.world.resampled if execution is not None else 0
         wall = perf_counter() - self._began
+        finish_output()
         self._channel.send(ScenarioFinished(self._index, round(simulated, 6), wall, stepping, resampled))
 
     def _tell_ranges(self, execution: Execution) -> None:
@@ -203,19 +208,20 @@ class ScenarioRun:
                 iteration = stated_iteration(self._stated[line])
                 yield line, behaviour_curves(self._doings[line], trace, self._spec.events, self._spec.node, iteration)
 
-    def _judged(self, line: int, verdict: Callable[[Execution], Verdict]) -> Verdict:
+    def _judged(self, line: int, text: str, verdict: Callable[[Execution], Verdict]) -> Verdict:
         if line in self._open:
             self._channel.send(ClauseStarted(self._index, line))
         try:
             self.set_up()
         except SceneError as error:
-            found = unknown(str(error))
+            found = _unknown(error)
         else:
             assert self._execution is not None
             try:
                 found = verdict(self._execution)
             except Exception as error:  # user code may be called; what it breaks is this clause's evidence only
-                found = unknown(f"the step failed: {type(error).__name__}: {error}")
+                fault = fault_of(error, text)
+                found = unknown(f"the step failed: {fault.summary}", fault=fault)
         self._report(line, found)
         return found
 
@@ -224,13 +230,23 @@ class ScenarioRun:
             return
         if verdict.outcome is Outcome.VIOLATED and verdict.at is not None and self._execution is not None:
             self._moments.keep(self._index, line, verdict.at, self._execution.state_at(verdict.at))
+        if verdict.fault is not None and verdict.fault.id not in self._faults:
+            self._faults.add(verdict.fault.id)
+            self._channel.send(UserCodeFailed(self._index, verdict.fault))
         message = judged(self._index, line, verdict)
         self._verdicts.append(message)
         self._channel.send(message)
 
 
+def _unknown(error: SceneError) -> Verdict:
+    return unknown(str(error), fault=error.fault)
+
+
 class Session:
-    """A run: finds the scenario of a manifest that behave is at."""
+    """A run: finds the scenario of a manifest that behave is at.
+
+    ``sources`` maps copies of files of users' steps to the originals, as absolute paths.
+    """
 
     def __init__(self, folder: Path, manifest: Manifest, channel: Channel) -> None:
         self._channel = channel
@@ -239,6 +255,7 @@ class Session:
             ((folder / spec.feature).resolve(), spec.line): index
             for index, spec in reversed(list(enumerate(manifest.scenarios)))
         }
+        self.sources = {str((folder / copy).resolve()): source for copy, source in manifest.sources.items()}
         self._folder = folder
         self._manifest = manifest
         self._moments = Moments(folder)

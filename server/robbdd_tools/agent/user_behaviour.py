@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from robbdd_tools.agent.errors import BehaviourError, UserError
 from robbdd_tools.agent.frames import at
 from robbdd_tools.agent.kinematics import arm_of
 from robbdd_tools.agent.motion import frame_of, tool_pose
-from robbdd_tools.agent.user_code import UserCodeError, called, load_attribute
+from robbdd_tools.agent.user_code import UserCodeError, called, definition_of, load_attribute, refused
 from robbdd_tools.catalog.own_behaviour import BehaviourFailed, UserBehaviour
 
 if TYPE_CHECKING:
@@ -73,11 +74,16 @@ class AgentWorld:
             ) from error
 
     def command(self, joints: FloatArray, opening: float) -> None:
-        """Set the targets of servos (rad) and gripper (0 closed, 1 open)."""
+        """Set the targets of servos (rad) and gripper (0 closed, 1 open); raises ``ValueError`` for others."""
         model = self._robot.model
+        targets = np.asarray(joints, dtype=float)
+        if targets.shape != self.joints.shape or not np.all(np.isfinite(targets)):
+            raise ValueError(f"joints must be {len(self.joints)} finite numbers, not {joints!r:.200}")
+        if not np.isfinite(opening):
+            raise ValueError(f"opening must be a number from 0 to 1, not {opening!r}")
         share = min(1.0, max(0.0, float(opening)))
         control = model.gripper_closed + share * (model.gripper_open - model.gripper_closed)
-        self._simulation.command(self._robot, np.asarray(joints, dtype=float), control)
+        self._simulation.command(self._robot, targets, control)
 
     def emit(self, event: str) -> None:
         """Stamp an event of the behaviour with the present time."""
@@ -95,10 +101,20 @@ def run_user_behaviour(
     model = "" if implementation.origin is None else implementation.origin.file
     try:
         own: UserBehaviour = called(name, load_attribute(name, model))
-        called(name, lambda: own.reset(world, behaviour, arguments))
-        while not called(name, own.step):
+        called(name, own.reset, world, behaviour, arguments)
+        while not _is_over(name, own):
             yield
     except UserCodeError as error:
         if isinstance(error.__cause__, BehaviourFailed):
             raise BehaviourError(f"{error.__cause__} at {world.time:.2f} s") from error
-        raise UserError(f"{at(implementation.origin)}{error} at {world.time:.2f} s") from error
+        fault = replace(error.fault, origin=implementation.iri)
+        raise UserError(f"{at(implementation.origin)}{error} at {world.time:.2f} s", fault) from error
+
+
+def _is_over(name: str, own: UserBehaviour) -> bool:
+    """Let a behaviour do its next tick. One that returns nothing goes on; any other answer is refused."""
+    answer: Any = called(name, own.step)
+    if answer is None or isinstance(answer, bool | np.bool_):
+        return bool(cast(Any, answer))
+    message = f"{name}.step must return True or False, not {answer!r:.60}"
+    raise refused(name, message, definition_of(own.step))

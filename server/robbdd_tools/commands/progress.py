@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rich.padding import Padding
@@ -21,7 +21,16 @@ from rich.text import Text
 from robbdd_tools.base.printable import printable
 from robbdd_tools.commands.terminal import plain, terminal
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import ClauseJudged, LogLine, RunMessage, RunStarted, ScenarioFinished, ScenarioStarted
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    LogLine,
+    Output,
+    RunMessage,
+    RunStarted,
+    ScenarioFinished,
+    ScenarioStarted,
+    UserCodeFailed,
+)
 from robbdd_tools.run.report import SIGNS, margin, plain_sentence, values_words
 
 if TYPE_CHECKING:
@@ -29,12 +38,15 @@ if TYPE_CHECKING:
 
     from rich.progress import Task
 
+    from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.run.results import RunResults, ScenarioResult
 
 BESIDE = len("  ✔   +1000.0 mm  at 10.00 s")
 """Columns that a clause's sign, margin and instant take beside its sentence."""
 NARROWEST = 10
 """Columns that a sentence has at least, however narrow the terminal."""
+MOST_PRINTED = 100
+"""Lines of what users' code prints in one scenario that are shown."""
 INDENT = (0, 0, 0, 6)
 """What a reason has around it: it is set in below its clauses."""
 STYLES = {Outcome.HOLDS: "green", Outcome.VIOLATED: "bold red", Outcome.UNKNOWN: "yellow"}
@@ -66,6 +78,8 @@ class Display:
         )
         self._held = self._failed = 0
         self._fails: set[int] = set()
+        self._faults: dict[str, int] = {}
+        self._printed: dict[int, list[str]] = {}
         self._task = self._progress.add_task("", total=self._total, counts=Text("starting"))
 
     def __enter__(self) -> Display:
@@ -96,11 +110,34 @@ class Display:
             case RunStarted():
                 self._progress.update(self._task, counts=self._counts())
             case ScenarioFinished():
-                self._scenario(self._results.scenarios[message.index])
+                self._scenario(message.index)
+            case UserCodeFailed(_, fault):
+                self._fault(fault)
+            case Output(None, text):
+                self._output(text.split("\n"))
+            case Output(int(index), text):
+                self._printed.setdefault(index, []).extend(text.split("\n"))
             case LogLine(level, text) if level != "info":
                 self._console.print(plain(f"{level}: {text}", STYLES[Outcome.UNKNOWN]))
             case _:
                 pass
+
+    def _fault(self, fault: Fault) -> None:
+        """Print an error in users' code with its traceback, once however many scenarios it spoils."""
+        if fault.id in self._faults:
+            return
+        self._faults[fault.id] = number = len(self._faults) + 1
+        self._console.print(plain(f"error {number}: {fault.code} failed", STYLES[Outcome.VIOLATED]))
+        for line in fault.traceback():
+            self._console.print(plain(line))
+
+    def _output(self, lines: Sequence[str]) -> None:
+        """Print what users' code printed, set apart from what we say."""
+        for line in lines[:MOST_PRINTED]:
+            self._console.print(plain(f"  │ {line}"))
+        if len(lines) > MOST_PRINTED:
+            more = _counted(len(lines) - MOST_PRINTED, "more line")
+            self._console.print(Text(f"  │ … {more} in the log of the run"))
 
     def broken(self, reason: str) -> None:
         """Say why the run did not come to its end, and show the scenarios that it left open."""
@@ -138,10 +175,12 @@ class Display:
         reasons = self._results.vacuous()
         return ((name, reasons[iri]) for iri, name in names.items() if iri in reasons)
 
-    def _scenario(self, scenario: ScenarioResult) -> None:
+    def _scenario(self, index: int) -> None:
+        scenario = self._results.scenarios[index]
         spec = scenario.spec
         outcome = scenario.verdict
         self._console.print(plain(f"{spec.name}  {values_words(spec)}", STYLES[outcome]))
+        self._output(self._printed.pop(index, []))
         rows = [
             (judged, printable(plain_sentence(clause.sentence)))
             for clause in spec.clauses
@@ -156,7 +195,9 @@ class Display:
                 self._console.print(_clause_line(judged, sentence, width))
             below = rows[number + 1][0].reason if number + 1 < len(rows) else ""
             if judged.verdict != Outcome.HOLDS and judged.reason not in ("", below):
-                reason = plain(judged.reason, STYLES[Outcome(judged.verdict)])
+                number = self._faults.get(judged.fault)
+                words = judged.reason if number is None else f"no evidence, because of error {number}"
+                reason = plain(words, STYLES[Outcome(judged.verdict)])
                 self._console.print(Padding(reason, INDENT) if self._drawn else Text("      ").append(reason))
 
 

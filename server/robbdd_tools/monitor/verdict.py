@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from robbdd_tools.monitor.fault import Fault
+
 EMPTY_WINDOW = "its window holds no sample"
 EMPTY_SET = "a set that it quantifies over is empty"
 """Why a clause could not have been violated."""
@@ -26,7 +28,8 @@ class Verdict:
     ``robustness`` is the signed margin in ``unit`` (positive: holds), ``None`` when unknown. ``at`` (s) is the
     instant of violation (the first sample with a negative margin), of the worst margin when it holds, ``None``
     when unknown; ``worst_at`` (s) is that of the worst margin in any case. ``reason`` says in words why it is
-    violated or unknown; ``vacuous`` why it could not have been violated, nothing where it could.
+    violated or unknown; ``vacuous`` why it could not have been violated, nothing where it could. ``fault`` is the error
+    in users' code that kept the evidence away.
     """
 
     outcome: Outcome
@@ -36,11 +39,12 @@ class Verdict:
     reason: str = ""
     worst_at: float | None = None
     vacuous: str = ""
+    fault: Fault | None = None
 
 
-def unknown(reason: str, vacuous: str = "") -> Verdict:
+def unknown(reason: str, vacuous: str = "", fault: Fault | None = None) -> Verdict:
     """Return the verdict for missing evidence; it never passes."""
-    return Verdict(Outcome.UNKNOWN, reason=reason, vacuous=vacuous)
+    return Verdict(Outcome.UNKNOWN, reason=reason, vacuous=vacuous, fault=fault)
 
 
 def negation(verdict: Verdict) -> Verdict:

@@ -27,7 +27,7 @@ def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioS
     executions: dict[str, ExecutionSpec] = {}
     trees: dict[str, TreeSpec] = {}
     with (folder / MANIFEST).open("w", encoding="utf-8", newline="\n") as file:
-        begin = {"model": head.model, "seed": head.seed, "traces": head.traces}
+        begin = {"model": head.model, "seed": head.seed, "traces": head.traces, "sources": dict(head.sources)}
         file.write(_json(begin)[:-1] + ', "scenarios": [')
         separator = "\n"
         for spec in scenarios:
@@ -49,7 +49,7 @@ def read_manifest(folder: Path) -> Manifest:
     executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
     trees = {entry["name"]: from_plain(TreeSpec, entry) for entry in data.get("trees", ())}
     scenarios = tuple(_scenario(entry, executions, trees) for entry in data["scenarios"])
-    return Manifest(data["model"], data["seed"], scenarios, data.get("traces", False))
+    return Manifest(data["model"], data["seed"], scenarios, data.get("traces", False), data.get("sources", {}))
 
 
 def _scenario(

@@ -77,23 +77,31 @@ def prepare(request: RunRequest, folder: Path) -> Manifest:
 def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Path, traces: bool = False) -> Manifest:
     """Write everything that the agent needs to run several models, called ``name`` together; raises ``OSError``."""
     parts: list[_Part] = []
+    sources: dict[str, str] = {}
     for number, request in enumerate(requests, start=1):
         below = FEATURES if len(requests) == 1 else f"{FEATURES}/{number}-{Path(request.name).stem}"
         plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)
         executions = request.chosen_executions()
         parts += _parts(plan, request.name, request.seed, executions, below, request.repeat, request.only)
-        bring_steps(request.name, folder, f"model_{number}_steps.py" if len(requests) > 1 else MODEL_STEPS)
-    return Manifest(name, seed, tuple(_written(parts, name, seed, folder, traces)), traces)
+        steps = f"model_{number}_steps.py" if len(requests) > 1 else MODEL_STEPS
+        sources |= bring_steps(request.name, folder, steps)
+    head = Manifest(name, seed, (), traces, sources)
+    return replace(head, scenarios=tuple(_written(parts, head, folder)))
 
 
-def bring_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> None:
-    """Copy the steps that users wrote for a model (its path or URI), if any, into ``folder``. Raises ``OSError``."""
+def bring_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, str]:
+    """Copy the steps that users wrote for a model (its path or URI), if any, into ``folder``. Raises ``OSError``.
+
+    Returns the copy's path in the folder with that of the original.
+    """
     path = uri_to_path(model) if model.startswith("file:") else Path(model)
     own = None if path is None else steps_file(path)
-    if own is not None and own.is_file():
-        steps = folder / FEATURES / "steps"
-        steps.mkdir(parents=True, exist_ok=True)
-        (steps / name).write_bytes(own.read_bytes())
+    if own is None or not own.is_file():
+        return {}
+    steps = folder / FEATURES / "steps"
+    steps.mkdir(parents=True, exist_ok=True)
+    (steps / name).write_bytes(own.read_bytes())
+    return {f"{FEATURES}/steps/{name}": str(own.resolve())}
 
 
 def lay_out(
@@ -104,18 +112,16 @@ def lay_out(
     ``name`` is that of the model in reports. Each of the ``executions`` has a folder of features of its own; nothing
     is repeated. Raises ``OSError`` and ``TemplateProblem``.
     """
-    return _written(list(_parts(plan, name, seed, executions, FEATURES, 1)), name, seed, folder)
+    return _written(list(_parts(plan, name, seed, executions, FEATURES, 1)), Manifest(name, seed, ()), folder)
 
 
-def _written(
-    parts: Sequence[_Part], name: str, seed: int, folder: Path, traces: bool = False
-) -> Iterator[ScenarioSpec]:
+def _written(parts: Sequence[_Part], head: Manifest, folder: Path) -> Iterator[ScenarioSpec]:
     features = folder / FEATURES
     (features / "steps").mkdir(parents=True, exist_ok=True)
     (features / "environment.py").write_text(_ENVIRONMENT, encoding="utf-8", newline="\n")
     (features / "steps" / "catalog_steps.py").write_text(_STEPS, encoding="utf-8", newline="\n")
     specs = (spec for part in parts for spec in part.specs(folder))
-    yield from written_manifest(folder, Manifest(name, seed, (), traces), specs)
+    yield from written_manifest(folder, head, specs)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from robbdd_tools.base.plain import from_plain
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
+from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.monitor.verdict import Verdict
 
@@ -120,12 +122,16 @@ class ScenarioSpec:
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """Everything the agent needs beside the feature files; ``traces`` tells it to write ``trace_file``s."""
+    """Everything the agent needs beside the feature files; ``traces`` tells it to write ``trace_file``s.
+
+    ``sources`` maps files of the users' steps, by their path in the run folder, to the files that they are copies of.
+    """
 
     model: str
     seed: int
     scenarios: tuple[ScenarioSpec, ...]
     traces: bool = False
+    sources: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +166,10 @@ class ClauseStarted:
 
 @dataclass(frozen=True, slots=True)
 class ClauseJudged:
-    """A clause has its verdict (``holds``, ``violated``, ``unknown``); see ``monitor.verdict.Verdict``."""
+    """A clause has its verdict (``holds``, ``violated``, ``unknown``); see ``monitor.verdict.Verdict``.
+
+    ``fault`` is the ``id`` of the error in users' code that it is unknown for, as a ``UserCodeFailed`` has it.
+    """
 
     index: int
     line: int
@@ -171,6 +180,7 @@ class ClauseJudged:
     reason: str
     worst_at: float | None = None
     vacuous: str = ""
+    fault: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,6 +207,25 @@ class ScenarioFinished:
 
 
 @dataclass(frozen=True, slots=True)
+class UserCodeFailed:
+    """Code of the user failed in scenario ``index``, or before any scenario when ``None``; once for each scenario.
+
+    It comes before the verdicts that name ``fault``.
+    """
+
+    index: int | None
+    fault: Fault
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """Lines that users' code printed while scenario ``index`` was executed, or before any scenario when ``None``."""
+
+    index: int | None
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class LogLine:
     """A line for the log: ``level`` is ``info``, ``warning`` or ``error``."""
 
@@ -218,6 +247,8 @@ RunMessage = (
     | ClauseJudged
     | MarginRanges
     | ScenarioFinished
+    | UserCodeFailed
+    | Output
     | LogLine
     | RunFinished
 )
@@ -230,6 +261,8 @@ _TYPES: dict[str, type[RunMessage]] = {
         ClauseJudged,
         MarginRanges,
         ScenarioFinished,
+        UserCodeFailed,
+        Output,
         LogLine,
         RunFinished,
     )
@@ -248,6 +281,7 @@ def judged(index: int, line: int, verdict: Verdict) -> ClauseJudged:
         verdict.reason,
         verdict.worst_at,
         verdict.vacuous,
+        "" if verdict.fault is None else verdict.fault.id,
     )
 
 
@@ -260,7 +294,7 @@ def decode(line: str) -> RunMessage:
     """Return the message of a line; raises ``ValueError`` for anything that is not one."""
     try:
         fields = json.loads(line)
-        return _TYPES[fields.pop("type")](**fields)
+        return from_plain(_TYPES[fields.pop("type")], fields)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ValueError(f"not a run message: {line[:200]!r}") from error
 

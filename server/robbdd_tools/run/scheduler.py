@@ -25,11 +25,13 @@ from robbdd_tools.run.protocol import (
     LogLine,
     Manifest,
     MarginRanges,
+    Output,
     RunFinished,
     RunMessage,
     RunStarted,
     ScenarioFinished,
     ScenarioStarted,
+    UserCodeFailed,
 )
 
 TIMEOUT = 300.0
@@ -140,6 +142,7 @@ class Scheduler:
         self._wasted = 0
         self._greeted = False
         self._cancelled = False
+        self._shared_faults: set[str] = set()
         self.ending = ""
 
     @property
@@ -232,7 +235,18 @@ class Scheduler:
                 self._wasted = 0
                 worker.started, worker.deadline = True, monotonic() + self._limit(index)
                 yield from self._pass_on(worker, message)
-            case ClauseStarted() | MarginRanges():
+            case UserCodeFailed(None, fault):
+                # The code that all scenarios share is loaded by each process.
+                if fault.id not in self._shared_faults:
+                    self._shared_faults.add(fault.id)
+                    self._watch(message)
+                    yield message
+            case Output(None):
+                # Each process loads the same code, which prints the same.
+                if worker is self._workers[0]:
+                    self._watch(message)
+                    yield message
+            case ClauseStarted() | MarginRanges() | UserCodeFailed() | Output():
                 yield from self._pass_on(worker, message)
             case ClauseJudged():
                 worker.judged.add(message.line)
