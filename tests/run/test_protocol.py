@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kit import write_manifest
+from robbdd_tools.monitor.fault import Fault, Frame
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
     ClauseJudged,
@@ -14,6 +15,7 @@ from robbdd_tools.run.protocol import (
     ClauseStarted,
     LogLine,
     Manifest,
+    Output,
     RunFinished,
     RunMessage,
     RunStarted,
@@ -21,6 +23,7 @@ from robbdd_tools.run.protocol import (
     ScenarioSpec,
     ScenarioStarted,
     SceneSpec,
+    UserCodeFailed,
     decode,
     encode,
 )
@@ -32,6 +35,9 @@ MESSAGES = [
     ClauseJudged(0, 12, "violated", -0.012, "m", 3.4, "pushed"),
     ClauseJudged(0, 13, "unknown", None, "", None, "event t:end never occurred"),
     ScenarioFinished(0, 9.5, 0.8, 0.5),
+    UserCodeFailed(1, Fault("KeyError", "'a'", "m:f", (Frame("/m.py", 3, "f", "x['a']", True),), "https://x/b", "00")),
+    UserCodeFailed(None, Fault("", "odd", "steps")),
+    Output(1, 'one\ntwo "✗"'),
     LogLine("warning", 'odd "text" ✗\nsecond line'),
     RunFinished(True),
 ]
@@ -57,6 +63,6 @@ def test_a_manifest_comes_back_equal(tmp_path: Path) -> None:
     scenario = ScenarioSpec(
         "features/s.feature", 6, "e:v -- 1", "s", "v", 1, values, 7, scene, {"e:e": "pick-end"}, (clause,)
     )
-    manifest = Manifest("m.bdd", 1, (scenario,))
+    manifest = Manifest("m.bdd", 1, (scenario,), False, {"features/steps/own.py": "/own.py"})
     write_manifest(tmp_path, manifest)
     assert read_manifest(tmp_path) == manifest
