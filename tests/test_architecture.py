@@ -141,3 +141,34 @@ def prints(path: Path) -> Iterator[str]:
 def test_commands_print_only_through_what_escapes(module: str, path: Path) -> None:
     homes = {"commands.output": {"print", "sys.stdout.write"}, "commands.terminal": {"Console"}}
     assert set(prints(path)) <= homes.get(module, set())
+
+
+OPENS_ITSELF = {
+    "base.files": "the one that reads",
+    "base.writing": "the one that writes",
+    "agent.moments": "adds lines to a file of its own run",
+    "run.launch": "gives a process its log",
+}
+
+
+def opens(path: Path) -> Iterator[str]:
+    """Yield the calls that open a file without the checks of ``base/files`` and ``base/writing``."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        match node:
+            case ast.Call(func=ast.Attribute(attr="read_text" | "read_bytes" | "write_text" | "write_bytes")):
+                yield ast.unparse(node)
+            case ast.Call(func=ast.Name(id="open")):
+                yield ast.unparse(node)
+            case ast.Call(func=ast.Attribute(attr="open"), args=[] | [ast.Constant()]):
+                yield ast.unparse(node)
+            case ast.Call(func=ast.Attribute(value=ast.Name(id="shutil"), attr="copy" | "copy2" | "copyfile")):
+                yield ast.unparse(node)
+            case ast.Call(func=ast.Attribute(value=ast.Name(id="ElementTree"), attr="parse")):
+                yield ast.unparse(node)
+            case _:
+                pass
+
+
+@pytest.mark.parametrize(("module", "path"), list(modules()))
+def test_files_are_read_and_written_in_one_place(module: str, path: Path) -> None:
+    assert module in OPENS_ITSELF or list(opens(path)) == []

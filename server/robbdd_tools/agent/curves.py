@@ -12,6 +12,7 @@ import numpy as np
 
 from robbdd_tools.agent.clauses import ways
 from robbdd_tools.agent.sentences import Clause, Doing, Fluent, Junction, Unmatched
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.monitor.curve import Curve, curve
 from robbdd_tools.monitor.judge import WindowEvidence
@@ -68,7 +69,7 @@ def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tu
         "clauses": {str(line): [asdict(one) for one in found] for line, found in by_line.items()},
     }
     path.parent.mkdir(exist_ok=True)
-    path.write_text(json.dumps(document, ensure_ascii=False) + "\n", encoding="utf-8", newline="\n")
+    replace_file(path, json.dumps(document, ensure_ascii=False) + "\n")
 
 
 def _curve(fluent: Fluent, trace: Trace, regions: Regions, negated: bool) -> Curve:

@@ -19,6 +19,8 @@ from robbdd_tools.agent.sentences import fluents_of, read_clause, read_event
 from robbdd_tools.agent.stated import stated_clause, stated_iteration
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
+from robbdd_tools.base.files import load_text
+from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.monitor.time import never_occurred, occurrences
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.manifest import read_manifest
@@ -50,7 +52,7 @@ class StoredTraces:
         self._folder = folder
         manifest = read_manifest(folder)
         self._specs = {scenario_key(spec): (index, spec) for index, spec in enumerate(manifest.scenarios)}
-        self._results: list[Mapping[str, Any]] = json.loads((folder / "results.json").read_text(encoding="utf-8"))[
+        self._results: list[Mapping[str, Any]] = json.loads(load_text(folder / "results.json", RESULT_SIZE))[
             "scenarios"
         ]
 

@@ -14,6 +14,7 @@ from robbdd_tools.agent.engine import mujoco
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.frames import at
 from robbdd_tools.agent.user_code import UserCodeError, called, definition_of, load_attribute, refused
+from robbdd_tools.base.model_includes import unusable
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 
 if TYPE_CHECKING:
@@ -47,8 +48,11 @@ def load(source: ModelSource) -> Any:
     if source.kind == "python":
         return _from_code(source)
     path = _path(source)
-    if not path.is_file():
+    if not path.exists():
         raise SceneError(f"{at(source.origin)}there is no model file {path}")
+    problem = unusable(path)
+    if problem is not None:
+        raise SceneError(f"{at(source.origin)}the model file {path} cannot be used: {problem.reason}")
     try:
         spec = _read(str(path)).copy()
     except (ValueError, OSError) as error:
@@ -62,6 +66,13 @@ def load(source: ModelSource) -> Any:
 @cache
 def _read(path: str) -> Any:
     return mujoco.MjSpec.from_file(path)
+
+
+def _read_made(path: Path) -> Any:
+    problem = unusable(path)
+    if problem is not None:
+        raise ValueError(problem.reason)
+    return mujoco.MjSpec.from_file(str(path))
 
 
 def _path(source: ModelSource) -> Path:
@@ -86,7 +97,7 @@ def _from_code(source: ModelSource) -> Any:
         try:
             if isinstance(made, str) and made.lstrip().startswith("<"):
                 return mujoco.MjSpec.from_string(made)
-            return mujoco.MjSpec.from_file(str(made)) if isinstance(made, str | Path) else made.copy()
+            return _read_made(Path(made)) if isinstance(made, str | Path) else made.copy()
         except (ValueError, AttributeError) as error:
             raise refused(source.name, f"{source.name} made no model: {error}", definition_of(make)) from error
     except UserCodeError as error:

@@ -8,6 +8,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.files import load_text
+from robbdd_tools.base.limits import RESULT_SIZE
+
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
@@ -47,7 +50,7 @@ class Moments:
     def __iter__(self) -> Iterator[Moment]:
         """Yield the moments, scenario by scenario; raises ``OSError`` or ``ValueError`` when they cannot be read."""
         for path in sorted(self._folder.glob("*.jsonl")):
-            for line in path.read_text(encoding="utf-8").splitlines():
+            for line in load_text(path, RESULT_SIZE).splitlines():
                 try:
                     fields = json.loads(line)
                     yield Moment(fields["index"], fields["line"], fields["at"], tuple(fields["state"]))

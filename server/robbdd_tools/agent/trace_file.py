@@ -18,6 +18,8 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 
 from robbdd_tools.agent.trace_codec import Evidence, pack, unpack
+from robbdd_tools.base.files import open_regular
+from robbdd_tools.base.writing import replacing_bytes
 
 if TYPE_CHECKING:
     from robbdd_tools.run.protocol import ClauseJudged, ScenarioSpec
@@ -82,7 +84,7 @@ def write_trace(path: Path, evidence: Evidence, views: Iterable[View]) -> None:
     """Write a trace and what is to be seen of it; raises ``OSError``, and ``TypeError`` as ``pack``."""
     data = pack(evidence)
     path.parent.mkdir(exist_ok=True)
-    with path.open("wb") as file:
+    with replacing_bytes(path) as file:
         writer = Writer(file)
         writer.start(library=LIBRARY)
         channel = writer.register_channel(TRACE, ENCODING, writer.register_schema("robbdd.Trace", "", b""))
@@ -101,7 +103,7 @@ def write_trace(path: Path, evidence: Evidence, views: Iterable[View]) -> None:
 def read_trace(path: Path) -> Evidence:
     """Restore a trace; raises ``UnreadableTrace``."""
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             for _, _, message in make_reader(file, validate_crcs=True).iter_messages(topics=[TRACE]):
                 return unpack(message.data)
     except Exception as error:  # in damaged bytes each decoder finds faults of types of its own
@@ -113,7 +115,7 @@ def read_views(path: Path, topics: Sequence[str]) -> Mapping[str, list[tuple[flo
     """Return time (s) and message of what is to be seen, by topic; raises ``UnreadableTrace``."""
     found: dict[str, list[tuple[float, Any]]] = {topic: [] for topic in topics}
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             for _, channel, message in make_reader(file, validate_crcs=True).iter_messages(topics=list(topics)):
                 found[channel.topic].append((message.log_time / 1e9, json.loads(message.data)))
     except Exception as error:  # in damaged bytes each decoder finds faults of types of its own

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools.agent.engine import TICK
 from robbdd_tools.agent.picture import Camera
 from robbdd_tools.agent.scene import local_name
+from robbdd_tools.base.writing import replacing_bytes
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.execution import Execution
@@ -73,4 +74,5 @@ def write_video(path: Path, execution: Execution, title: str, violations: Sequen
         camera.close()
     duration = round(1000 * STRIDE * TICK)
     options = {"duration": duration, "loop": 0, "quality": QUALITY, "method": 2}
-    first.save(path, format="WEBP", save_all=True, append_images=others, **options)
+    with replacing_bytes(path) as file:
+        first.save(file, format="WEBP", save_all=True, append_images=others, **options)

@@ -1,14 +1,29 @@
-"""Reads user files; what is wrong with one comes back as a sentence, never as an exception."""
+"""Reads files: regular ones only, never more than a limit. All other modules read through these functions.
+
+Each file is checked before it is opened and again after, and is opened without waiting: a named pipe, a device or a
+link to one gives a reason instead of blocking the process or filling its memory.
+"""
 
 from __future__ import annotations
 
+import errno
 import os
+import stat
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 from urllib.parse import unquote, urlsplit
 
-LARGEST_FILE = 8 * 1024 * 1024
-"""Bytes. A model written by people stays far below; a larger file is refused rather than hanging the editor."""
+from robbdd_tools.base.limits import MIB, MODEL_SIZE, Limit
+
+# Absent on Windows, where no path of a folder names a pipe.
+_OPENING = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+_KINDS = {
+    stat.S_IFIFO: "a named pipe",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +32,19 @@ class Unreadable:
 
     code: str
     reason: str
+
+
+class UnreadableFile(OSError):
+    """A file cannot be read; the message is a sentence for the user, ``code`` a diagnostic code."""
+
+    def __init__(self, problem: Unreadable) -> None:
+        super().__init__(problem.reason)
+        self.code = problem.code
+        self.problem = problem
+
+
+class MissingFile(UnreadableFile, FileNotFoundError):
+    """There is no such file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +58,15 @@ class FileState:
 
 
 def file_state(uri: str) -> FileState | None:
-    """Return the present state of a file on disk; ``None`` where there is none."""
+    """Return the present state of a regular file on disk; ``None`` where there is none."""
     path = uri_to_path(uri)
     try:
         status = path.stat() if path is not None else None
-    except OSError:
+    except (OSError, ValueError):
         return None
-    return None if path is None or status is None else FileState(uri, path, status.st_mtime_ns, status.st_size)
+    if path is None or status is None or not stat.S_ISREG(status.st_mode):
+        return None
+    return FileState(uri, path, status.st_mtime_ns, status.st_size)
 
 
 def full_path(path: Path) -> Path:
@@ -50,48 +80,124 @@ def path_to_uri(path: Path) -> str:
 
 
 def uri_to_path(uri: str) -> Path | None:
-    """Return the path of a ``file:`` URI, or ``None`` for any other scheme."""
+    """Return the path of a ``file:`` URI, ``None`` for any other scheme and for files of another machine."""
     parts = urlsplit(uri)
     if parts.scheme != "file":
         return None
     path = unquote(parts.path)
+    if parts.netloc not in ("", "localhost"):
+        # The shared folder of another machine, which only Windows reads by such a path.
+        return Path(f"//{parts.netloc}{path}") if os.name == "nt" else None
     if len(path) > 2 and path[0] == "/" and path[2] == ":":
         path = path[1:]
     return Path(path)
 
 
-def too_large(name: str, size: int) -> Unreadable | None:
-    """Refuse a text of more than ``LARGEST_FILE`` (``size`` in bytes, or code points of an open document)."""
-    if size <= LARGEST_FILE:
-        return None
-    return Unreadable(
-        "file-too-large",
-        f"'{name}' has {size / 1048576:.1f} MiB; the limit is {LARGEST_FILE // 1048576} MiB: "
-        "split the model into several files and import them",
-    )
+def too_large(name: str, size: int, limit: Limit = MODEL_SIZE) -> Unreadable | None:
+    """Refuse a text of more than a limit (``size`` in bytes, or code points of an open document)."""
+    return _too_large(name, limit, f"has {size / MIB:.1f} MiB") if size > limit.value() else None
 
 
-def read_text(path: Path) -> str | Unreadable:
+def read_text(path: Path, limit: Limit = MODEL_SIZE) -> str | Unreadable:
     """Return the text of a UTF-8 file (a byte-order mark is dropped) or the reason why there is none."""
     try:
-        if path.is_dir():
-            return Unreadable("file-is-folder", f"'{path.name}' is a folder; name a file in it")
-        size = path.stat().st_size
-        refused = too_large(path.name, size)
-        if refused is not None:
-            return refused
-        data = path.read_bytes()
-    except FileNotFoundError:
-        return Unreadable("file-missing", f"there is no file '{path.name}' in {path.parent}")
-    except OSError as error:
-        return Unreadable("file-unreadable", f"'{path.name}' cannot be read: {error.strerror or error}")
+        return load_text(path, limit)
+    except UnreadableFile as error:
+        return error.problem
+
+
+def load_text(path: Path, limit: Limit = MODEL_SIZE) -> str:
+    """Return the text of a UTF-8 file (a byte-order mark is dropped); raises ``UnreadableFile``."""
+    data = load_bytes(path, limit)
     if b"\0" in data[:8192]:
-        return Unreadable("file-binary", f"'{path.name}' is a binary file, not text")
+        raise UnreadableFile(Unreadable("file-binary", f"'{path.name}' is a binary file, not text"))
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        return Unreadable(
-            "file-encoding",
-            f"'{path.name}' is not UTF-8 (byte 0x{data[error.start]:02x} in line {line}): save it as UTF-8",
-        )
+        reason = f"'{path.name}' is not UTF-8 (byte 0x{data[error.start]:02x} in line {line}): save it as UTF-8"
+        raise UnreadableFile(Unreadable("file-encoding", reason)) from None
+
+
+def load_bytes(path: Path, limit: Limit = MODEL_SIZE) -> bytes:
+    """Return the content of a file; raises ``UnreadableFile``.
+
+    At most one byte more than the limit is read, whatever size the file claims to have.
+    """
+    largest = limit.value()
+    try:
+        with open_regular(path) as file:
+            size = os.fstat(file.fileno()).st_size
+            refused = too_large(path.name, size, limit)
+            if refused is not None:
+                raise UnreadableFile(refused)
+            data = file.read(largest + 1)
+    except UnreadableFile:
+        raise
+    except OSError as error:
+        raise _error(_failed(path, error)) from None
+    if len(data) > largest:
+        raise UnreadableFile(_too_large(path.name, limit, "grows while it is read"))
+    return data
+
+
+def open_regular(path: Path) -> BinaryIO:
+    """Open a regular file for reading; raises ``UnreadableFile`` for anything else."""
+    problem = unreadable(path)
+    if problem is not None:
+        raise _error(problem)
+    try:
+        descriptor = os.open(path, _OPENING)
+    except OSError as error:
+        raise _error(_failed(path, error)) from None
+    # What the path names may have changed since it was checked.
+    problem = _not_regular(path, os.fstat(descriptor))
+    if problem is not None:
+        os.close(descriptor)
+        raise UnreadableFile(problem)
+    return os.fdopen(descriptor, "rb")
+
+
+def unreadable(path: Path) -> Unreadable | None:
+    """Return why a path names no regular file, without opening anything; ``None`` when it names one."""
+    try:
+        return _not_regular(path, path.stat())
+    except ValueError:
+        shown = str(path).encode("unicode_escape").decode("ascii")
+        return Unreadable("file-missing", f"'{shown}' is no path: it contains a NUL or a lone surrogate")
+    except OSError as error:
+        return _failed(path, error)
+
+
+def _error(problem: Unreadable) -> UnreadableFile:
+    return MissingFile(problem) if problem.code == "file-missing" else UnreadableFile(problem)
+
+
+def _not_regular(path: Path, status: os.stat_result) -> Unreadable | None:
+    if stat.S_ISREG(status.st_mode):
+        return None
+    if stat.S_ISDIR(status.st_mode):
+        return Unreadable("file-is-folder", f"'{path.name}' is a folder; name a file in it")
+    kind = _KINDS.get(stat.S_IFMT(status.st_mode), "no regular file")
+    via = " (through a link)" if path.is_symlink() else ""
+    return Unreadable("file-not-regular", f"'{path.name}' is {kind}{via}; only regular files are read")
+
+
+def _failed(path: Path, error: OSError) -> Unreadable:
+    match error.errno:
+        case errno.ENOENT:
+            return Unreadable("file-missing", f"there is no file '{path.name}' in {path.parent}{_dangling(path)}")
+        case errno.ELOOP:
+            return Unreadable("file-unreadable", f"'{path.name}' cannot be read: its symbolic links form a loop")
+        case _:
+            return Unreadable("file-unreadable", f"'{path.name}' cannot be read: {error.strerror or error}")
+
+
+def _dangling(path: Path) -> str:
+    return f": its link leads to {path.readlink()}, which is missing" if path.is_symlink() else ""
+
+
+def _too_large(name: str, limit: Limit, fact: str) -> Unreadable:
+    largest = f"{limit.value() / MIB:.3g} MiB"
+    advice = "split the model into several files and import them" if limit is MODEL_SIZE else f"see {limit.variable}"
+    return Unreadable("file-too-large", f"'{name}' {fact}; the limit is {largest}: {advice}")

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robbdd_tools.base.data import data_folder
+from robbdd_tools.base.files import load_text
+from robbdd_tools.base.writing import replace_file
 
 EXAMPLES = "examples"
 EXAMPLE_NAMESPACE = "https://example.org/robbdd/"
@@ -33,7 +35,7 @@ def templates() -> dict[str, Template]:
     for folder in sorted(path for path in data_folder("", EXAMPLES).iterdir() if path.is_dir()):
         models = _models(folder)
         if models:
-            first_line = models[0].read_text(encoding="utf-8").partition("\n")[0]
+            first_line = load_text(models[0]).partition("\n")[0]
             found[folder.name] = Template(folder.name, first_line.lstrip("/ "), folder)
     return found
 
@@ -54,9 +56,9 @@ def begin_project(folder: Path, template: str) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     for path in sorted(chosen.folder.iterdir()):
         if path.is_file() and not path.name.startswith("."):
-            text = path.read_text(encoding="utf-8").replace(EXAMPLE_NAMESPACE, f"https://example.org/{name}/")
-            (folder / path.name).write_text(text, encoding="utf-8", newline="\n")
-    (folder / ".gitignore").write_text(IGNORED, encoding="utf-8", newline="\n")
+            text = load_text(path).replace(EXAMPLE_NAMESPACE, f"https://example.org/{name}/")
+            replace_file(folder / path.name, text)
+    replace_file(folder / ".gitignore", IGNORED)
     return _models(folder)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
-from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.files import unreadable, uri_to_path
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 
@@ -25,20 +25,19 @@ def model_file(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         if not isinstance(placed.declaration.tree, tree.SceneInstance):
             continue
         for node in walk(placed.declaration.tree):
-            if isinstance(node, tree.SystemPath) and not _exists(own.parent, node.path.value):
-                yield Diagnostic(
-                    file.document.uri,
-                    node.path.span.shifted(placed.offset),
-                    Severity.WARNING,
-                    "model-file",
-                    f"the model file '{node.path.value}' is not on this machine: put it there, or change the path, "
-                    "before a run with it",
-                )
+            problem = _problem(own.parent, node.path.value) if isinstance(node, tree.SystemPath) else None
+            if isinstance(node, tree.SystemPath) and problem is not None:
+                span = node.path.span.shifted(placed.offset)
+                yield Diagnostic(file.document.uri, span, Severity.WARNING, "model-file", problem)
 
 
-def _exists(folder: Path, path: str) -> bool:
+def _problem(folder: Path, path: str) -> str | None:
+    missing = f"the model file '{path}' is not on this machine: put it there, or change the path, before a run with it"
     try:
-        return (folder / Path(path).expanduser()).is_file()
-    except (OSError, RuntimeError, ValueError):
-        # A home folder that nobody has, a name that no file can have.
-        return False
+        found = unreadable(folder / Path(path).expanduser())
+    except RuntimeError:
+        # A home folder that nobody has.
+        return missing
+    if found is None:
+        return None
+    return missing if found.code == "file-missing" else f"the model file cannot be used: {found.reason}"

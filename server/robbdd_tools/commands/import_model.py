@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
 from robbdd_tools.commands.output import fail, print_line, print_note
@@ -45,7 +46,7 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     try:
         for file, content in ((output, text.criteria), (scene, text.scene)):
             if content:
-                file.write_text(content, encoding="utf-8", newline="\n")
+                replace_file(file, content)
                 print_line(str(file))
     except OSError as error:
         return fail(f"cannot write {error.filename or output}: {error.strerror or error}")

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.printable import printable_json
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, OK
 from robbdd_tools.commands.output import fail
 from robbdd_tools.commands.progress import Display
@@ -61,7 +62,7 @@ def judge(options: JudgeOptions) -> int:
             return fail(f"no scenario of {options.path} has the values of one in run {options.run}")
         results = _judged(Path(name), judged, stored)
     if options.report is not None:
-        options.report.write_text(printable_json(results.as_json(), indent=1) + "\n", encoding="utf-8")
+        replace_file(options.report, printable_json(results.as_json(), indent=1) + "\n")
     if not results.complete:
         return FAILED
     return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS

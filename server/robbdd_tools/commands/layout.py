@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robbdd_tools.base.files import Unreadable, read_text
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, OK
 from robbdd_tools.commands.models import model_files, not_a_model
 from robbdd_tools.commands.output import fail, print_line, print_note
@@ -32,7 +33,7 @@ def format_models(paths: Sequence[Path], check: bool) -> int:
         print_line(f"{path}: {'would change' if check else 'changed'}")
         if not check:
             try:
-                path.write_text(laid_out, encoding="utf-8", newline="\n")
+                replace_file(path, laid_out)
             except OSError as error:
                 return fail(f"{path}: {error.strerror or error}")
     print_line(f"{len(changed)} of {len(files)} files {'would change' if check else 'changed'}")

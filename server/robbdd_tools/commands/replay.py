@@ -13,6 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.files import load_bytes
+from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.execute import execute
 from robbdd_tools.commands.output import fail, print_line, print_note
@@ -64,8 +67,8 @@ def replay(options: ReplayOptions) -> int:
         return fail(f"run {options.run} keeps no trace of {' or '.join(options.names) or 'any scenario'}")
     with tempfile.TemporaryDirectory(prefix="robbdd-") as name:
         folder = Path(name)
-        shutil.copy(stored.folder / MANIFEST, folder)
-        shutil.copytree(stored.folder / FEATURES, folder / FEATURES)
+        _copy(stored.folder / MANIFEST, folder / MANIFEST)
+        shutil.copytree(stored.folder / FEATURES, folder / FEATURES, ignore=_links, copy_function=_copy)
         _, simulator, interrupted = execute(folder, manifest, options.policy, indices)
         if interrupted:
             return INTERRUPTED
@@ -114,3 +117,12 @@ def _compare(stored: StoredRun, folder: Path, manifest: Manifest, indices: Seque
 
 def _local(name: str) -> str:
     return name.replace("#", "/").rpartition("/")[2].rpartition(":")[2]
+
+
+def _copy(source: str | Path, target: str | Path) -> None:
+    replace_file(Path(target), load_bytes(Path(source), RESULT_SIZE))
+
+
+def _links(folder: str, names: list[str]) -> list[str]:
+    """Return the links of a folder: a run that we wrote has none."""
+    return [name for name in names if (Path(folder) / name).is_symlink()]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools import __version__
 from robbdd_tools.base.printable import printable_json
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
 from robbdd_tools.commands.execute import execute
 from robbdd_tools.commands.output import fail, print_line, print_note
@@ -123,9 +124,9 @@ def _report(results: RunResults, outputs: Outputs) -> None:
     from robbdd_tools.run.junit import junit
 
     if outputs.report is not None:
-        outputs.report.write_text(printable_json(results.as_json(), indent=1) + "\n", encoding="utf-8")
+        replace_file(outputs.report, printable_json(results.as_json(), indent=1) + "\n")
     if outputs.junit is not None:
-        outputs.junit.write_text(junit(results), encoding="utf-8")
+        replace_file(outputs.junit, junit(results))
 
 
 def _record(folder: Path, target: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.writing import replacing
 from robbdd_tools.gherkin.feature import Numbered, ScenarioText, every_scenario, feature_file_name, feature_pieces
 from robbdd_tools.gherkin.outline import variable_name
 from robbdd_tools.gherkin.render import Sheet, our_sheet
@@ -93,7 +94,7 @@ def written_scenarios(plan: FeaturePlan, folder: Path) -> Iterator[WrittenScenar
     folder.mkdir(parents=True, exist_ok=True)
     for story in plan.stories:
         path = folder / feature_file_name(plan.model, story)
-        with _created(path) as feature, _created(path.with_name(path.name + MAP_ENDING)) as lines:
+        with replacing(path) as feature, replacing(path.with_name(path.name + MAP_ENDING)) as lines:
             line_map = _LineMap(plan, story, path.name, lines)
             for piece in feature_pieces(plan.model, story, plan.scenarios, plan.sheet):
                 feature.write(piece.text)
@@ -162,10 +163,6 @@ def _sides(origin: Origin) -> tuple[tuple[str, tuple[int, int]], ...]:
 
 def _json(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
-
-
-def _created(path: Path) -> TextIO:
-    return path.open("w", encoding="utf-8", newline="\n")
 
 
 def _clause_iris(story: Story) -> dict[Iri, None]:

@@ -7,9 +7,10 @@ import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import UnreadableFile, load_text
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -69,18 +70,16 @@ def our_sheet(name: str = OURS[0]) -> Sheet:
 
 def _user_sheet(file: str) -> Sheet:
     try:
-        source = Path(file).read_text(encoding="utf-8")
-    except OSError as error:
+        source = load_text(Path(file))
+    except UnreadableFile as error:
         known = ", ".join(OURS)
-        raise TemplateProblem(file, 0, f"{error.strerror or error} (templates that come along: {known})") from None
-    except UnicodeDecodeError:
-        raise TemplateProblem(file, 0, "the template is not UTF-8 text") from None
+        raise TemplateProblem(file, 0, f"{error} (templates that come along: {known})") from None
     return _sheet(file, source, user=True)
 
 
 def _our_source(name: str) -> str | None:
     known = [f"{own}{ENDING}" for own in OURS]
-    return (files("robbdd_tools.gherkin") / "templates" / name).read_text(encoding="utf-8") if name in known else None
+    return load_text(Path(__file__).parent / "templates" / name) if name in known else None
 
 
 def _sheet(file: str, source: str, *, user: bool) -> Sheet:

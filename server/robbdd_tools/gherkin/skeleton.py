@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from keyword import iskeyword
 from pathlib import Path
 
+from robbdd_tools.base.files import load_text
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.steps import StepWriter
@@ -89,13 +92,13 @@ def free_patterns(model: AcceptanceModel) -> list[Pattern]:
 def add_steps(wanted: Collection[Pattern], target: Path, name: str) -> int:
     """Add what a file of steps lacks, making it where it is missing; return how many functions are new.
 
-    Raises ``OSError``, ``UnicodeDecodeError``, and ``SyntaxError`` when the file is not Python.
+    Raises ``OSError``, and ``SyntaxError`` when the file is not Python.
     """
-    existing = target.read_text(encoding="utf-8") if target.exists() else None
+    existing = load_text(target) if os.path.lexists(target) else None
     text, new = skeleton(wanted, existing, name)
     if new:
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(text, encoding="utf-8", newline="\n")
+        replace_file(target, text)
     return new
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from dataclasses import dataclass
@@ -39,7 +40,7 @@ def nearest_setting(uri: str, key: str, form: str) -> Setting | None:
     for folder in path.parents if path is not None else ():
         for name in ("robbdd.toml", "pyproject.toml"):
             file = folder / name
-            found = _setting(file, key, form) if file.is_file() else None
+            found = _setting(file, key, form) if os.path.lexists(file) else None
             if found is not None:
                 return found
     return None

@@ -15,7 +15,9 @@ from urllib.error import URLError
 from urllib.parse import urlsplit
 
 from robbdd_tools.base.data import data_file
-from robbdd_tools.base.files import LARGEST_FILE, Unreadable, read_text, uri_to_path
+from robbdd_tools.base.files import Unreadable, load_text, read_text, uri_to_path
+from robbdd_tools.base.limits import MIB, MODEL_SIZE
+from robbdd_tools.base.writing import replace_file
 
 Json = dict[str, Any]
 CONTEXT_FILE = "context.jsonld"
@@ -62,15 +64,15 @@ class ContextLoader:
         opener = urllib.request.build_opener(_Redirects(self._check))
         try:
             with opener.open(urllib.request.Request(url, headers={"Accept": _WANTED}), timeout=TIMEOUT) as answer:
-                data = answer.read(LARGEST_FILE + 1)
+                data = answer.read(MODEL_SIZE.value() + 1)
             text = data.decode("utf-8-sig")
         except UnicodeDecodeError:
             raise UnknownContext(f"the context '{url}' is not UTF-8 text") from None
         except (URLError, OSError) as error:
             reason = getattr(error, "reason", None) or error
             raise UnknownContext(f"the context '{url}' cannot be fetched: {reason}") from error
-        if len(data) > LARGEST_FILE:
-            raise UnknownContext(f"the context '{url}' is larger than {LARGEST_FILE // 1048576} MiB")
+        if len(data) > MODEL_SIZE.value():
+            raise UnknownContext(f"the context '{url}' is larger than {MODEL_SIZE.value() / MIB:.3g} MiB")
         _json(url, text)
         _keep(url, text)
         return text
@@ -99,7 +101,7 @@ class _Redirects(urllib.request.HTTPRedirectHandler):
 @cache
 def bundled_context() -> Json:
     """Return our JSON-LD context."""
-    text = data_file("metamodels", CONTEXT_FILE).read_text(encoding="utf-8")
+    text = load_text(data_file("metamodels", CONTEXT_FILE))
     return cast(Json, json.loads(text)["@context"])
 
 
@@ -137,7 +139,7 @@ def _hash(text: str) -> str:
 def _cached(url: str) -> str | None:
     """Return a kept copy whose text is still the one that was fetched."""
     try:
-        entry = cast(Json, json.loads(_place(url).read_text(encoding="utf-8")))
+        entry = cast(Json, json.loads(load_text(_place(url))))
         text = str(entry["text"])
         return text if entry["url"] == url and entry["sha256"] == _hash(text) else None
     except (OSError, ValueError, KeyError, TypeError):
@@ -148,8 +150,6 @@ def _keep(url: str, text: str) -> None:
     place = _place(url)
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
-        fresh = place.with_suffix(f".{os.getpid()}")
-        fresh.write_text(json.dumps({"url": url, "sha256": _hash(text), "text": text}), encoding="utf-8")
-        fresh.replace(place)
+        replace_file(place, json.dumps({"url": url, "sha256": _hash(text), "text": text}))
     except OSError as error:
         raise UnknownContext(f"the context '{url}' cannot be kept in {place.parent}: {error.strerror}") from error

@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.base.data import data_file, data_folder
+from robbdd_tools.base.files import load_text
 from robbdd_tools.graph.prefixes import bind_prefixes, user_prefixes
 from robbdd_tools.graph.vocabulary import expand
 
@@ -87,14 +88,14 @@ def run_query(graph: Graph, text: str) -> Rows:
 def ready_queries() -> dict[str, str]:
     """Return the names of the queries that come with us and what each tells."""
     paths = sorted(data_folder("metamodels", FOLDER).glob("*.rq"))
-    return {path.stem: path.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ") for path in paths}
+    return {path.stem: load_text(path).partition("\n")[0].lstrip("# ") for path in paths}
 
 
 def ready_query(name: str) -> str | None:
     """Return the text of a query that comes with us, ``None`` when there is none of this name."""
     if name not in ready_queries():
         return None
-    return data_file("metamodels", f"{FOLDER}/{name}.rq").read_text(encoding="utf-8")
+    return load_text(data_file("metamodels", f"{FOLDER}/{name}.rq"))
 
 
 def _fast_copy(graph: Graph) -> Graph:

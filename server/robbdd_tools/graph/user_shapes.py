@@ -93,7 +93,7 @@ def _matches(folder: Path, patterns: Sequence[str]) -> tuple[list[Path], list[st
     problems: list[str] = []
     for pattern in patterns:
         try:
-            matched = sorted(path for path in folder.glob(pattern) if path.is_file())
+            matched = sorted(path for path in folder.glob(pattern) if not path.is_dir())
         # pathlib raises NotImplementedError for a pattern that is an absolute path.
         except (ValueError, NotImplementedError, OSError) as error:
             problems.append(f"'{pattern}' is no file pattern: {error}")

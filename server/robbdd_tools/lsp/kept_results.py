@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import logging
-import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.files import load_text, uri_to_path
+from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.features.results import JudgedScenario, as_json, from_json
 
 FOLDER = ".robbdd"
@@ -47,10 +48,8 @@ def _lies_in(uri: str, folder: Path) -> bool:
 
 def _read(path: Path) -> list[JudgedScenario]:
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = json.loads(load_text(path, RESULT_SIZE))
         return [from_json(entry) for entry in data["scenarios"]] if data["version"] == VERSION else []
-    except FileNotFoundError:
-        return []
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         _LOG.info("results in %s cannot be read: %s", path, error)
         return []
@@ -61,7 +60,5 @@ def _write(folder: Path, text: str) -> None:
     folder.mkdir(exist_ok=True)
     ignored = folder / ".gitignore"
     if not ignored.exists():
-        ignored.write_text("*\n", encoding="utf-8")
-    fresh = folder / f"{FILE}.{os.getpid()}"
-    fresh.write_text(text, encoding="utf-8")
-    fresh.replace(folder / FILE)
+        replace_file(ignored, "*\n")
+    replace_file(folder / FILE, text)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.files import file_state, load_bytes, path_to_uri
 from robbdd_tools.run.pictures import NoPictures, render_thumbnails
 from robbdd_tools.run.plot import plot
 from robbdd_tools.run.protocol import thumbnail_file
@@ -64,9 +64,10 @@ def _shown(run: StoredRun, index: int, line: int, drawn: str | None) -> Iterator
     if drawn is not None:
         yield f"![margin over time]({_data('image/svg+xml', drawn.encode())})"
     path = thumbnail_file(run.folder / THUMBNAILS, index, line)
-    if path.is_file():
-        small = path.stat().st_size <= LARGEST
-        yield f"![the moment of the violation]({_data('image/png', path.read_bytes()) if small else path_to_uri(path)})"
+    state = file_state(path_to_uri(path))
+    if state is not None:
+        shown = _data("image/png", load_bytes(path)) if state.size <= LARGEST else path_to_uri(path)
+        yield f"![the moment of the violation]({shown})"
 
 
 def _data(kind: str, data: bytes) -> str:

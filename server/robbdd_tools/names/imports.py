@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import posixpath
+import re
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from importlib.machinery import PathFinder
@@ -20,13 +21,19 @@ IMPORTABLE: Mapping[str, tuple[str, ...]] = {
 }
 """The kinds of file that each kind may import."""
 _PACKAGE = "package:"
+_ADDRESS = "address:"
+# URLs, and the shared folders of other machines as Windows and URLs write them.
+_ADDRESSES = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*://|file:|//|\\\\")
 
 
 def import_uri(importer: str, path: str) -> str:
     """Return the URI that an import's path means: relative to its file, or ``package:path`` inside a package.
 
-    A file of a package that is not installed has a URI by which ``missing_package`` knows it.
+    A file of a package that is not installed has a URI by which ``missing_package`` knows it, an address of another
+    machine or a URL one by which ``not_a_path`` does: nothing is read from there.
     """
+    if _ADDRESSES.match(path):
+        return f"{_ADDRESS}{quote(path)}"
     package, colon, inside = path.partition(":")
     # One letter is a drive of Windows; a package's code must not run, so that only its place is looked up.
     if not colon or not package.isidentifier() or len(package) == 1 or inside.startswith("//"):
@@ -55,6 +62,13 @@ def missing_package(uri: str) -> str | None:
         f"the package '{package}' is not installed here, so that the names of '{inside}' are unknown: "
         "install it, or import the file by its path"
     )
+
+
+def not_a_path(uri: str) -> str | None:
+    """Say that an import is an address instead of a path; ``None`` when it is none."""
+    if not uri.startswith(_ADDRESS):
+        return None
+    return f"'{unquote(uri.removeprefix(_ADDRESS))}' is an address: import a file of this machine by its path"
 
 
 def not_importable(importer: str, imported: str) -> str | None:

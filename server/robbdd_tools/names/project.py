@@ -11,7 +11,7 @@ from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text, too_large, uri_to_path
 from robbdd_tools.names.analyse import Resolved, analyse, syntax_errors
 from robbdd_tools.names.analysis import FileAnalysis, ImportLink
-from robbdd_tools.names.imports import missing_package, not_importable, reached
+from robbdd_tools.names.imports import missing_package, not_a_path, not_importable, reached
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 from robbdd_tools.names.scope import Scope
 
@@ -188,7 +188,9 @@ class Snapshot:
     def _import_problem(self, index: FileIndex, uri: str) -> str | None:
         if uri == index.document.uri:
             return "the file imports itself: remove this import"
-        problem = not_importable(language_of(index.document.uri), language_of(uri)) or missing_package(uri)
+        problem = (
+            not_a_path(uri) or not_importable(language_of(index.document.uri), language_of(uri)) or missing_package(uri)
+        )
         if problem is not None:
             return problem
         source = self.sources.get(uri)

@@ -9,6 +9,8 @@ from contextlib import suppress
 from pathlib import Path
 from time import monotonic
 
+from robbdd_tools.base.files import load_bytes
+from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.processes import describe_exit, end_group, own_group, request_end
 from robbdd_tools.run.protocol import Execute, LogLine, RunMessage, decode, encode
 
@@ -94,7 +96,7 @@ class Agent:
 
     def _last_log_line(self) -> str:
         try:
-            lines = self._log.read_text(encoding="utf-8", errors="replace").split("\n")
+            lines = load_bytes(self._log, RESULT_SIZE).decode(errors="replace").split("\n")
         except OSError:
             return ""
         return next((line.strip() for line in reversed(lines) if line.strip()), "")

@@ -12,7 +12,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from robbdd_tools.base.files import load_text
+from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.plain import from_plain
+from robbdd_tools.base.writing import replacing
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.run.protocol import ClauseSpec, ConfigSpec, ExecutionSpec, Manifest, ScenarioSpec, SceneSpec
 
@@ -26,7 +29,7 @@ def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioS
     """
     executions: dict[str, ExecutionSpec] = {}
     trees: dict[str, TreeSpec] = {}
-    with (folder / MANIFEST).open("w", encoding="utf-8", newline="\n") as file:
+    with replacing(folder / MANIFEST) as file:
         begin = {"model": head.model, "seed": head.seed, "traces": head.traces, "sources": dict(head.sources)}
         file.write(_json(begin)[:-1] + ', "scenarios": [')
         separator = "\n"
@@ -45,7 +48,7 @@ def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioS
 
 def read_manifest(folder: Path) -> Manifest:
     """Read the manifest of a run folder; raises ``OSError``, ``ValueError``, ``KeyError`` or ``TypeError``."""
-    data = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    data = json.loads(load_text(folder / MANIFEST, RESULT_SIZE))
     executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
     trees = {entry["name"]: from_plain(TreeSpec, entry) for entry in data.get("trees", ())}
     scenarios = tuple(_scenario(entry, executions, trees) for entry in data["scenarios"])

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.files import load_bytes, uri_to_path
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.gherkin.feature import Numbered, every_scenario
 from robbdd_tools.gherkin.files import FeaturePlan, only, whole_plan, written_scenarios
 from robbdd_tools.gherkin.skeleton import steps_file
@@ -96,11 +98,11 @@ def bring_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, 
     """
     path = uri_to_path(model) if model.startswith("file:") else Path(model)
     own = None if path is None else steps_file(path)
-    if own is None or not own.is_file():
+    if own is None or not os.path.lexists(own):
         return {}
     steps = folder / FEATURES / "steps"
     steps.mkdir(parents=True, exist_ok=True)
-    (steps / name).write_bytes(own.read_bytes())
+    replace_file(steps / name, load_bytes(own))
     return {f"{FEATURES}/steps/{name}": str(own.resolve())}
 
 
@@ -118,8 +120,8 @@ def lay_out(
 def _written(parts: Sequence[_Part], head: Manifest, folder: Path) -> Iterator[ScenarioSpec]:
     features = folder / FEATURES
     (features / "steps").mkdir(parents=True, exist_ok=True)
-    (features / "environment.py").write_text(_ENVIRONMENT, encoding="utf-8", newline="\n")
-    (features / "steps" / "catalog_steps.py").write_text(_STEPS, encoding="utf-8", newline="\n")
+    replace_file(features / "environment.py", _ENVIRONMENT)
+    replace_file(features / "steps" / "catalog_steps.py", _STEPS)
     specs = (spec for part in parts for spec in part.specs(folder))
     yield from written_manifest(folder, head, specs)
 
@@ -175,5 +177,5 @@ def _stories(stories: Iterable[Story], wanted: Callable[[Iri], bool]) -> tuple[S
 def write_surroundings(folder: Path, model_name: str, json_ld: str) -> None:
     """Add what plain behave and readers of graphs want: ``behave.ini`` and the model as JSON-LD. Raises ``OSError``."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "behave.ini").write_text(_BEHAVE, encoding="utf-8", newline="\n")
-    (folder / f"{model_name}.jsonld").write_text(json_ld, encoding="utf-8", newline="\n")
+    replace_file(folder / "behave.ini", _BEHAVE)
+    replace_file(folder / f"{model_name}.jsonld", json_ld)

@@ -9,7 +9,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.files import load_text, path_to_uri
+from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.protocol import ScenarioSpec, curves_file, trace_file
 from robbdd_tools.run.report import plain_sentence, values_words
@@ -107,7 +108,7 @@ def kept_curves(run: StoredRun, index: int) -> Mapping[str, Any]:
     """Return what is kept beside a trace: duration, remark, events, curves by feature line; raises ``NoTrace``."""
     path = curves_file(run.folder, index)
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        return json.loads(load_text(path, RESULT_SIZE))
     except (OSError, ValueError) as error:
         raise NoTrace(f"{path} cannot be read: {error}") from error
 

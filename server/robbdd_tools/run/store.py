@@ -14,8 +14,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
-from robbdd_tools.base.files import full_path
+from robbdd_tools.base.files import full_path, load_text
+from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.printable import printable_json
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import Manifest
 
@@ -93,7 +95,7 @@ class StoredRun:
     def _json(self, name: str) -> dict[str, Any]:
         path = self.folder / name
         try:
-            found: object = json.loads(path.read_text(encoding="utf-8"))
+            found: object = json.loads(load_text(path, RESULT_SIZE))
         except FileNotFoundError:
             raise NoSuchRun(f"{self.folder} holds no finished run: there is no {name}") from None
         except (OSError, ValueError) as error:
@@ -122,7 +124,7 @@ class RunStore:
         self.folder.mkdir(parents=True, exist_ok=True)
         ignore = self.folder / ".gitignore"
         if not ignore.exists():
-            ignore.write_text("*\n", encoding="utf-8")
+            replace_file(ignore, "*\n")
         runs = self.runs()
         number = runs[-1].number if runs else 0
         while True:
@@ -173,6 +175,4 @@ def shown_path(path: Path) -> str:
 
 def _write(path: Path, document: object) -> None:
     """Write a document as a whole: who reads meanwhile, an editor that follows the runs, gets the old one or this."""
-    fresh = path.with_suffix(".new")
-    fresh.write_text(printable_json(document, indent=1) + "\n", encoding="utf-8", newline="\n")
-    fresh.replace(path)
+    replace_file(path, printable_json(document, indent=1) + "\n")

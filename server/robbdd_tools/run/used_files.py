@@ -11,16 +11,14 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
-from xml.etree import ElementTree
 
-from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.files import load_bytes, uri_to_path
+from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.model_includes import model_files
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource, Origin
     from robbdd_tools.run.protocol import ExecutionSpec, Manifest
-
-FOLDERS = ("meshdir", "texturedir", "assetdir")
-"""Attributes of MJCF and URDF that name where files are looked for."""
 
 
 def digests(manifest: Manifest, folder: Path) -> dict[str, str]:
@@ -37,7 +35,7 @@ def changed(known: Mapping[str, str], folder: Path) -> list[Path]:
 
 def _digest(path: Path) -> str:
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        return hashlib.sha256(load_bytes(path, RESULT_SIZE)).hexdigest()
     except OSError:
         return ""
 
@@ -49,7 +47,7 @@ def _used(manifest: Manifest) -> Iterator[Path]:
             if source.kind == "python":
                 yield from _modules(source.name, _folder(source.origin, model))
             elif source.kind in ("file", "ros"):
-                yield from _with_includes(_path(source), {})
+                yield from (path for path in model_files(_path(source)) if path.is_file())
         for name, origin in _code(execution):
             yield from _modules(name, _folder(origin, model))
 
@@ -88,22 +86,6 @@ def _path(source: ModelSource) -> Path:
     return path if source.origin is None else Path(source.origin.file).parent / path
 
 
-def _with_includes(path: Path, seen: dict[Path, None]) -> Iterator[Path]:
-    """Yield a model file and the files that it names: included models, meshes, pictures."""
-    if path in seen or not path.is_file():
-        return
-    seen[path] = None
-    yield path
-    try:
-        root = ElementTree.parse(path).getroot()
-    except (ElementTree.ParseError, UnicodeDecodeError, OSError):
-        return
-    places = [path.parent, *(path.parent / element.get(name, "") for element in root.iter() for name in FOLDERS)]
-    for name in (element.get("file") or element.get("filename") for element in root.iter()):
-        found = (place / name.removeprefix("file://") for place in places) if name else ()
-        yield from _with_includes(next((one for one in found if one.is_file()), path), seen)
-
-
 def _modules(name: str, folder: Path) -> Iterator[Path]:
     """Yield the file of ``module:attribute`` in a folder, and those that it imports from there."""
     seen: dict[Path, None] = {}
@@ -124,7 +106,7 @@ def _module(name: str, folder: Path) -> Path | None:
 
 def _imports(path: Path) -> Iterable[str]:
     try:
-        module = ast.parse(path.read_bytes())
+        module = ast.parse(load_bytes(path))
     except (SyntaxError, ValueError, OSError):
         return
     for node in ast.walk(module):

@@ -12,6 +12,7 @@ from threading import RLock
 from typing import Any
 
 from robbdd_tools.base.data import data_file
+from robbdd_tools.base.files import load_text
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax.grammar import GrammarError, read_grammar
 from robbdd_tools.syntax.peg import Compiled, State
@@ -79,9 +80,7 @@ ROOTS = {"scenario": "ScenarioChunk"}
 @cache
 def grammar_text(language: str) -> str:
     """Return the whole grammar of a file kind: its own rules, the shared ones, the phrases of the catalog."""
-    grammars = [
-        data_file("grammar", f"{name}.tx").read_text(encoding="utf-8") for name in (grammar_name(language), "base")
-    ]
+    grammars = [load_text(data_file("grammar", f"{name}.tx")) for name in (grammar_name(language), "base")]
     if grammar_name(language) == "bdd":
         grammars.append(phrase_rules(load_catalog()))
     return "\n".join(grammars)

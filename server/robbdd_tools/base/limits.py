@@ -1,0 +1,93 @@
+"""Limits that keep hostile or broken input from taking the machine; the user may change each, a folder none.
+
+A limit is read from its environment variable, so that the processes that we start have the same ones; the server sets
+these variables from the editor's setting ``robbdd.limits``. See docs/limits.md.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import cast
+
+MIB = 1024 * 1024
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A positive whole number that the user can change; ``variable`` is its environment variable."""
+
+    name: str
+    default: int
+    unit: str
+
+    @property
+    def variable(self) -> str:
+        """The environment variable that replaces the default."""
+        return f"ROBBDD_LIMIT_{self.name.replace('-', '_').upper()}"
+
+    def value(self) -> int:
+        """Return the limit in force; a variable that is no positive whole number is ignored."""
+        stated = os.environ.get(self.variable, "")
+        return int(stated) if _is_positive(stated) else self.default
+
+    def use(self, value: int | None) -> None:
+        """Set the limit for this process and those that it starts; ``None`` restores the default."""
+        os.environ.pop(self.variable, None)
+        if value is not None:
+            os.environ[self.variable] = str(value)
+
+
+MODEL_SIZE = Limit("model-size", 8 * MIB, "bytes")
+"""A model, setting, template, query or shapes file; people write far smaller ones."""
+RESULT_SIZE = Limit("result-size", 512 * MIB, "bytes")
+"""A file of a run (results, manifest, trace), a mesh or a picture of a scene's model."""
+MESSAGE_SIZE = Limit("message-size", 64 * MIB, "bytes")
+"""The content of one message to the language server."""
+SCANNED_ENTRIES = Limit("scanned-entries", 200_000, "files and folders")
+"""Entries that one search of a folder looks at."""
+SCANNED_DEPTH = Limit("scanned-depth", 32, "levels of folders")
+"""Folders inside each other that one search enters."""
+TEMPLATE_SECONDS = Limit("template-seconds", 10, "seconds")
+"""Time for one block of a user's Gherkin template."""
+TEMPLATE_SIZE = Limit("template-size", 8 * MIB, "characters")
+"""Text that one block of a user's Gherkin template may give."""
+VALIDATION_SECONDS = Limit("validation-seconds", 120, "seconds")
+"""Time for one validation of a file; that of 10,000 lines takes about 5 s of processor."""
+
+LIMITS: Mapping[str, Limit] = {
+    limit.name: limit
+    for limit in (
+        MODEL_SIZE,
+        RESULT_SIZE,
+        MESSAGE_SIZE,
+        SCANNED_ENTRIES,
+        SCANNED_DEPTH,
+        TEMPLATE_SECONDS,
+        TEMPLATE_SIZE,
+        VALIDATION_SECONDS,
+    )
+}
+
+
+def use_limits(stated: object) -> str | None:
+    """Set the limits that an editor states as an object by name, and restore the others.
+
+    Returns what is wrong with the setting, ``None`` when it is sound; a wrong one changes nothing.
+    """
+    values = cast("dict[object, object]", stated) if isinstance(stated, dict) else {}
+    for name, value in values.items():
+        if name not in LIMITS:
+            return f"The setting 'robbdd.limits' has no limit '{name}'; there are {', '.join(LIMITS)}."
+        if not isinstance(value, int) or isinstance(value, bool) or value <= 0:
+            return f"The limit '{name}' in 'robbdd.limits' is a positive whole number of {LIMITS[str(name)].unit}."
+    if stated is not None and not isinstance(stated, dict):
+        return "The setting 'robbdd.limits' is an object, such as {\"model-size\": 16777216}."
+    for name, limit in LIMITS.items():
+        limit.use(cast("int | None", values.get(name)))
+    return None
+
+
+def _is_positive(text: str) -> bool:
+    return text.isascii() and text.isdecimal() and len(text) < 19 and int(text) > 0

@@ -1,0 +1,44 @@
+"""The files that an MJCF or URDF file makes its engine read: included models, meshes, pictures."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+from robbdd_tools.base.files import Unreadable, UnreadableFile, load_bytes, unreadable
+
+FOLDERS = ("meshdir", "texturedir", "assetdir")
+"""Attributes of MJCF and URDF that name where files are looked for."""
+
+
+def model_files(path: Path) -> Iterator[Path]:
+    """Yield a model file and the files that it names, each once, as far as they exist and whatever kind they have."""
+    seen: dict[Path, None] = {}
+    waiting = [path]
+    while waiting:
+        current = waiting.pop()
+        if current in seen or not os.path.lexists(current):
+            continue
+        seen[current] = None
+        yield current
+        waiting += reversed(list(_named(current)))
+
+
+def unusable(path: Path) -> Unreadable | None:
+    """Return why an engine cannot be given a model file: the first file of it that is no regular one, if any."""
+    named = [path, *model_files(path)]
+    return next((problem for file in named if (problem := unreadable(file)) is not None), None)
+
+
+def _named(path: Path) -> Iterator[Path]:
+    try:
+        root = ElementTree.fromstring(load_bytes(path))
+    except (ElementTree.ParseError, LookupError, ValueError, UnreadableFile):
+        return
+    places = [path.parent, *(path.parent / element.get(name, "") for element in root.iter() for name in FOLDERS)]
+    for name in (element.get("file") or element.get("filename") for element in root.iter()):
+        if name:
+            found = (place / name.removeprefix("file://") for place in dict.fromkeys(places))
+            yield from (one for one in found if os.path.lexists(one))

@@ -1,0 +1,131 @@
+"""Writes files whole: whoever reads one, or finds it after a crash or on a full disk, gets the old or the new content.
+
+The content goes to a temporary file in the same folder, is synced, and takes the place of the old file at the end.
+Mode and owner stay, and a symbolic link stays a link: the file that it leads to is replaced. A file with several hard
+links keeps them, see ``_overwrite``. Existing pipes and devices (``/dev/stdout``) are written to as they are.
+"""
+
+from __future__ import annotations
+
+import errno
+import io
+import os
+import secrets
+import stat
+from collections.abc import Generator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import BinaryIO, TextIO
+
+TEMPORARY = ".robbdd-"
+"""What the names of temporary files begin with; they end in ``.tmp``, so that no reader takes them for its own."""
+
+_STREAMS = (("dev",), ("proc",))
+"""First folders of paths that name an open stream, such as ``/dev/stdout``, even one that is sent to a file."""
+
+
+def replace_file(path: Path, content: str | bytes) -> None:
+    """Write a file whole, text as UTF-8 with ``\\n``; on an error the old file is untouched. Raises ``OSError``."""
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    with replacing_bytes(path) as file:
+        file.write(data)
+
+
+@contextmanager
+def replacing(path: Path) -> Generator[TextIO]:
+    """Open a UTF-8 text file that takes its place at the end of the block; on an exception it leaves no trace.
+
+    Raises ``OSError``.
+    """
+    with replacing_bytes(path) as file:
+        text = io.TextIOWrapper(file, encoding="utf-8", newline="\n")
+        yield text
+        text.flush()
+        text.detach()
+
+
+@contextmanager
+def replacing_bytes(path: Path) -> Generator[BinaryIO]:
+    """Open a file that takes its place at the end of the block, see ``replacing``."""
+    status = _status(path)
+    if status is not None and (not stat.S_ISREG(status.st_mode) or path.absolute().parts[1:2] in _STREAMS):
+        with path.open("wb") as stream:
+            yield stream
+        return
+    target = Path(os.path.realpath(path))
+    fresh = target.with_name(f"{TEMPORARY}{secrets.token_hex(8)}.tmp")
+    try:
+        with _created(fresh, path) as file:
+            yield file
+            file.flush()
+            if status is not None:
+                _take_over(file.fileno(), status)
+            os.fsync(file.fileno())
+        if status is not None and status.st_nlink > 1:
+            _overwrite(target, fresh)
+        else:
+            fresh.replace(target)
+        _sync_folder(target.parent)
+    except OSError as error:
+        # The user knows the file that was asked for, not the temporary one.
+        if error.filename in (None, str(fresh)):
+            error.filename, error.filename2 = str(path), None
+        raise
+    finally:
+        with suppress(OSError):
+            fresh.unlink(missing_ok=True)
+
+
+def _status(path: Path) -> os.stat_result | None:
+    """Return the status of an existing file that may be written; raises ``OSError`` for one that may not."""
+    try:
+        status = path.stat()
+    except FileNotFoundError:
+        return None
+    if stat.S_ISDIR(status.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if not os.access(path, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+    return status
+
+
+def _created(fresh: Path, path: Path) -> BinaryIO:
+    if not fresh.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path.parent))
+    return fresh.open("xb")
+
+
+def _take_over(descriptor: int, status: os.stat_result) -> None:
+    """Give a new file the owner and the mode of the one that it replaces."""
+    if hasattr(os, "fchown"):
+        # Only a privileged user can give files away; others own what they replace.
+        with suppress(PermissionError):
+            os.fchown(descriptor, status.st_uid, status.st_gid)
+    if hasattr(os, "fchmod"):
+        os.fchmod(descriptor, stat.S_IMODE(status.st_mode))
+
+
+def _overwrite(target: Path, fresh: Path) -> None:
+    """Write the content of a complete new file into an old one that has other names too.
+
+    Its other names show the new content. Where this fails halfway, the new file takes the place of this name.
+    """
+    data = fresh.read_bytes()
+    try:
+        with target.open("r+b") as file:
+            file.write(data)
+            file.truncate()
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError:
+        fresh.replace(target)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make a rename durable where folders can be opened; elsewhere the system does what it can."""
+    with suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
