@@ -15,6 +15,7 @@ from typing import Any
 
 from robbdd_tools import __version__
 from robbdd_tools.base.data import PACKAGE
+from robbdd_tools.base.files import load_text
 
 DISTRIBUTION = "robbdd-tools"
 REINSTALL = f"python -m pip install --force-reinstall {DISTRIBUTION}"
@@ -134,7 +135,7 @@ def _extensions() -> Iterator[tuple[Path, str]]:
     for editor_folder in EDITORS:
         for manifest in sorted((Path.home() / editor_folder / "extensions").glob(f"{EXTENSION}-*/package.json")):
             try:
-                stated: dict[str, Any] = json.loads(manifest.read_text(encoding="utf-8"))
+                stated: dict[str, Any] = json.loads(load_text(manifest))
                 yield manifest.parent, str(stated.get("version"))
             except (OSError, ValueError, AttributeError):
                 yield manifest.parent, "unreadable"

@@ -10,8 +10,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from robbdd_tools.base.files import load_text
 from robbdd_tools.base.processes import Ending, describe_exit, run_for
 from robbdd_tools.base.scaffold import begin_project
+from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands.installation import REINSTALL, SECONDS, Unavailable
 from robbdd_tools.run.pictures import advice, back_ends
 from robbdd_tools.run.store import NoSuchRun, StoredRun, store_beside
@@ -45,7 +47,7 @@ def shapes(folder: Path) -> str:
     faulty = folder.with_name("faulty")
     begin_project(faulty, EXAMPLE)
     model = faulty / MODEL
-    model.write_text(model.read_text(encoding="utf-8").replace(_TASK, ""), encoding="utf-8")
+    replace_file(model, load_text(model).replace(_TASK, ""))
     done = _robbdd("check", model)
     if _MISSING_TASK not in done.output:
         raise _broken("SHACL misses a fault that was planted", done)
@@ -57,9 +59,9 @@ def features(folder: Path) -> str:
     target = folder.with_name("gherkin")
     done = _robbdd("gherkin", folder / MODEL, "-o", target)
     written = sorted(target.rglob("*.feature"))
-    if done.code != 0 or not written or "Scenario" not in written[0].read_text(encoding="utf-8"):
+    if done.code != 0 or not written or "Scenario" not in load_text(written[0]):
         raise _broken("no feature was written", done)
-    return f"{written[0].name} with {len(written[0].read_text(encoding='utf-8').splitlines())} lines"
+    return f"{written[0].name} with {len(load_text(written[0]).splitlines())} lines"
 
 
 def simulation(folder: Path) -> str:
