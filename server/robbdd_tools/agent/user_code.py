@@ -14,7 +14,7 @@ from traceback import extract_tb
 from typing import Any
 
 from robbdd_tools.agent.output import encodable
-from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.files import load_bytes, uri_to_path
 from robbdd_tools.monitor.fault import Fault, Frame
 
 MOST_FRAMES = 20
@@ -113,7 +113,7 @@ def _is_library(file: str) -> bool:
 def _with_digest(fault: Fault) -> Fault:
     place = fault.place
     try:
-        digest = "" if place is None else hashlib.sha256(Path(place.file).read_bytes()).hexdigest()
+        digest = "" if place is None else hashlib.sha256(load_bytes(Path(place.file))).hexdigest()
     except OSError:
         digest = ""
     return replace(fault, digest=digest)
