@@ -12,9 +12,9 @@ import stat
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
-from urllib.parse import unquote, urlsplit
 
 from robbdd_tools.base.limits import MIB, MODEL_SIZE, Limit
+from robbdd_tools.base.uris import path_of, uri_of
 
 # Absent on Windows, where no path of a folder names a pipe.
 _OPENING = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
@@ -76,21 +76,13 @@ def full_path(path: Path) -> Path:
 
 def path_to_uri(path: Path) -> str:
     """Return the ``file:`` URI of a path, see ``full_path``."""
-    return full_path(path).as_uri()
+    return uri_of(full_path(path))
 
 
 def uri_to_path(uri: str) -> Path | None:
-    """Return the path of a ``file:`` URI, ``None`` for any other scheme and for files of another machine."""
-    parts = urlsplit(uri)
-    if parts.scheme != "file":
-        return None
-    path = unquote(parts.path)
-    if parts.netloc not in ("", "localhost"):
-        # The shared folder of another machine, which only Windows reads by such a path.
-        return Path(f"//{parts.netloc}{path}") if os.name == "nt" else None
-    if len(path) > 2 and path[0] == "/" and path[2] == ":":
-        path = path[1:]
-    return Path(path)
+    """Return the path of a ``file:`` URI, or ``None`` where it has none, see ``path_of``."""
+    path = path_of(uri)
+    return None if path is None else Path(path)
 
 
 def too_large(name: str, size: int, limit: Limit = MODEL_SIZE) -> Unreadable | None:

@@ -7,12 +7,14 @@ import logging
 from collections.abc import Generator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from typing import Any
+from typing import Any, cast
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 from pygls.protocol import LanguageServerProtocol, lsp_method
 from pygls.protocol.json_rpc import JsonRPCNotification
+
+from robbdd_tools.base.uris import canonical_uri
 
 _LOG = logging.getLogger(__name__)
 
@@ -40,7 +42,7 @@ class Protocol(LanguageServerProtocol):
     def structure_message(self, data: dict[str, Any]) -> Any:
         """Read a message; one with unusable parameters is answered, as nobody else will."""
         try:
-            return super().structure_message(data)
+            return super().structure_message(with_canonical_uris(data))
         except JsonRpcException as error:
             if "id" in data and "method" in data:
                 told = f"the parameters of {data['method']} are not as the protocol has them"
@@ -62,6 +64,20 @@ class Protocol(LanguageServerProtocol):
 
     def _write(self, data: Any) -> None:
         super()._send_data(data)
+
+
+def with_canonical_uris(message: Any) -> Any:
+    """Return a message in which every file has one URI, however its client writes it; documents' texts stay."""
+    match message:
+        case str():
+            return canonical_uri(message)
+        case dict():
+            fields = cast("dict[str, Any]", message)
+            return {name: value if name == "text" else with_canonical_uris(value) for name, value in fields.items()}
+        case list():
+            return [with_canonical_uris(entry) for entry in cast("list[Any]", message)]
+        case _:
+            return message
 
 
 class LoopWriter:

@@ -1,0 +1,54 @@
+"""``file:`` URIs and the paths of POSIX and of Windows.
+
+One file has several URIs: clients differ in which characters they escape, in the case of a drive's letter, and in
+whether they write ``file:/`` or ``file:///``. Inside, a file has one: the one that VS Code uses.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePath, PureWindowsPath
+from urllib.parse import quote, unquote
+
+HERE = type(PurePath())
+"""The paths of this system."""
+_FILE = re.compile(r"file:(?://([^/?#]*))?(/[^?#]*)", re.IGNORECASE)
+_DRIVE = re.compile(r"/([A-Za-z]):(?=/|$)")
+
+
+def path_of(uri: str, kind: type[PurePath] = HERE) -> PurePath | None:
+    """Return the path of a URI; ``None`` for any scheme but ``file:``, and for another machine's file on POSIX."""
+    found = _FILE.fullmatch(uri)
+    if found is None:
+        return None
+    host, path = _host(found[1]), unquote(found[2], errors="surrogateescape")
+    if issubclass(kind, PureWindowsPath):
+        return kind(f"//{host}{path}") if host else kind(_DRIVE.sub(r"\1:", path, count=1))
+    return None if host else kind(path)
+
+
+def uri_of(path: PurePath) -> str:
+    """Return the URI of an absolute path."""
+    text = quote(path.as_posix(), errors="surrogateescape")
+    if isinstance(path, PureWindowsPath):
+        # A network path names its host; a drive is below the root of this machine.
+        text = f"file:{text}" if text.startswith("//") else f"file:///{text}"
+    else:
+        text = f"file://{text}"
+    return canonical_uri(text, type(path))
+
+
+def canonical_uri(uri: str, kind: type[PurePath] = HERE) -> str:
+    """Return the one URI of a file; any other URI as it is."""
+    found = _FILE.fullmatch(uri)
+    if found is None:
+        return uri
+    path = unquote(found[2], errors="surrogateescape")
+    if issubclass(kind, PureWindowsPath):
+        path = _DRIVE.sub(lambda drive: drive[0].lower(), path, count=1)
+    return f"file://{_host(found[1])}{quote(path, errors='surrogateescape')}"
+
+
+def _host(stated: str | None) -> str:
+    host = (stated or "").lower()
+    return "" if host == "localhost" else host
