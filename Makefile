@@ -21,7 +21,7 @@ lint: $(READY)
 	$(BIN)/pyright
 
 test-python: $(READY)
-	$(BIN)/pytest -m "not workbench" --numprocesses auto --dist worksteal
+	$(BIN)/pytest -m "not workbench" --numprocesses logical --dist worksteal
 
 test-client: $(CLIENT_READY)
 	cd $(CLIENT) && npm run --silent build && npm run --silent lint && npm test --silent

@@ -69,6 +69,18 @@ def test_a_part_that_breaks_is_reported_and_the_others_are_tested(
     ]
 
 
+def test_what_others_named_is_printed_escaped(
+    only: Callable[..., None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    only(package=lambda: "in /home/\x1b[31mred/\u202e")
+    assert main(["doctor", str(tmp_path)]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == r"✔ package     in /home/\x1b[31mred/\u202e"
+    assert main(["doctor", "--json", str(tmp_path)]) == 0
+    written = capsys.readouterr().out
+    assert written.replace("\n", "").isprintable()
+    assert json.loads(written)["parts"][0]["detail"] == "in /home/\x1b[31mred/\u202e"
+
+
 def test_an_optional_part_that_is_missing_does_not_fail_the_command(
     only: Callable[..., None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -21,7 +21,7 @@ COLOUR = re.compile(r"\x1b\[[\d;]+m")
 
 @cache
 def on_terminal(columns: int, term: str = "xterm-256color", **variables: str) -> str:
-    return on_a_terminal(COMMAND, columns, TERM=term, **variables)
+    return on_a_terminal(COMMAND, columns, 0, TERM=term, **variables)
 
 
 @cache

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
@@ -10,8 +9,10 @@ from enum import StrEnum
 from functools import partial
 from pathlib import Path
 
+from robbdd_tools.base.printable import printable_json
 from robbdd_tools.commands import FINDINGS, OK, installation, selftest
 from robbdd_tools.commands.installation import Unavailable
+from robbdd_tools.commands.output import print_document, print_line
 
 REPORT = "this is a fault of RobBDD: report it with the output of `robbdd doctor --json`"
 
@@ -46,7 +47,8 @@ def doctor(path: Path, as_json: bool) -> int:
             _print(part)
     healthy = all(part.state is not State.FAILED for part in parts)
     if as_json:
-        print(json.dumps({"healthy": healthy, "parts": [asdict(part) for part in parts]}, indent=1))
+        document = {"healthy": healthy, "parts": [asdict(part) for part in parts]}
+        print_document(f"{printable_json(document, 1)}\n")
     return OK if healthy else FINDINGS
 
 
@@ -71,8 +73,6 @@ def examine(name: str, test: Callable[[], str]) -> Part:
 
 def _print(part: Part) -> None:
     first, *others = part.detail.splitlines() or [""]
-    print(f"{SIGNS[part.state]} {part.name:<12}{first}", flush=True)
-    for line in others:
-        print(f"  {'':<12}{line}")
-    if part.fix:
-        print(f"  {'':<12}Fix: {part.fix}", flush=True)
+    print_line(f"{SIGNS[part.state]} {part.name:<12}{first}")
+    for line in (*others, *([f"Fix: {part.fix}"] if part.fix else ())):
+        print_line(f"  {'':<12}{line}")
