@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from monitor.traces import heights, still, trace_of
+from robbdd_tools.agent.scene import contents_of
 from robbdd_tools.catalog.api import Arguments, Region
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import Before, During
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.run.protocol import SceneSpec
 
 REGIONS = {
     "tray_ws": (("tray", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),),
@@ -255,3 +257,47 @@ def test_what_was_not_recorded_is_unknown(name: str) -> None:
     predicate = load_catalog().predicates[name]
     words = {slot.name: "tray" for slot in predicate.slots} | {"name": "mass", "value": "1"}
     assert judged(name, world(), **words).outcome is Outcome.UNKNOWN
+
+
+TABLE = {
+    "table_ws": (("table", Region((0.0, 0.0, 0.1), (0.5, 0.5, 0.1))),),
+    "bin_ws": (("bin", Region((0.0, 0.0, 0.06), (0.1, 0.1, 0.05))),),
+}
+COMPOSED = {"table_ws": ("bin_ws",)}
+IN_BIN, ON_FLOOR = (0.0, 0.0, 0.05), (2.0, 0.0, -0.70)
+
+
+def located(
+    place: str, ball: list[list[float]], bin_at: list[list[float]], contents: dict[str, tuple[str, ...]]
+) -> Verdict:
+    bodies = {"table": still(len(ball)), "bin": bin_at, "ball": ball}
+    trace = trace_of(bodies, {"start": 0.0, "end": (len(ball) - 1) * 0.1})
+    words: Arguments = {"object": "ball", "workspace": place}
+    found = replace(trace, contents=contents)
+    return judge(load_catalog().predicates["located-at"], words, During("start", "end"), found, TABLE)
+
+
+def test_what_lies_in_a_bin_is_located_at_the_table_if_the_bin_is_composed_into_it() -> None:
+    in_bin = still(2, IN_BIN), still(2)
+    assert located("bin_ws", *in_bin, {}).robustness == pytest.approx(0.04)
+    assert located("bin_ws", *in_bin, COMPOSED).robustness == pytest.approx(0.04)
+    assert located("table_ws", *in_bin, {}).robustness == pytest.approx(-0.04)
+    assert located("table_ws", *in_bin, COMPOSED).robustness == pytest.approx(0.05)
+    beside = still(2, (0.2, 0.0, 0.05)), still(2)
+    assert located("table_ws", *beside, {}).robustness == pytest.approx(0.05)
+    assert located("table_ws", still(2, (0.11, 0.0, 0.05)), still(2), {}).robustness == pytest.approx(0.01)
+
+
+def test_a_bin_that_is_pushed_off_the_table_takes_its_part_of_the_workspace_along() -> None:
+    ball = [list(IN_BIN), [2.0, 0.0, -0.65]]
+    moved = [[0.0, 0.0, 0.0], list(ON_FLOOR)]
+    assert located("table_ws", ball, moved, COMPOSED).robustness == pytest.approx(0.04)
+    assert located("table_ws", ball, moved, {}).outcome is Outcome.VIOLATED
+    # Where the bin stood, there is table again.
+    assert located("table_ws", still(2, IN_BIN), [list(ON_FLOOR), list(ON_FLOOR)], {}).robustness == pytest.approx(0.05)
+
+
+def test_composition_counts_at_any_depth() -> None:
+    scene = SceneSpec(contains={"room": ("table", "shelf"), "table": ("bin",), "bin": ("room",)})
+    assert contents_of(scene, "room") == ("table", "shelf", "bin")
+    assert contents_of(scene, "shelf") == ()

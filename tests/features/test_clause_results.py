@@ -228,9 +228,9 @@ def test_a_clause_that_could_not_have_failed_is_marked_quietly() -> None:
     findings = judged(case, vacuous)
     (found,) = clause_diagnostics(case.snapshot, case.uri, findings)
     assert (found.severity, found.code) == (Severity.HINT, "clause-vacuous")
-    assert found.message == "This clause could not have failed in the last run: a set is empty."
+    assert found.message == "This clause proved little in the last run: a set is empty."
     (hint,) = clause_hints(case.snapshot, case.uri, findings)
-    assert hint.tooltip.startswith("It could not have failed: a set is empty.\n")
+    assert hint.tooltip.startswith("It proves little: a set is empty.\n")
 
 
 def test_a_scenario_takes_the_reasons_of_its_own_clauses() -> None:

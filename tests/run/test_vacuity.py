@@ -19,6 +19,7 @@ from robbdd_tools.run.protocol import (
     encode,
 )
 from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.vacuity import HELD_BEFORE
 
 IRI = "https://x/c"
 SPEC = ScenarioSpec(
@@ -62,3 +63,14 @@ def test_an_empty_window_is_told_in_the_results_of_every_scenario() -> None:
     document = found.as_json()
     assert not schema_errors("run.schema.json", document)
     assert [scenario["clauses"][0]["vacuous"] for scenario in document["scenarios"]] == [said, said]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "marked"), [(True, True, True), (True, False, False), (True, None, True), (None, None, False)]
+)
+def test_what_held_before_the_behaviour_in_every_execution_is_marked(
+    one: bool | None, other: bool | None, marked: bool
+) -> None:
+    varied = ((-0.1, 0.1),)
+    found = of_run(MarginRanges(0, 5, varied, one), MarginRanges(1, 5, varied, other)).vacuous()
+    assert found == ({IRI: HELD_BEFORE} if marked else {})

@@ -15,6 +15,7 @@ from robbdd_tools.agent.frames import at
 from robbdd_tools.agent.outline import outline_of
 from robbdd_tools.agent.pick_place import PickPlace
 from robbdd_tools.agent.reach import ReachSampler
+from robbdd_tools.agent.scene import contents_of
 from robbdd_tools.agent.simulation import Simulation
 from robbdd_tools.agent.user_behaviour import AgentWorld, run_user_behaviour
 from robbdd_tools.agent.world import build_world
@@ -89,6 +90,7 @@ class Course:
         self.broken = ""
         self.fault: Fault | None = None
         self.regions: Regions = world.cast.regions
+        self.contents = {workspace: contents_of(spec.scene, workspace) for workspace in spec.scene.contains}
         self.settings = read_back(self.simulation, spec.scene)
         self.outlines = {name: outline_of(model) for name, model in world.cast.objects.items()}
         self._settle()

@@ -86,8 +86,7 @@ class Execution:
         course = self.course
         events = tuple(replace(stamp, name=name) for stamp in course.stamps for name in self._names.get(stamp.name, ()))
         trace = course.simulation.trace(events, course.finished, course.remark)
-        unreached = self._unreached()
-        return replace(trace, unreached=unreached) if unreached else trace
+        return replace(trace, unreached=self._unreached(), contents=course.contents)
 
     def state_at(self, time: float) -> FloatArray:
         """Return the engine's joint positions at the last sample at or before a time (s)."""

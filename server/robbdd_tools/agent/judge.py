@@ -13,12 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from robbdd_tools.agent.channel import Reports
-from robbdd_tools.agent.clauses import decide, ranges
+from robbdd_tools.agent.clauses import decide
 from robbdd_tools.agent.output import Printed, finish_output
-from robbdd_tools.agent.sentences import fluents_of, read_clause, read_event
+from robbdd_tools.agent.sentences import fluents_of, read_event
 from robbdd_tools.agent.stated import stated_clause, stated_iteration
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
+from robbdd_tools.agent.vacuity import margin_ranges
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.monitor.time import never_occurred, occurrences
@@ -72,8 +73,8 @@ class StoredTraces:
             else:
                 yield clause, _decided(clause, evidence, spec, stored)
 
-    def ranges(self, spec: ScenarioSpec) -> Iterator[tuple[int, tuple[tuple[float, float], ...]]]:
-        """Yield by line how far the margins of a scenario's clauses varied in its trace."""
+    def ranges(self, number: int, spec: ScenarioSpec) -> Iterator[MarginRanges]:
+        """Yield what the trace of a scenario says of clauses that prove little; ``number`` is the scenario's."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
         if stored is None or _change(spec, stored):
             return
@@ -81,12 +82,11 @@ class StoredTraces:
             evidence = read_trace(trace_file(self._folder, index))
         except UnreadableTrace:
             return
-        for clause in () if evidence.trace.unreached else spec.clauses:
-            found = (
-                () if clause.role == "when" else ranges(read_clause(clause.sentence), evidence.trace, evidence.regions)
-            )
-            if found:
-                yield clause.line, found
+        for clause in (clause for clause in spec.clauses if clause.role != "when"):
+            read = stated_clause(clause.sentence, clause, spec)
+            found = margin_ranges(number, read, clause, spec, evidence.trace, evidence.regions)
+            if found is not None:
+                yield found
 
     def _done(self, clause: ClauseSpec, evidence: Evidence, index: int, spec: ScenarioSpec) -> Verdict:
         """Return the verdict on a When clause: an event of the trace, or what the run said of the behaviour."""
@@ -143,8 +143,7 @@ def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
                 faults.add(verdict.fault.id)
                 yield UserCodeFailed(index, verdict.fault)
             yield judged(index, clause.line, verdict)
-        for line, found in traces.ranges(spec):
-            yield MarginRanges(index, line, found)
+        yield from traces.ranges(index, spec)
         finish_output()
         yield ScenarioFinished(index, 0.0, 0.0, 0.0)
     yield RunFinished(True)

@@ -118,6 +118,18 @@ def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, 
     return regions
 
 
+def contents_of(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
+    """Return the workspaces that are composed into one, at any depth, in written order."""
+    found: dict[str, None] = {}
+    waiting = list(scene.contains.get(workspace, ()))
+    while waiting:
+        inner = waiting.pop(0)
+        if inner not in found and inner != workspace:
+            found[inner] = None
+            waiting += scene.contains.get(inner, ())
+    return tuple(found)
+
+
 def carriers(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
     """Return the objects that make up a workspace: its own or, when it has none, those of what lies within it."""
     return _carriers(scene, workspace, frozenset())

@@ -10,7 +10,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.beginning import Courses, call_of, calls_of, timing_of
-from robbdd_tools.agent.clauses import decide, is_closed, ranges
+from robbdd_tools.agent.clauses import decide, is_closed
 from robbdd_tools.agent.curves import behaviour_curves, curves, write_curves
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Execution
@@ -21,6 +21,7 @@ from robbdd_tools.agent.stated import stated_clause, stated_iteration
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import verdict_views, write_trace
 from robbdd_tools.agent.user_code import fault_of
+from robbdd_tools.agent.vacuity import margin_ranges
 from robbdd_tools.agent.viewer import NoViewer, Viewer
 from robbdd_tools.agent.views import views
 from robbdd_tools.monitor.time import never_occurred
@@ -31,7 +32,6 @@ from robbdd_tools.run.protocol import (
     ClauseJudged,
     ClauseStarted,
     LogLine,
-    MarginRanges,
     ScenarioFinished,
     ScenarioStarted,
     UserCodeFailed,
@@ -183,12 +183,14 @@ class ScenarioRun:
 
     def _tell_ranges(self, execution: Execution) -> None:
         """Tell how far the margins varied in all that happened, for clauses that could not have failed."""
-        if execution.trace.unreached:
-            return
         for line, clause in self._clauses.items():
-            found = ranges(clause, execution.measured(clause, execution.trace), execution.regions)
-            if found:
-                self._channel.send(MarginRanges(self._index, line, found))
+            stated = self._stated.get(line)
+            if stated is None:
+                continue
+            trace = execution.measured(clause, execution.trace)
+            found = margin_ranges(self._index, clause, stated, self._spec, trace, execution.regions)
+            if found is not None:
+                self._channel.send(found)
 
     def _write_trace(self, execution: Execution, folder: Path) -> None:
         trace = execution.complete(execution.trace)

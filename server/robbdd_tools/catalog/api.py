@@ -98,7 +98,11 @@ class Evidence(Protocol):
         ...
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
-        """The regions that make up a workspace, each with the object whose frame it is given in."""
+        """The regions of the objects that carry a workspace, each with the object whose frame it is given in."""
+        ...
+
+    def contents(self, workspace: str) -> Sequence[str]:
+        """The workspaces that are composed into one, at any depth."""
         ...
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.settings import setting_of
@@ -32,27 +32,59 @@ def out_of_frame(point: Vector, origin: FloatArray, orientation: FloatArray) -> 
 
 
 def inside_margin(evidence: Evidence, name: str, workspaces: Iterable[str]) -> FloatArray:
-    """Distance (m) of a body to the nearest face of the best region, positive inside, shape (n,).
+    """Distance (m) of a body to the nearest face of the space of some workspaces, positive inside, shape (n,).
 
-    The body's position counts; with the configuration ``whole_object`` all of it does, but at the lowest face, which
-    carries it.
+    The space of a workspace is the union of the regions of its objects and of the workspaces composed into it, without
+    what other regions with a higher floor take of it: a thing on a shelf is on the shelf, not on the table below. The
+    body's position counts; with the configuration ``whole_object`` all of it does, but at the lowest face, which
+    carries it. Raises ``KeyError`` for a workspace without regions.
     """
     import numpy as np
 
     position = evidence.position(name)
     outline = evidence.outline(name) if is_configured(evidence, name, "whole_object") else ()
     balls = [(out_of_frame(center, position, evidence.orientation(name)), radius) for center, radius in outline]
+    own = dict.fromkeys(place for workspace in workspaces for place in _space(evidence, workspace))
+    every = dict.fromkeys(place for workspace in evidence.workspaces for place in evidence.regions(workspace))
+    others = [(_floor(evidence, other), _into(evidence, other, position)) for other in every if other not in own]
     margins = np.full(len(position), -np.inf)
-    for workspace in workspaces:
-        for carrier, region in evidence.regions(workspace):
-            frame = evidence.position(carrier), evidence.orientation(carrier)
-            inside = _signed_distance(_outside(into_frame(position, *frame), region))
-            for centers, radius in balls:
-                local = into_frame(centers, *frame)
-                local[:, 2] = np.maximum(local[:, 2], region.center[2])
-                inside = np.minimum(inside, _signed_distance(_outside(local, region)) - radius)
-            margins = np.maximum(margins, inside)
+    for place in own:
+        carrier, region = place
+        frame = evidence.position(carrier), evidence.orientation(carrier)
+        inside = _into(evidence, place, position)
+        for centers, radius in balls:
+            local = into_frame(centers, *frame)
+            local[:, 2] = np.maximum(local[:, 2], region.center[2])
+            inside = np.minimum(inside, _signed_distance(_outside(local, region)) - radius)
+        floor = _floor(evidence, place) if others else 0.0
+        for higher, taken in others:
+            inside = np.where(higher > floor, np.minimum(inside, -taken), inside)
+        margins = np.maximum(margins, inside)
     return margins
+
+
+def _space(evidence: Evidence, workspace: str) -> Iterator[tuple[str, Region]]:
+    """Yield the regions of a workspace's objects and of the workspaces composed into it; raises ``KeyError``."""
+    inner = [name for name in evidence.contents(workspace) if name in evidence.workspaces]
+    if workspace in evidence.workspaces or not inner:
+        yield from evidence.regions(workspace)
+    for name in inner:
+        yield from evidence.regions(name)
+
+
+def _into(evidence: Evidence, place: tuple[str, Region], position: FloatArray) -> FloatArray:
+    """Distance (m) of points (n, 3) to the faces of a region in its carrier's frame, positive inside, shape (n,)."""
+    carrier, region = place
+    frame = evidence.position(carrier), evidence.orientation(carrier)
+    return _signed_distance(_outside(into_frame(position, *frame), region))
+
+
+def _floor(evidence: Evidence, place: tuple[str, Region]) -> FloatArray:
+    """Height (m, world frame) of the middle of a region's bottom, shape (n,)."""
+    carrier, region = place
+    x, y, z = region.center
+    bottom = (x, y, z - region.half[2])
+    return out_of_frame(bottom, evidence.position(carrier), evidence.orientation(carrier))[:, 2]
 
 
 def limit_of(evidence: Evidence, elements: Iterable[str], name: str) -> float | None:

@@ -148,7 +148,7 @@ class Display:
         """Print how many scenarios have which verdict."""
         self._progress.stop()
         for name, reason in self._vacuous():
-            self._console.print(plain(f"{name} could not have failed: {reason}", STYLES[Outcome.UNKNOWN]))
+            self._console.print(plain(f"{name} proves little: {reason}", STYLES[Outcome.UNKNOWN]))
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
         shown = self._results.scenarios if self._total == len(self._results.scenarios) else finished
         outcomes = [scenario.verdict for scenario in shown]
@@ -169,7 +169,7 @@ class Display:
         return Text.assemble((f"{self._held} hold", STYLES[Outcome.HOLDS]), ", ", failed)
 
     def _vacuous(self) -> Iterator[tuple[str, str]]:
-        """Yield name and reason of every clause that could not have failed, in the order of the model."""
+        """Yield name and reason of every clause that proves little, in the order of the model."""
         clauses = (clause for scenario in self._results.scenarios for clause in scenario.spec.clauses)
         names = {clause.iri: clause.name for clause in clauses}
         reasons = self._results.vacuous()

@@ -49,7 +49,7 @@ class ResultHint:
     @property
     def tooltip(self) -> str:
         """Everything that is known, shortened where there are many variations."""
-        remarks = [_CHANGED] * self.stale + [f"It could not have failed: {self.vacuous}."] * bool(self.vacuous)
+        remarks = [_CHANGED] * self.stale + [f"It proves little: {self.vacuous}."] * bool(self.vacuous)
         return "\n".join((*remarks, *_shortened(self.lines, MOST_LINES)))
 
 
@@ -140,7 +140,7 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
     found: list[Diagnostic] = []
     for hint in clause_hints(snapshot, uri, findings):
         if hint.vacuous and not hint.stale:
-            message = f"This clause could not have failed in the last run: {hint.vacuous}."
+            message = f"This clause proved little in the last run: {hint.vacuous}."
             found.append(Diagnostic(uri, hint.span, Severity.HINT, "clause-vacuous", message))
         if hint.failing and not hint.stale:
             told = list(map(_line, hint.failing))

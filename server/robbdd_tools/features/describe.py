@@ -237,7 +237,7 @@ def result_words(hint: ResultHint) -> str:
     """Return the last results of a clause as a list in Markdown."""
     age = "Last results, of the text before it was edited" if hint.stale else "Last results"
     lines = [f"- {literal(line)}" for line in hint.lines[:MOST_LISTED]]
-    vacuous = [f"- it could not have failed: {hint.vacuous}"] if hint.vacuous else []
+    vacuous = [f"- it proves little: {hint.vacuous}"] if hint.vacuous else []
     return f"{age}:\n\n" + "\n".join((*lines, *vacuous))
 
 

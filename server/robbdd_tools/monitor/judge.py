@@ -82,6 +82,10 @@ class WindowEvidence:
         """Regions of a workspace; raises ``KeyError`` when the scene gives it none."""
         return self.regions_of[workspace]
 
+    def contents(self, workspace: str) -> Sequence[str]:
+        """Names of the workspaces composed into one, at any depth."""
+        return self.trace.contents.get(workspace, ())
+
     @property
     def workspaces(self) -> Sequence[str]:
         """Names of the workspaces that have regions."""

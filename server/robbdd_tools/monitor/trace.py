@@ -47,6 +47,7 @@ class Trace:
     of a configuration to its value. ``forces`` maps agent and object to the largest contact force (N) since the sample
     before (n,), where that was watched; ``outlines`` tells how far objects reach around their position. ``unreached``
     says why the scenario, a part of a behaviour tree, was never begun, if so: nothing can be told of it then.
+    ``contents`` maps a workspace to those that are composed into it, at any depth.
     """
 
     names: tuple[str, ...]
@@ -62,6 +63,7 @@ class Trace:
     forces: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
     outlines: Mapping[str, Outline] = field(default_factory=dict[str, "Outline"])
     unreached: str = ""
+    contents: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
     @property
     def end(self) -> float:

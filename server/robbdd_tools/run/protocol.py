@@ -185,11 +185,16 @@ class ClauseJudged:
 
 @dataclass(frozen=True, slots=True)
 class MarginRanges:
-    """How far the margin of each fluent of the clause on ``line`` varied over the whole execution: least, largest."""
+    """How far the margin of each fluent of the clause on ``line`` varied over the whole execution: least, largest.
+
+    ``held_before`` tells of a Then clause whether it holds and its predicates held before the behaviour began as well,
+    ``None`` where that is not known.
+    """
 
     index: int
     line: int
     ranges: tuple[tuple[float, float], ...]
+    held_before: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)

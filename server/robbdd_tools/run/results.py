@@ -56,8 +56,9 @@ class RunResults:
             case ClauseJudged():
                 self.scenarios[message.index].judged[message.line] = message
                 self._vacuity.judged(self._clause(message.index, message.line), message)
-            case MarginRanges(index, line, ranges):
+            case MarginRanges(index, line, ranges, held_before):
                 self._vacuity.varied(self._clause(index, line), ranges)
+                self._vacuity.held(self._clause(index, line), held_before)
             case Finished():
                 self.scenarios[message.index].finished = message
             case RunFinished(ok):

@@ -1,4 +1,4 @@
-"""Which clauses of a run could not have failed, and why."""
+"""Which clauses of a run could not have failed or held from the start, and why."""
 
 from __future__ import annotations
 
@@ -11,14 +11,17 @@ from robbdd_tools.monitor.vacuity import Range, is_constant, joined
 if TYPE_CHECKING:
     from robbdd_tools.run.protocol import ClauseJudged, ClauseSpec
 
+HELD_BEFORE = "its predicate already held before the behaviour began, in every execution"
+
 
 @dataclass(slots=True)
 class Vacuity:
-    """Collects, clause by clause, what says that it could not have failed."""
+    """Collects, clause by clause, why it proves little."""
 
     _said: dict[str, str] = field(default_factory=dict[str, str])
     _ranges: dict[str, list[Range]] = field(default_factory=dict[str, list[Range]])
     _executions: dict[str, int] = field(default_factory=dict[str, int])
+    _held: dict[str, list[bool]] = field(default_factory=dict[str, list[bool]])
 
     def judged(self, clause: ClauseSpec, judged: ClauseJudged) -> None:
         """Take what a single verdict says."""
@@ -27,6 +30,8 @@ class Vacuity:
 
     def varied(self, clause: ClauseSpec, ranges: Sequence[Sequence[float]]) -> None:
         """Take how far the margin of each fluent of a clause varied in one execution."""
+        if not ranges:
+            return
         known = self._ranges.get(clause.iri, [])
         found: list[Range] = [(low, high) for low, high in ranges]
         # A set of another size has other fluents: then all are taken together.
@@ -35,10 +40,16 @@ class Vacuity:
         self._ranges[clause.iri] = [joined(list(pair)) for pair in zip(known or found, found, strict=True)]
         self._executions[clause.iri] = self._executions.get(clause.iri, 0) + 1
 
+    def held(self, clause: ClauseSpec, before: bool | None) -> None:
+        """Record whether a clause held before the behaviour of one execution, ``None`` where that is not known."""
+        if before is not None:
+            self._held.setdefault(clause.iri, []).append(before)
+
     def reasons(self) -> Mapping[str, str]:
-        """Return, by clause IRI, why a clause could not have failed."""
+        """Return, by clause IRI, why a clause could not have failed or held from the start."""
         constant = {iri: self._never_varied(iri) for iri, found in self._ranges.items() if all(map(is_constant, found))}
-        return {**constant, **self._said}
+        held = {iri: HELD_BEFORE for iri, found in self._held.items() if all(found)}
+        return {**held, **constant, **self._said}
 
     def _never_varied(self, iri: str) -> str:
         margins = " and ".join(f"{low:.4g}" for low, _ in self._ranges[iri])
