@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from math import atan2
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ import numpy as np
 from robbdd_tools.catalog.own_behaviour import BehaviourFailed, World
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.catalog.api import Arguments, FloatArray
 
 TRAVEL = 0.35
 """Height at which things are carried, m, world frame."""
@@ -22,14 +22,16 @@ PACE = 0.01
 class Carry:
     """Picks a cube and places it; see ``robbdd_tools.catalog.own_behaviour.UserBehaviour``."""
 
-    def reset(self, world: World, behaviour: str, arguments: Mapping[str, str]) -> None:
+    def reset(self, world: World, behaviour: str, arguments: Arguments) -> None:
         """Remember what to do."""
         if behaviour != "pick-place":
             raise BehaviourFailed(f"this arm does not know how to {behaviour}")
         self._world = world
         self._target = world.joints
         self._opening = 1.0
-        self._ticks = self._carry(arguments["object"], arguments["workspace"])
+        place = arguments["workspace"]
+        # Of a set of workspaces this arm takes the first.
+        self._ticks = self._carry(str(arguments["object"]), place if isinstance(place, str) else place[0])
 
     def step(self) -> bool:
         """Go on by one tick."""

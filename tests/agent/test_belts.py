@@ -90,8 +90,8 @@ def test_the_arm_waits_until_the_thing_has_come_to_rest() -> None:
     def note(event: str) -> None:
         places[event] = along(simulation)
 
-    call = pick_place(CUBE, BIN_WS, PANDA).arguments
-    for _ in PickPlace(simulation, PANDA, note).pick_place(call["object"], call["workspace"]):
+    call = pick_place(CUBE, BIN_WS, PANDA)
+    for _ in PickPlace(simulation, PANDA, note).pick_place(call.element("object"), call.places):
         simulation.tick()
     assert start - places["pick-start"] > 0.05, "it has ridden"
     assert places["pick-start"] == pytest.approx(-LENGTH / 2 + STOP + HALF_EDGE, abs=2e-3)

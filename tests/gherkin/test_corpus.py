@@ -19,6 +19,7 @@ from robbdd_tools.graph.read import read_model
 from robbdd_tools.names.project import Project
 
 Seen = tuple[frozenset[tuple[str, frozenset[str]]], tuple[tuple[str, str], ...]]
+ANY_PLACE = 'and places it at "any of '
 OBJECTS = "a set of objects"
 
 
@@ -38,9 +39,11 @@ def seen(scenario: Read) -> Seen:
     """Scene tables as sets, then the clauses in order.
 
     Not compared are horizons, which the reference loses, the target of a configuration, which it leaves as a variable,
-    and the objects of the scene, of which it drops some that belong to several sets.
+    and the objects of the scene, of which it drops some that belong to several sets. A set as a place is "any of" it in
+    ours.
     """
     written = scenario.steps[[text for _, text in scenario.steps].index("the scene is set up") + 1 :]
+    written = [(role, text.replace(ANY_PLACE, ANY_PLACE.removesuffix("any of "))) for role, text in written]
     steps = tuple((role, re.sub(r'^"[^"]*"(?= has config )| within \S+ seconds', "", text)) for role, text in written)
     return frozenset((title, rows) for title, rows in tables(scenario).items() if title != OBJECTS), steps
 

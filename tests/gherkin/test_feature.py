@@ -124,9 +124,9 @@ def test_quantifiers_are_unrolled_over_their_sets() -> None:
     events = MODEL[: MODEL.index("Scenario Template")]
     head = "Scenario Template (ns=t) sort-all { duration: from <start> until <end> task: <task>"
     assert steps(events + head + QUANTIFIED, 2) == [
-        'When "env:panda" picks "env:nut" and places it at "[\'env:bench_ws\', \'env:tray_ws\']"',
+        'When "env:panda" picks "env:nut" and places it at "any of [\'env:bench_ws\', \'env:tray_ws\']"',
         'Then "env:nut" is located at "any of [\'env:bench_ws\', \'env:tray_ws\']" after event "t:place-end"',
-        'When "env:panda" picks "env:bolt" and places it at "[\'env:bench_ws\', \'env:tray_ws\']"',
+        'When "env:panda" picks "env:bolt" and places it at "any of [\'env:bench_ws\', \'env:tray_ws\']"',
         'Then "env:bolt" is located at "any of [\'env:bench_ws\', \'env:tray_ws\']" after event "t:place-end"',
         "Then \"['env:nut', 'env:bolt']\" are sorted into \"['env:bench_ws', 'env:tray_ws']\""
         ' after event "t:place-end"',

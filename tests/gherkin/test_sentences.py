@@ -158,3 +158,12 @@ User Story (ns=t) sorting {
         for part in ("bolt", "nut")
         for place in ("bench_ws", "tray_ws")
     ]
+
+
+def test_a_behaviour_chooses_any_of_a_set_of_places() -> None:
+    model = edited("var goal\n", "set var goals\n    var goal\n").replace("places at <goal>", "places at <goals>")
+    bins = "set var <fetch.goals>: { { <places.bench_ws>, <places.tray_ws> } }"
+    model = edited("var <fetch.part>", f"{bins}\n                var <fetch.part>", model)
+    (found,) = [step for step in steps(model) if step.startswith("When")]
+    places = "any of ['env:bench_ws', 'env:tray_ws']"
+    assert found == f'When "env:panda" picks "env:bolt" and places it at "{places}"'

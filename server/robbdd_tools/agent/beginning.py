@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.course import TIMEOUT, Call, Course, Timing
 from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.agent.sentences import Clause, Doing, fluents_of, read_doing
+from robbdd_tools.agent.sentences import AnyOf, Clause, Doing, fluents_of, read_doing
+from robbdd_tools.catalog.api import Kind
 from robbdd_tools.monitor.time import After, Before
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ class Courses:
 def calls_of(spec: ScenarioSpec) -> list[Call]:
     """Return the behaviours of a scenario, or of its behaviour tree, as far as it is known what they are about.
 
-    Raises ``SceneError`` for one that is not of single elements.
+    Raises ``SceneError`` as ``call_of``.
     """
     if spec.tree is not None:
         return [Call(leaf.behaviour, leaf.arguments) for leaf in spec.tree.leaves() if leaf.behaviour]
@@ -48,12 +49,20 @@ def calls_of(spec: ScenarioSpec) -> list[Call]:
 
 
 def call_of(doing: Doing) -> Call:
-    """Return a behaviour as it is executed; raises ``SceneError`` when it is not of single elements."""
-    arguments: dict[str, str] = {}
-    for slot, filler in doing.arguments.items():
-        if not isinstance(filler, str):
-            raise SceneError(f"'{doing.behaviour.name}' needs one {slot}, not a set of them")
-        arguments[slot] = filler
+    """Return a behaviour as it is executed.
+
+    A place may be a set, of which the behaviour chooses an element. Raises ``SceneError`` for any other set, and for
+    an empty one.
+    """
+    arguments: dict[str, str | tuple[str, ...]] = {}
+    for slot in doing.behaviour.slots:
+        filler = doing.arguments[slot.name]
+        found = filler.elements if isinstance(filler, AnyOf) else filler
+        if not isinstance(found, str) and slot.kind is not Kind.WORKSPACE:
+            raise SceneError(f"'{doing.behaviour.name}' needs one {slot.name}, not a set of them")
+        if not found:
+            raise SceneError(f"'{doing.behaviour.name}' has no {slot.name} to choose: the set is empty")
+        arguments[slot.name] = found
     return Call(doing.behaviour.name, arguments)
 
 

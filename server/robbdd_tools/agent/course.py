@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil
 from time import perf_counter
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from robbdd_tools.agent.configuration import read_back
 from robbdd_tools.agent.engine import TICK
@@ -24,6 +26,7 @@ from robbdd_tools.monitor.trace import EventStamp
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.behaviour_tree import TreeRun
+    from robbdd_tools.catalog.api import Arguments
     from robbdd_tools.catalog.coordination import TreeSpec
     from robbdd_tools.catalog.executable import Implementation
     from robbdd_tools.monitor.fault import Fault
@@ -36,16 +39,40 @@ REST = 1.0
 """Seconds between the end of the last behaviour and the end of the scenario, for things to come to rest."""
 TIMEOUT = 60.0
 """Seconds of simulated time after which an execution is stopped."""
+PLACES = 1
+"""Tells the random choice of places from that of the scene, which begins with the same seed."""
 LOOK = 16
 """Ticks after which an execution without any news is looked at again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A behaviour (by its catalog name) with the names that fill its slots."""
+    """A behaviour (by its catalog name) with the names that fill its slots; a place may be a set of workspaces."""
 
     behaviour: str
-    arguments: Mapping[str, str]
+    arguments: Arguments
+
+    def element(self, slot: str) -> str:
+        """Return the one element that fills a slot; raises ``SceneError`` for a set."""
+        found = self.arguments[slot]
+        if isinstance(found, str):
+            return found
+        raise SceneError(f"'{self.behaviour}' needs one {slot}, not a set of them")
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """The workspaces that the behaviour may place at."""
+        found = self.arguments["workspace"]
+        return (found,) if isinstance(found, str) else tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A member of a set of places that a behaviour chose: ``iteration`` as of event stamps, tree nodes at work."""
+
+    iteration: int
+    nodes: tuple[str, ...]
+    place: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +99,7 @@ class Course:
         self._calls = tuple(calls)
         self._timing = timing or Timing()
         self._last = ceil(self._timing.timeout / TICK - 1e-9)
-        actor = self._calls[0].arguments.get("agent") if self._calls else None
+        actor = self._calls[0].element("agent") if self._calls else None
         how = spec.execution
         self._implementation = None if how is None else how.implementation
         _check_implementation(self._implementation, self._calls)
@@ -86,6 +113,8 @@ class Course:
         self.finished = False
         self._muted = False
         self._iteration = 0
+        self.choices: list[Choice] = []
+        self._draw = np.random.default_rng((world.seed, PLACES))
         self.completed = 0
         self.broken = ""
         self.fault: Fault | None = None
@@ -163,27 +192,38 @@ class Course:
 
     def _behaviour(self, call: Call) -> Iterator[None]:
         controller = self._controller(call)
-        arguments = call.arguments
         if self._implementation is not None and self._is_users():
-            world = AgentWorld(self.simulation, arguments["agent"], self._emit)
-            return run_user_behaviour(self._implementation, world, call.behaviour, arguments)
+            world = AgentWorld(self.simulation, call.element("agent"), self._emit)
+            return run_user_behaviour(self._implementation, world, call.behaviour, call.arguments)
         match call.behaviour:
             case "pick":
-                return controller.pick(arguments["object"])
+                return controller.pick(call.element("object"))
             case "place":
-                return controller.place(arguments["object"], arguments["workspace"])
+                return controller.place(call.element("object"), self._in_any_order(call))
             case "pick-place":
-                return controller.pick_place(arguments["object"], arguments["workspace"])
+                return controller.pick_place(call.element("object"), self._in_any_order(call))
             case other:
                 raise BehaviourError(f"no agent of this installation can execute the behaviour '{other}'")
 
     def _controller(self, call: Call) -> PickPlace:
-        agent = call.arguments["agent"]
+        agent = call.element("agent")
         if agent not in self.simulation.robots:
             raise SceneError(f"the scene has no agent '{agent}'")
         if agent not in self._controllers:
-            self._controllers[agent] = PickPlace(self.simulation, agent, self._emit)
+            self._controllers[agent] = PickPlace(self.simulation, agent, self._emit, self._note_choice)
         return self._controllers[agent]
+
+    def _in_any_order(self, call: Call) -> tuple[str, ...]:
+        """Return the places of a behaviour, in an order that follows from the scenario's seed."""
+        places = call.places
+        if len(places) < 2:
+            return places
+        order: list[int] = self._draw.permutation(len(places)).tolist()
+        return tuple(places[index] for index in order)
+
+    def _note_choice(self, place: str) -> None:
+        nodes = () if self.tree is None else self.tree.active
+        self.choices.append(Choice(self._iteration, tuple(nodes), place))
 
     def _settle(self) -> None:
         for call in self._calls:
@@ -199,10 +239,10 @@ class Course:
         """Let the agent take hold of what it is to place before the scenario starts."""
         self._muted = True
         try:
-            for _ in self._controller(call).pick(call.arguments["object"]):
+            for _ in self._controller(call).pick(call.element("object")):
                 self.simulation.tick()
         except BehaviourError as error:
-            raise SceneError(f"'{call.arguments['object']}' cannot be put into the gripper: {error}") from error
+            raise SceneError(f"'{call.element('object')}' cannot be put into the gripper: {error}") from error
         self._muted = False
         self.simulation.restart()
 

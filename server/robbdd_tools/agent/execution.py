@@ -142,6 +142,16 @@ class Execution:
         self.advance_until(lambda _: tree.is_over(self._node))
         return tree.has_succeeded(self._node)
 
+    def chosen(self, index: int) -> str:
+        """Return the places that behaviour number ``index`` chose of a set, as words; empty without a choice."""
+        course = self.course
+        found = [
+            choice.place
+            for choice in course.choices
+            if (self._node in choice.nodes if self._node else choice.iteration == index + 1)
+        ]
+        return ", ".join(dict.fromkeys(found))
+
     @property
     def failure(self) -> str:
         """Why the behaviour failed, once it has."""

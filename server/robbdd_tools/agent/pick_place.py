@@ -5,7 +5,7 @@ It knows the object's pose when it begins and follows its plan from there, feeli
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ from robbdd_tools.agent.gripper import Step, gripper_of
 from robbdd_tools.agent.kinematics import Unreachable, arm_of
 from robbdd_tools.agent.motion import ToolPose, plan, present_pose, tool_pose
 from robbdd_tools.agent.reach import Approach, approaches, at_travel, joints_at
-from robbdd_tools.agent.target import Target, targets
+from robbdd_tools.agent.target import Target, has_room, targets
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.grasp import Grasp
@@ -40,15 +40,23 @@ RISE = 1e-3
 class PickPlace:
     """Drives one robot of a simulation. Every generator sets the controls for one tick before each item.
 
-    ``emit`` is told the name of each event when it occurs.
+    ``emit`` is called with the name of each event when it occurs, ``note_choice`` with the workspace that is chosen
+    among several.
     """
 
-    def __init__(self, simulation: Simulation, agent: str, emit: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        agent: str,
+        emit: Callable[[str], None],
+        note_choice: Callable[[str], None] = lambda _: None,
+    ) -> None:
         self._simulation = simulation
         self._robot = simulation.robots[agent]
         self._arm = arm_of(self._robot.model)
         self._limits: FloatArray = np.array(self._robot.model.velocity_limits)
         self._emit = emit
+        self._note_choice = note_choice
         self._joints: FloatArray = self._arm.home.copy()
         self._gripper = gripper_of(self._robot.model)
         self.control = self._robot.model.gripper_open
@@ -70,12 +78,15 @@ class PickPlace:
         yield from self.move(self._at_travel(best.at))
         self._emit("pick-end")
 
-    def place(self, name: str, workspace: str) -> Step:
-        """Carry the object that is held to a workspace and release it; raises ``BehaviourError``."""
+    def place(self, name: str, workspaces: Sequence[str]) -> Step:
+        """Carry the object that is held to a workspace and release it; raises ``BehaviourError``.
+
+        Of several workspaces, the first one with room for the object is chosen, else the first one that can be reached.
+        """
         if self._held != name or self._grasp is None:
             raise BehaviourError(f"{self._robot.name} does not hold {name}")
         self._emit("place-start")
-        down = self._choose_target(name, workspace, self._grasp)
+        down = self._choose_place(name, workspaces, self._grasp)
         over, here = self._at_travel(down), present_pose(self._arm, self._joints)
         if over.height > here.height + RISE:
             yield from self.move(replace(here, height=over.height))
@@ -87,10 +98,10 @@ class PickPlace:
         yield from self.move(self._at_travel(down))
         self._emit("place-end")
 
-    def pick_place(self, name: str, workspace: str) -> Step:
-        """Pick an object and place it at a workspace; raises ``BehaviourError``."""
+    def pick_place(self, name: str, workspaces: Sequence[str]) -> Step:
+        """Pick an object and place it at one of some workspaces; raises ``BehaviourError``."""
         yield from self.pick(name)
-        yield from self.place(name, workspace)
+        yield from self.place(name, workspaces)
 
     def withdraw(self) -> Step:
         """Open the gripper and leave upwards, after something went wrong."""
@@ -121,6 +132,20 @@ class PickPlace:
         if best is None:
             raise BehaviourError(f"{self._robot.name} cannot reach {name}")
         return best
+
+    def _choose_place(self, name: str, workspaces: Sequence[str], grasp: Grasp) -> ToolPose:
+        if len(workspaces) == 1:
+            return self._choose_target(name, workspaces[0], grasp)
+        simulation, robot = self._simulation, self._robot
+        # Sorting is stable: among those with room the order stays as it is.
+        for workspace in sorted(workspaces, key=lambda one: not has_room(simulation, robot, name, one)):
+            try:
+                found = self._choose_target(name, workspace, grasp)
+            except BehaviourError:
+                continue
+            self._note_choice(workspace)
+            return found
+        raise BehaviourError(f"{robot.name} cannot reach a free place at any of {', '.join(workspaces)}")
 
     def _choose_target(self, name: str, workspace: str, grasp: Grasp) -> ToolPose:
         """Return the lowest tool pose over the first target that the arm reaches without hitting anything."""

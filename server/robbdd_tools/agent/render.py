@@ -129,7 +129,7 @@ def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]], 
     from robbdd_tools.agent.png import write_png
 
     calls = calls_of(spec)
-    focus = next((call.arguments["object"] for call in calls if "object" in call.arguments), None)
+    focus = next((call.element("object") for call in calls if "object" in call.arguments), None)
     simulation = Execution(spec, calls).simulation
     camera = Camera(simulation, (2 * SMALL[0], 2 * SMALL[1]), plain=True) if small else Camera(simulation)
     try:

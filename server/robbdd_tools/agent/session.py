@@ -133,12 +133,14 @@ class ScenarioRun:
         def verdict(execution: Execution) -> Verdict:
             if index is None:
                 return unknown(f"{NO_STEP} for '{text}'")
-            if execution.run_behaviour(index):
-                return Verdict(Outcome.HOLDS)
+            done, place = execution.run_behaviour(index), execution.chosen(index)
+            if done:
+                return Verdict(Outcome.HOLDS, reason=f"placed at {place}" if place else "")
             if execution.broken:
                 return unknown(execution.broken, fault=execution.fault)
             unreached = execution.trace.unreached
-            return unknown(unreached) if unreached else Verdict(Outcome.VIOLATED, reason=execution.failure)
+            chosen = f" (the chosen place was {place})" if place else ""
+            return unknown(unreached) if unreached else Verdict(Outcome.VIOLATED, reason=execution.failure + chosen)
 
         return self._judged(line, text, verdict)
 

@@ -50,6 +50,17 @@ def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> 
             yield from _on_table(simulation, robot, name, carrier, region)
 
 
+def has_room(simulation: Simulation, robot: Robot, name: str, workspace: str) -> bool:
+    """Tell whether something at a workspace is far enough from everything loose to take an object."""
+    radius = footprint(simulation.world.cast.objects[name])
+    for carrier, _ in simulation.world.cast.regions.get(workspace, ()):
+        others = _others(simulation, name, carrier)
+        places = targets(simulation, robot, name, workspace)
+        if any(_room(*place.position[:2], others) >= radius for place in places):
+            return True
+    return False
+
+
 def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
     position, rotation = simulation.pose(carrier)
     bottom = np.array(region.center) - [0.0, 0.0, region.half[2]]

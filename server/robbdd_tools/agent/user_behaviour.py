@@ -16,10 +16,8 @@ from robbdd_tools.agent.user_code import UserCodeError, called, definition_of, l
 from robbdd_tools.catalog.own_behaviour import BehaviourFailed, UserBehaviour
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from robbdd_tools.agent.simulation import Simulation
-    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.catalog.api import Arguments, FloatArray
     from robbdd_tools.catalog.executable import Implementation
 
 
@@ -91,7 +89,7 @@ class AgentWorld:
 
 
 def run_user_behaviour(
-    implementation: Implementation, world: AgentWorld, behaviour: str, arguments: Mapping[str, str]
+    implementation: Implementation, world: AgentWorld, behaviour: str, arguments: Arguments
 ) -> Iterator[None]:
     """Yield once per control tick until the behaviour is over.
 

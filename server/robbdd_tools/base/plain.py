@@ -27,7 +27,9 @@ def _value(kind: Any, data: Any) -> Any:
     if origin in (UnionType, Union):
         if data is None:
             return None
-        return _value(next(one for one in inner if one is not type(None)), data)
+        kinds = [one for one in inner if one is not type(None)]
+        listed = [one for one in kinds if get_origin(one) is tuple] if isinstance(data, list) else []
+        return _value((listed or kinds)[0], data)
     if origin is tuple:
         kinds = [inner[0]] * len(data) if inner[-1] is Ellipsis else inner
         return tuple(_value(one, value) for one, value in zip(kinds, data, strict=True))

@@ -21,7 +21,7 @@ class NodeSpec:
     """A node of a behaviour tree, by its IRI, with the ``name`` that people read.
 
     ``kind`` is ``sequence``, ``selector`` or ``leaf``. A leaf executes ``behaviour`` (a catalog name) with
-    ``arguments`` (slot to CURIE); where it cannot, ``problem`` says why.
+    ``arguments`` (slot to CURIE, a place also to several); where it cannot, ``problem`` says why.
     """
 
     iri: str
@@ -29,7 +29,7 @@ class NodeSpec:
     kind: str
     children: tuple[NodeSpec, ...] = ()
     behaviour: str = ""
-    arguments: Mapping[str, str] = field(default_factory=dict[str, str])
+    arguments: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict[str, str | tuple[str, ...]])
     problem: str = ""
 
     def leaves(self) -> Iterator[NodeSpec]:

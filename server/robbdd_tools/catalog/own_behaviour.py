@@ -7,11 +7,10 @@ tick (16 ms of simulated time) until it returns ``True``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.catalog.api import Arguments, FloatArray
 
 
 class BehaviourFailed(Exception):
@@ -70,8 +69,11 @@ class World(Protocol):
 class UserBehaviour(Protocol):
     """A class that executes behaviours."""
 
-    def reset(self, world: World, behaviour: str, arguments: Mapping[str, str]) -> None:
-        """Begin: ``behaviour`` is a catalog name, ``arguments`` maps ``agent``, ``object`` … to names."""
+    def reset(self, world: World, behaviour: str, arguments: Arguments) -> None:
+        """Begin: ``behaviour`` is a catalog name, ``arguments`` maps ``agent``, ``object`` … to names.
+
+        Where the model has a set as a place, ``workspace`` is a tuple of names: the behaviour chooses one.
+        """
         ...
 
     def step(self) -> bool:

@@ -194,7 +194,7 @@ class Display:
             else:
                 self._console.print(_clause_line(judged, sentence, width))
             below = rows[number + 1][0].reason if number + 1 < len(rows) else ""
-            if judged.verdict != Outcome.HOLDS and judged.reason not in ("", below):
+            if judged.reason not in ("", below):
                 number = self._faults.get(judged.fault)
                 words = judged.reason if number is None else f"no evidence, because of error {number}"
                 reason = plain(words, STYLES[Outcome(judged.verdict)])

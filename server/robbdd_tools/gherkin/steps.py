@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING
 
+from robbdd_tools.catalog.api import Kind
 from robbdd_tools.gherkin import text
 from robbdd_tools.graph.model import (
     AcceptanceModel,
@@ -48,7 +49,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class AnyOf:
-    """What an existential variable stands for: some element of a set."""
+    """What an existential variable, or a set as a place, stands for: some element of a set."""
 
     elements: tuple[str, ...]
 
@@ -113,7 +114,10 @@ class StepWriter:
                 filled = self._filled(self.catalog.predicates[clause.predicate].sentence, clause.arguments, values)
                 return f"{filled} {self.time(clause.time)}"
             case BehaviourClause():
-                return self._filled(self.catalog.behaviours[clause.behaviour].sentence, clause.arguments, values)
+                behaviour = self.catalog.behaviours[clause.behaviour]
+                places = [clause.arguments.get(slot.name) for slot in behaviour.slots if slot.kind is Kind.WORKSPACE]
+                any_place = {place: self._any_of(place, values) for place in places if isinstance(place, Iri)}
+                return self._filled(behaviour.sentence, clause.arguments, {**values, **any_place})
             case TextFluent():
                 filled = self._filled(text.free(clause.template), clause.arguments, values)
                 return f"{text.guarded(filled) if within else filled} {self.time(clause.time)}"
@@ -202,6 +206,11 @@ class StepWriter:
     def _some(self, exists: Exists, values: Mapping[Iri, Filler]) -> Mapping[Iri, Filler]:
         elements = tuple(self._plain(element) for element in self.elements(exists.in_set, values))
         return {**values, exists.variable: AnyOf(elements)}
+
+    def _any_of(self, place: Iri, values: Mapping[Iri, Filler]) -> Filler:
+        """Return what a place stands for; of a set, a behaviour chooses any element."""
+        value = values.get(place, self.model.sets.get(place, place))
+        return AnyOf(tuple(map(self._plain, value))) if isinstance(value, tuple) else value
 
     def _each(self, quantified: Exists | ForAll, values: Mapping[Iri, Filler]) -> Iterator[Mapping[Iri, Filler]]:
         for element in self.elements(quantified.in_set, values):

@@ -28,7 +28,7 @@ def margin(robustness: float | None, unit: str) -> str:
 
 
 def verdict_words(judged: ClauseJudged) -> str:
-    """Return sign and margin of a judged clause; when and why where it does not hold."""
+    """Return sign and margin of a judged clause; when it was violated, and the reason if there is one."""
     outcome = Outcome(judged.verdict)
     parts = [SIGNS[outcome]]
     shown = margin(judged.robustness, judged.unit)
@@ -38,7 +38,7 @@ def verdict_words(judged: ClauseJudged) -> str:
         parts.append(f"at {judged.at:.2f} s")
     if outcome is Outcome.UNKNOWN:
         parts.append("unknown")
-    return " ".join(parts) + (f": {judged.reason}" if judged.reason and outcome is not Outcome.HOLDS else "")
+    return " ".join(parts) + (f": {judged.reason}" if judged.reason else "")
 
 
 def values_words(spec: ScenarioSpec) -> str:

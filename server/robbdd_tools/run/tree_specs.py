@@ -89,9 +89,11 @@ class TreeSpecWriter:
             return NodeSpec(node.iri, name, node.kind, problem=problem)
         return NodeSpec(node.iri, name, node.kind, behaviour=link.behaviour, arguments=arguments)
 
-    def _element(self, term: Iri | str, values: Mapping[Iri, Cell]) -> str:
-        """Return the CURIE of what a term stands for; nothing where that is no single element."""
-        value = values.get(term, term) if isinstance(term, Iri) else term
+    def _element(self, term: Iri | str, values: Mapping[Iri, Cell]) -> str | tuple[str, ...]:
+        """Return the CURIE of what a term stands for, of a set of workspaces all; nothing for anything else."""
+        value = values.get(term, self.model.sets.get(term, term)) if isinstance(term, Iri) else term
+        if isinstance(value, tuple) and all(self.model.kinds.get(Iri(one)) == "workspace" for one in value):
+            return tuple(self.model.curie(str(one)) for one in value)
         return self.model.curie(value) if isinstance(value, Iri) and value in self.model.kinds else ""
 
 
