@@ -24,6 +24,7 @@ LAYERS: tuple[frozenset[str], ...] = (
     frozenset({"checks", "features", "gherkin"}),
     frozenset({"run"}),
     frozenset({"lsp", "cli", "commands"}),
+    frozenset({"start"}),
 )
 AGENT_MAY = {"base", "catalog", "catalog.api", "monitor", "run.manifest", "run.protocol", "agent"}
 HOMES = {
@@ -88,7 +89,7 @@ def forbidden_imports(module: str, path: Path) -> Iterator[str]:
 
 
 def test_a_module_imports_only_from_layers_to_its_left() -> None:
-    layered = [(module, path) for module, path in modules() if "." in module or module == "cli"]
+    layered = [(module, path) for module, path in modules() if "." in module or module in ("cli", "start")]
     assert [fault for module, path in layered for fault in forbidden_imports(module, path)] == []
 
 
@@ -104,6 +105,29 @@ def test_a_library_has_one_home() -> None:
 def test_modules_stay_readable_in_one_sitting() -> None:
     lengths = {module: len(path.read_text(encoding="utf-8").splitlines()) for module, path in modules()}
     assert {module: length for module, length in lengths.items() if length > 350} == {}
+
+
+STARTS_PROCESSES = {
+    *(f"subprocess.{name}" for name in ("run", "Popen", "call", "check_call", "check_output", "getoutput")),
+    *(f"asyncio.create_subprocess_{name}" for name in ("exec", "shell")),
+    *(f"os.{name}" for name in ("system", "popen", "fork", "posix_spawn", "startfile", "execv", "execve", "spawnv")),
+}
+MAY_START_PROCESSES = {"base.interpreter", "base.processes"}
+"""The one starts interpreters, isolated from the working directory; the other starts a program of Windows."""
+
+
+def started_processes(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Attribute) and ast.unparse(node) in STARTS_PROCESSES:
+            yield ast.unparse(node)
+        elif isinstance(node, ast.ImportFrom) and node.module in ("subprocess", "asyncio.subprocess", "os"):
+            yield from (alias.name for alias in node.names if f"{node.module}.{alias.name}" in STARTS_PROCESSES)
+    yield from {"multiprocessing", "runpy", "pty"}.intersection(imports(path))
+
+
+def test_interpreters_are_started_in_one_place() -> None:
+    found = {module: list(started_processes(path)) for module, path in modules() if module not in MAY_START_PROCESSES}
+    assert {module: names for module, names in found.items() if names} == {}
 
 
 def loaded_after(code: str) -> set[str]:

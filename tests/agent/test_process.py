@@ -242,6 +242,18 @@ def test_repetitions_share_the_scenario_of_their_feature(tmp_path: Path) -> None
     assert judged[0].robustness != judged[1].robustness
 
 
+def test_python_files_that_nobody_brought_are_not_run(tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    (spec,) = write_run(folder, [Steps((("given", f'"{CUBE}" is located at "env:bench_ws" before event "t:end"'),))])
+    stranger = f"open({str(tmp_path / 'ran')!r}, 'w')\n"
+    for name in ("environment.py", "json.py", "numpy.py", "steps/other_steps.py", "steps/json.py"):
+        (folder / "features" / name).write_text(stranger)
+    (folder / "features" / "steps" / "model_steps.py").write_text("import json, numpy\n")
+    found = messages(agent(folder).stdout)
+    assert verdicts(found, spec, 0) == ["holds"]
+    assert not (tmp_path / "ran").exists()
+
+
 @pytest.mark.skipif(os.name == "nt", reason="there are no such signals")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_it_without_a_traceback(tmp_path: Path, number: signal.Signals) -> None:

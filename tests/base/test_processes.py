@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -170,13 +171,13 @@ def test_an_exit_code_in_words(code: int, words: str) -> None:
 
 
 @posix
-def test_a_program_that_takes_too_long_is_ended_with_its_children() -> None:
-    ending = processes.run_for(0.5, [sys.executable, "-c", PARENT])
+def test_a_program_that_takes_too_long_is_ended_with_its_children(tmp_path: Path) -> None:
+    ending = processes.run_for(0.5, [sys.executable, "-c", PARENT], tmp_path)
     assert ending.code is None
 
 
-def test_a_program_reads_and_writes() -> None:
+def test_a_program_reads_and_writes(tmp_path: Path) -> None:
     code = "import sys; print(sys.stdin.read().upper()); print('é', file=sys.stderr); sys.exit(3)"
     environment = {**os.environ, "PYTHONUTF8": "1"}
-    ending = processes.run_for(60, [sys.executable, "-c", code], environment, "text")
+    ending = processes.run_for(60, [sys.executable, "-c", code], tmp_path, environment, "text")
     assert ending == processes.Ending(3, "TEXT\n", "é\n")

@@ -142,7 +142,7 @@ ENDINGS = {
 def test_a_command_that_fails_dies_or_hangs_is_a_failed_part(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str
 ) -> None:
-    def ends(*_: Any) -> Ending:
+    def ends(*_: Any, **__: Any) -> Ending:
         return ENDINGS[name]
 
     monkeypatch.setattr(selftest, "run_for", ends)

@@ -53,7 +53,7 @@ def fail(context):
 
 def prepared(folder: Path, *scenarios: Sequence[tuple[str, str]], user: str = USER_STEPS) -> Manifest:
     write_run(folder, [Steps(tuple(steps), SCENE, seed) for seed, steps in enumerate(scenarios)])
-    (folder / "features" / "steps" / "user_steps.py").write_text(user)
+    (folder / "features" / "steps" / "model_steps.py").write_text(user)
     return read_manifest(folder)
 
 

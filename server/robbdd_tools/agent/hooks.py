@@ -15,6 +15,7 @@ from robbdd_tools.agent.user_code import fault_of, original
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.manifest import MANIFEST, read_manifest
 
+__all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario"]
 EXECUTION = "robbdd.execution"
 """Where behave's user data holds which scenario of the manifest is being executed: several may share a feature's."""
 

@@ -14,6 +14,7 @@ from robbdd_tools.agent.engine import mujoco
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.frames import at
 from robbdd_tools.agent.user_code import UserCodeError, called, definition_of, load_attribute, refused
+from robbdd_tools.base.interpreter import started_in
 from robbdd_tools.base.model_includes import unusable
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 
@@ -85,7 +86,7 @@ def _path(source: ModelSource) -> Path:
             where = "AMENT_PREFIX_PATH is not set" if not prefixes else "it is not in AMENT_PREFIX_PATH"
             raise SceneError(f"{at(source.origin)}the ROS package '{source.package}' cannot be found: {where}")
         return found
-    return path if source.origin is None else Path(source.origin.file).parent / path
+    return (started_in() if source.origin is None else Path(source.origin.file).parent) / path
 
 
 def _from_code(source: ModelSource) -> Any:

@@ -10,14 +10,18 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.agent import hooks
 from robbdd_tools.agent.channel import Channel, Reports, use_channel
 from robbdd_tools.agent.engine import version
 from robbdd_tools.agent.hooks import EXECUTION
 from robbdd_tools.agent.output import Printed, finish_output
 from robbdd_tools.agent.session import STRANGER
+from robbdd_tools.agent.steps import load_steps
 from robbdd_tools.agent.user_code import fault_of, original
+from robbdd_tools.agent.user_modules import folder_of, search
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
+    OWN_STEPS,
     ClauseJudged,
     LogLine,
     RunFinished,
@@ -61,16 +65,19 @@ def _behave(features: Features, orders: Iterable[str]) -> str:
     behave: Any = import_module("behave.runner")
     config = configuration([*QUIET, str(features.folder / "features")], load_config=False)
     runner = behave.Runner(config)
+    if not any((features.folder / "features").rglob("*.feature")):
+        return f"behave cannot run the features: No feature files in {features.folder / 'features'}"
     try:
-        runner.setup_paths()
-        with runner.path_manager:
-            runner.context = behave.Context(runner)
-            runner.load_hooks()
-            try:
-                runner.load_step_definitions()
-            except (Exception, SystemExit) as error:
-                return features.report_broken_steps(error)
-            runner.run_model(features.ordered(orders, config.userdata))
+        # What behave would load by itself is every Python file in the folder, which it also searches before the
+        # standard library.
+        runner.base_dir = config.base_dir = str(features.folder / "features")
+        runner.context = behave.Context(runner)
+        runner.hooks.update((name, getattr(hooks, name)) for name in hooks.__all__)
+        try:
+            load_steps(features.own_steps())
+        except (Exception, SystemExit) as error:
+            return features.report_broken_steps(error)
+        runner.run_model(features.ordered(orders, config.userdata))
     except Exception as error:  # behave's own failures (a broken hooks or steps file) are of many types
         return f"behave cannot run the features: {' '.join(str(error).split())}"
     return ""
@@ -84,6 +91,16 @@ class Features:
         self._manifest = manifest
         self._channel = channel
         self._parsed: dict[str, tuple[Any, dict[int, Any]] | Exception] = {}
+
+    def own_steps(self) -> list[Path]:
+        """Return the files of steps that users wrote, and let these import what lies beside the models.
+
+        Raises ``UserCodeError`` where code of users must not be run.
+        """
+        found = sorted((self.folder / "features" / "steps").glob(OWN_STEPS))
+        for model in dict.fromkeys(spec.model for spec in self._manifest.scenarios) if found else ():
+            search(folder_of(model))
+        return found
 
     def ordered(self, orders: Iterable[str], userdata: dict[str, str]) -> Iterator[Any]:
         """Yield one feature per order, with the one scenario that was ordered; every order gets its report."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent.errors import SceneError
@@ -40,6 +41,17 @@ def register() -> None:
         behave.step(OCCURS)(_await_event)
     finally:
         matchers.use_step_matcher("parse")
+
+
+def load_steps(files: Iterable[Path]) -> None:
+    """Register our steps and then those in files of users; raises whatever these raise."""
+    register()
+    matchers = import_module("behave.api.step_matchers")
+    names: dict[str, Any] = {"use_step_matcher": matchers.use_step_matcher, "step_matcher": matchers.step_matcher}
+    import_module("behave.step_registry").setup_step_decorators(names)
+    for file in files:
+        import_module("behave.runner_util").exec_file(str(file), dict(names))
+        matchers.use_default_step_matcher()
 
 
 def _tell(_context: Any) -> None:

@@ -14,7 +14,8 @@ from traceback import extract_tb
 from typing import Any
 
 from robbdd_tools.agent.output import encodable
-from robbdd_tools.base.files import load_bytes, uri_to_path
+from robbdd_tools.agent.user_modules import NotImported, folder_of, refuse_hidden, search
+from robbdd_tools.base.files import load_bytes
 from robbdd_tools.monitor.fault import Fault, Frame
 
 MOST_FRAMES = 20
@@ -34,13 +35,16 @@ class UserCodeError(Exception):
 def load_attribute(name: str, model: str) -> Callable[..., Any]:
     """Return ``module:attribute``; modules beside the file ``model`` (a path or URI) are found, too.
 
-    Raises ``UserCodeError``.
+    Raises ``UserCodeError``, also where another module has the name of one beside the model.
     """
     module_name, _, attribute = name.partition(":")
-    path = uri_to_path(model) if model.startswith("file:") else Path(model)
-    folder = str(path.resolve().parent) if path is not None else ""
-    if folder and folder not in sys.path:
-        sys.path.append(folder)
+    folder = folder_of(model)
+    try:
+        search(folder)
+        if folder is not None:
+            refuse_hidden(module_name.partition(".")[0], folder)
+    except NotImported as error:
+        raise refused(name, str(error), (Frame(str(error.file), 1),) if error.file else ()) from None
     module = called(name, importlib.import_module, module_name)
     found = getattr(module, attribute, None)
     if not callable(found):

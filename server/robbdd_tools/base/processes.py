@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol, TypedDict
 
 NICENESS = 10
@@ -72,15 +73,19 @@ class Ending:
 
 
 def run_for(
-    seconds: float, command: Sequence[str], environment: Mapping[str, str] | None = None, sent: str = ""
+    seconds: float, command: Sequence[str], folder: Path, environment: Mapping[str, str] | None = None, sent: str = ""
 ) -> Ending:
-    """Run a program that reads ``sent``; after ``seconds`` it is ended with its children. Raises ``OSError``."""
+    """Run a program in ``folder``; ``sent`` is its input.
+
+    After ``seconds`` it is ended with its children. Raises ``OSError``.
+    """
     pipe = subprocess.PIPE
     with subprocess.Popen(
         command,
         stdin=pipe,
         stdout=pipe,
         stderr=pipe,
+        cwd=folder,
         env=environment,
         encoding="utf-8",
         errors="replace",

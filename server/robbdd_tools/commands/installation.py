@@ -6,7 +6,6 @@ import json
 import platform
 import re
 import shutil
-import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from importlib import metadata
@@ -16,6 +15,8 @@ from typing import Any
 from robbdd_tools import __version__
 from robbdd_tools.base.data import PACKAGE
 from robbdd_tools.base.files import load_text
+from robbdd_tools.base.interpreter import working_folder
+from robbdd_tools.base.processes import run_for
 
 DISTRIBUTION = "robbdd-tools"
 REINSTALL = f"python -m pip install --force-reinstall {DISTRIBUTION}"
@@ -119,15 +120,16 @@ def _versions(names: list[str]) -> dict[str, str | None]:
 def _node() -> str:
     """Return the version of Node, which only the extension's developers need."""
     program = shutil.which("node")
-    if program is None:
+    # One in the working directory (Windows, or a relative entry of PATH) is not started.
+    if program is None or not Path(program).is_absolute():
         return "is not on PATH (only needed to build the extension)"
     try:
-        done = subprocess.run(
-            [program, "--version"], capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS, check=True
-        )
-    except (OSError, subprocess.SubprocessError) as error:
+        done = run_for(SECONDS, [program, "--version"], working_folder())
+    except OSError as error:
         return f"cannot be started: {error}"
-    return f"{done.stdout.strip()} ({program})"
+    if done.code != 0:
+        return f"does not work: {(done.errors or done.output).strip()} ({program})"
+    return f"{done.output.strip()} ({program})"
 
 
 def _extensions() -> Iterator[tuple[Path, str]]:

@@ -70,7 +70,7 @@ def judge(options: JudgeOptions) -> int:
 
 def _judged(folder: Path, manifest: Manifest, stored: StoredRun) -> RunResults:
     results = RunResults(manifest)
-    agent = Agent(folder, module="robbdd_tools.agent.judge", arguments=[str(stored.folder)])
+    agent = Agent(folder, module="robbdd_tools.agent.judge", arguments=[str(stored.folder.absolute())])
     ending = ""
     with Display(results) as display:
         try:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import subprocess
-import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import load_bytes
+from robbdd_tools.base.interpreter import run
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FINDINGS, INTERRUPTED, OK
@@ -101,8 +100,7 @@ def _refusal(stored: StoredRun, record: RunRecord) -> str:
 
 
 def _compare(stored: StoredRun, folder: Path, manifest: Manifest, indices: Sequence[int]) -> int:
-    command = [sys.executable, "-m", "robbdd_tools.agent.compare", str(stored.folder), str(folder)]
-    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
+    done = run("robbdd_tools.agent.compare", str(stored.folder.absolute()), str(folder))
     if done.returncode:
         return fail(f"the traces cannot be compared: {(done.stderr.strip().splitlines() or [''])[-1]}")
     found = {entry["index"]: entry["difference"] for entry in map(json.loads, done.stdout.splitlines())}

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
-import sys
 import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from robbdd_tools.base.files import load_text
-from robbdd_tools.base.processes import Ending, describe_exit, run_for
+from robbdd_tools.base.interpreter import run_for
+from robbdd_tools.base.processes import Ending, describe_exit
 from robbdd_tools.base.scaffold import begin_project
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands.installation import REINSTALL, SECONDS, Unavailable
@@ -133,8 +132,7 @@ def _robbdd(command: str, *arguments: str | Path, more: Mapping[str, str] | None
 
 
 def _python(module: str, *arguments: str, more: Mapping[str, str] | None = None, sent: str = "") -> Ending:
-    command = [sys.executable, "-P", "-m", module, *arguments]
-    return run_for(SECONDS, command, {**os.environ, **(more or {})}, sent)
+    return run_for(SECONDS, module, *arguments, more=more, sent=sent)
 
 
 def _message(content: Mapping[str, object]) -> str:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import asyncio
 import logging
 import pickle
-import sys
-from asyncio.subprocess import PIPE, Process
+from asyncio.subprocess import Process
 from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from typing import Any
 
+from robbdd_tools.base.interpreter import start_worker
 from robbdd_tools.lsp.frames import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.lsp.requests import log_background_error
 
@@ -93,7 +93,7 @@ class ShapeValidator:
 
     async def _start(self) -> Process:
         code = f"{_WORKER}(in_passing={self._in_passing})"
-        self._process = await asyncio.create_subprocess_exec(sys.executable, "-c", code, stdin=PIPE, stdout=PIPE)
+        self._process = await start_worker(code)
         self._spawn(self._receive(self._process))
         return self._process
 

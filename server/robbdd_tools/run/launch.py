@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
+from subprocess import TimeoutExpired
 from time import monotonic
 
 from robbdd_tools.base.files import load_bytes
+from robbdd_tools.base.interpreter import start
 from robbdd_tools.base.limits import RESULT_SIZE
-from robbdd_tools.base.processes import describe_exit, end_group, own_group, request_end
+from robbdd_tools.base.processes import describe_exit, end_group, request_end
 from robbdd_tools.run.protocol import Execute, LogLine, RunMessage, decode, encode
 
 LOGS = "logs"
+WORK = "work"
+"""Working directory of the agents, in the run's folder: files that users' code writes are kept with the run."""
 PATIENCE = 0.2
 """Seconds that agents have to end by themselves when they are told to stop."""
 
@@ -28,18 +30,13 @@ class Agent:
     def __init__(
         self, folder: Path, number: int = 1, module: str = "robbdd_tools.agent", arguments: Sequence[str] = ()
     ) -> None:
+        folder = folder.absolute()
+        work = folder / WORK
+        work.mkdir(exist_ok=True)
         self._log = folder / LOGS / f"agent-{number}.log"
         self._log.parent.mkdir(exist_ok=True)
         with self._log.open("wb") as log:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", module, str(folder), *arguments],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=log,
-                text=True,
-                encoding="utf-8",
-                **own_group(),
-            )
+            self._process = start(module, str(folder), *arguments, folder=work, log=log)
 
     @property
     def pid(self) -> int:
@@ -91,7 +88,7 @@ class Agent:
 
     def wait(self, seconds: float) -> None:
         """Wait for the process's end, at most for a time."""
-        with suppress(subprocess.TimeoutExpired):
+        with suppress(TimeoutExpired):
             self._process.wait(max(0.0, seconds))
 
     def _last_log_line(self) -> str:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from collections.abc import Iterable
 from pathlib import Path
+
+from robbdd_tools.base.interpreter import run
 
 NO_GRAPHICS = 3
 """Exit code of the rendering process when a back end does not work."""
@@ -67,11 +68,10 @@ def render_thumbnails(folder: Path, output: Path, chosen: Iterable[tuple[int, in
 
 def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> list[str]:
     """Return the names of the pictures."""
-    command = [sys.executable, "-m", "robbdd_tools.agent.render", str(folder), what, str(output.absolute()), *more]
+    arguments = (str(folder.absolute()), what, str(output.absolute()), *more)
     tried: list[str] = []
     for back_end in back_ends():
-        environment = {**os.environ, "MUJOCO_GL": back_end}
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        done = run("robbdd_tools.agent.render", *arguments, more={"MUJOCO_GL": back_end})
         if done.returncode == 0:
             return done.stdout.splitlines()
         said = (done.stderr.strip().splitlines() or [f"the rendering process ended with code {done.returncode}"])[-1]

@@ -14,7 +14,7 @@ from robbdd_tools.gherkin.files import FeaturePlan, only, whole_plan, written_sc
 from robbdd_tools.gherkin.skeleton import steps_file
 from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri, Story, Variant
 from robbdd_tools.run.manifest import written_manifest
-from robbdd_tools.run.protocol import Manifest, ScenarioSpec
+from robbdd_tools.run.protocol import OWN_STEPS, Manifest, ScenarioSpec
 from robbdd_tools.run.related import Relations
 from robbdd_tools.run.specs import SpecWriter
 
@@ -80,6 +80,8 @@ def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Pa
     """Write everything that the agent needs to run several models, called ``name`` together; raises ``OSError``."""
     parts: list[_Part] = []
     sources: dict[str, str] = {}
+    for stale in (folder / FEATURES / "steps").glob(OWN_STEPS):
+        stale.unlink()
     for number, request in enumerate(requests, start=1):
         below = FEATURES if len(requests) == 1 else f"{FEATURES}/{number}-{Path(request.name).stem}"
         plan = replace(whole_plan(request.model), stories=request.stories(), scenarios=request.scenarios)

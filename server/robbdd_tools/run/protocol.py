@@ -22,6 +22,8 @@ from robbdd_tools.monitor.verdict import Verdict
 
 VIEWER = "ROBBDD_VIEWER"
 """Environment variable of the agent: when it is set, a window shows each scenario in real time."""
+OWN_STEPS = "model_*steps.py"
+"""Pattern of the files in a run's folder of steps that are copies of users' own."""
 NO_STEP = "no step definition"
 """How the reason begins why a clause is unknown that nothing can judge."""
 

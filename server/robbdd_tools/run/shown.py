@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from robbdd_tools.base import interpreter
 from robbdd_tools.base.files import load_text, path_to_uri
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.monitor.verdict import Outcome
@@ -114,8 +113,7 @@ def kept_curves(run: StoredRun, index: int) -> Mapping[str, Any]:
 
 
 def _seen(run: StoredRun, index: int) -> dict[str, Any]:
-    command = [sys.executable, "-m", "robbdd_tools.agent.show", str(run.folder), str(index)]
-    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
+    done = interpreter.run("robbdd_tools.agent.show", str(run.folder.absolute()), str(index))
     if done.returncode:
         said = (done.stderr.strip().splitlines() or [f"the reading process ended with code {done.returncode}"])[-1]
         raise NoTrace(said)

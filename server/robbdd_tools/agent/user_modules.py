@@ -1,0 +1,66 @@
+"""Where modules of users are found: behind the standard library and all installed packages."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.interpreter import NO_USER_CODE, inherited_paths, started_in
+from robbdd_tools.base.isolation import SEARCHED
+from robbdd_tools.catalog.registry import load_catalog
+
+_folders: list[str] = []
+"""Folders of models whose code was asked for; they and ``_last``, those of ``PYTHONPATH``, end ``sys.path``."""
+_last: list[str] = []
+
+
+class NotImported(Exception):
+    """A module of a user is not imported; the message says why, ``file`` is the module if there is one."""
+
+    def __init__(self, message: str, file: Path | None = None) -> None:
+        super().__init__(message)
+        self.file = file
+
+
+def folder_of(model: str) -> Path | None:
+    """Return the folder of a model (a path or URI), ``None`` where that is no file."""
+    path = uri_to_path(model) if model.startswith("file:") else Path(model)
+    return None if not model or path is None else (started_in() / path).resolve().parent
+
+
+def search(folder: Path | None) -> None:
+    """Let modules in a folder be imported, and those in the environment's ``PYTHONPATH``: all others come first.
+
+    Raises ``NotImported`` where this process must not run code of users.
+    """
+    if os.environ.get(NO_USER_CODE):
+        raise NotImported("code of users is not run: --no-user-code was given")
+    # Words that packages add to the catalog are found on sys.path: only installed packages may add any.
+    load_catalog()
+    if not _folders:
+        _last.extend(entry for entry in inherited_paths() if entry not in sys.path)
+        if _last:
+            # Programs that users' code starts have the environment that the user gave.
+            os.environ[SEARCHED] = os.pathsep.join(inherited_paths())
+    if folder is not None and str(folder) not in _folders:
+        _folders.append(str(folder))
+    others = [entry for entry in sys.path if entry not in _folders and entry not in _last]
+    sys.path[:] = [*others, *_folders, *_last]
+
+
+def refuse_hidden(name: str, folder: Path) -> None:
+    """Raise ``NotImported`` where a module beside the model cannot be imported because of another of its name."""
+    own = next((one for one in (folder / f"{name}.py", folder / name / "__init__.py") if one.is_file()), None)
+    if own is None:
+        return
+    loaded = sys.modules.get(name)
+    spec = find_spec(name) if loaded is None else loaded.__spec__
+    place = None if spec is None else spec.origin
+    if place is None or Path(place).resolve() != own.resolve():
+        known = "Python's standard library" if name in sys.stdlib_module_names else place or "another package"
+        raise NotImported(
+            f"{own} is not imported: {known} has a module '{name}', too; rename the file and its uses", own
+        )

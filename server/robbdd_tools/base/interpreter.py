@@ -1,0 +1,133 @@
+"""Starts Python interpreters of ours, isolated from the folder that is looked at and from the environment's modules.
+
+``python -m`` and ``python -c`` search the working directory before the standard library, and ``PYTHONPATH`` before it,
+too: a ``calendar.py`` beside a model would run. So no interpreter is started in any other way than here: with ``-P``,
+without ``PYTHONPATH``, in a folder of ours.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import subprocess
+import sys
+from asyncio.subprocess import PIPE, Process
+from collections.abc import Mapping
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import IO
+
+from robbdd_tools.base import processes
+from robbdd_tools.base.isolation import INHERITED, SEARCHED
+from robbdd_tools.base.processes import Ending, own_group
+
+PACKAGE_ROOT = Path(__file__).resolve().parents[2]
+STARTED_IN = "ROBBDD_STARTED_IN"
+"""Environment variable: the working directory of the process that started this one."""
+NO_USER_CODE = "ROBBDD_NO_USER_CODE"
+"""Environment variable: when it is set, an agent imports no code of users."""
+_DROPPED = (SEARCHED, INHERITED, "PYTHONINSPECT", "PYTHONSTARTUP")
+_FOLDERS = ("PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX")
+"""Variables that name a folder to load code from: a relative one would be found in whatever folder is opened."""
+
+
+def run(module: str, *arguments: str, more: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a module of ours to its end, with ``more`` environment variables, and return what it wrote."""
+    return subprocess.run(
+        _command("-m", module, *arguments),
+        cwd=working_folder(),
+        env={**_environment(), **(more or {})},
+        capture_output=True,
+        encoding="utf-8",
+        errors="replace",
+        check=False,
+    )
+
+
+def run_for(
+    seconds: float, module: str, *arguments: str, more: Mapping[str, str] | None = None, sent: str = ""
+) -> Ending:
+    """Run a module of ours that reads ``sent``; after ``seconds`` it is ended with its children."""
+    environment = {**_environment(), **(more or {})}
+    return processes.run_for(seconds, _command("-m", module, *arguments), working_folder(), environment, sent)
+
+
+def start(module: str, *arguments: str, folder: Path, log: IO[bytes]) -> subprocess.Popen[str]:
+    """Start a module of ours that works in ``folder``, speaks over its standard streams and logs to ``log``.
+
+    It leads a process group, see ``own_group``.
+    """
+    return subprocess.Popen(
+        _command("-m", module, *arguments),
+        cwd=folder,
+        env=_environment(),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=log,
+        text=True,
+        encoding="utf-8",
+        **own_group(),
+    )
+
+
+async def start_worker(code: str) -> Process:
+    """Start an interpreter that executes ``code`` of ours and speaks over its standard streams."""
+    return await asyncio.create_subprocess_exec(
+        *_command("-c", code), cwd=working_folder(), env=_environment(), stdin=PIPE, stdout=PIPE
+    )
+
+
+def inherited_paths() -> list[str]:
+    """Return the absolute folders of the ``PYTHONPATH`` that the first process of ours was started with.
+
+    Empty and relative entries mean the working directory and are left out.
+    """
+    stated = os.environ.get(SEARCHED, os.environ.get(INHERITED, ""))
+    return [entry for entry in stated.split(os.pathsep) if Path(entry).is_absolute()]
+
+
+def started_in() -> Path:
+    """Return the folder that relative paths of users count from."""
+    return Path(os.environ.get(STARTED_IN) or Path.cwd())
+
+
+def working_folder() -> Path:
+    """Return an empty folder of this process, which is deleted when it ends."""
+    folder = _new_folder()
+    if not folder.is_dir():  # a cleaner of temporary files came by
+        _new_folder.cache_clear()
+        folder = _new_folder()
+    return folder
+
+
+@cache
+def _new_folder() -> Path:
+    import atexit
+    import shutil
+    import tempfile
+
+    folder = tempfile.mkdtemp(prefix="robbdd-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
+
+
+def _command(*arguments: str) -> list[str]:
+    return [sys.executable, "-P", *arguments]
+
+
+def _environment() -> dict[str, str]:
+    """Return the environment of an interpreter: ``PYTHONPATH`` goes under another name, for the agent."""
+    kept = {name: value for name, value in os.environ.items() if name not in _DROPPED}
+    for name in _FOLDERS:
+        if name in kept and not Path(kept[name]).is_absolute():
+            del kept[name]
+    inherited = inherited_paths()
+    if inherited:
+        kept[INHERITED] = os.pathsep.join(inherited)
+    if any(Path(entry).resolve() == PACKAGE_ROOT for entry in inherited):
+        # Installed by `pip install --target`: without this folder there is neither this package nor its libraries.
+        kept[SEARCHED] = str(PACKAGE_ROOT)
+    with suppress(OSError):  # the working directory was deleted
+        kept[STARTED_IN] = str(Path.cwd())
+    return kept

@@ -1,0 +1,39 @@
+"""Cleans Python's module path in a running interpreter. Imports nothing that could be planted in a folder."""
+
+from __future__ import annotations
+
+# All three are part of every running interpreter: none is searched for on sys.path.
+import os
+import site
+import sys
+
+SEARCHED = "PYTHONPATH"
+INHERITED = "ROBBDD_PYTHONPATH"
+"""Holds ``PYTHONPATH`` for the agent, which searches its absolute folders last."""
+
+
+def isolate() -> None:
+    """Remove the working directory, the script's folder and the folders of ``PYTHONPATH`` from ``sys.path``.
+
+    A folder of ``PYTHONPATH`` that holds this package is searched last instead: an installation made by
+    ``pip install --target`` has its libraries there.
+    """
+    stated = os.environ.pop(SEARCHED, None)
+    if stated is not None:
+        os.environ[INHERITED] = stated
+    added = [] if stated is None else stated.split(os.pathsep)
+    removed = {os.path.abspath(entry) for entry in added} | {""}
+    if not sys.flags.safe_path:
+        removed.add(sys.path[0])
+    removed -= _installed()
+    package = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    sys.path[:] = [entry for entry in sys.path if entry not in removed]
+    if package in added:
+        sys.path.append(package)
+
+
+def _installed() -> set[str]:
+    """Return the folders of the interpreter's own installation, which somebody may name in ``PYTHONPATH`` as well."""
+    library = os.path.dirname(os.__file__)
+    own = site.USER_SITE if site.ENABLE_USER_SITE else None
+    return {library, os.path.join(library, "lib-dynload"), *site.getsitepackages(), *([own] if own else [])}

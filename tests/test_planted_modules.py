@@ -1,0 +1,132 @@
+"""No module that lies beside the models is imported in place of one that we mean."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+from lsprotocol import types
+from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
+
+from lsp_kit import ASKED, PATIENCE
+from planting_kit import HostileFolder, importable_names
+from robbdd_tools.base.files import path_to_uri
+
+SCRIPTS = Path(sysconfig.get_path("scripts"))
+COMMANDS = (
+    "check .",
+    "format --check .",
+    "gherkin pickplace.bdd -o out/features",
+    "graph pickplace.bddx",
+    "steps pickplace.bdd",
+    "query pickplace.bdd --name variants",
+    "view pickplace.bdd -o out/scene.png",
+    "run pickplace.bddx --first 1 --store out/runs --json out/results.json",
+    "runs --store out/runs",
+    "judge latest pickplace.bddx --store out/runs",
+    "replay latest --store out/runs",
+)
+FINDINGS = 1
+
+
+RULE = """@prefix sh: <http://www.w3.org/ns/shacl#> .
+@prefix bdd: <https://secorolab.github.io/metamodels/acceptance-criteria/bdd#> .
+<urn:rule> a sh:NodeShape ; sh:targetClass bdd:ScenarioTemplate ; sh:severity sh:Warning ; sh:property [
+    sh:path <urn:never> ; sh:minCount 1 ; sh:severity sh:Warning ; sh:message "a rule of the project" ] .
+"""
+
+
+async def _published(client: LanguageClient, uri: str, code: str) -> None:
+    async with asyncio.timeout(PATIENCE):
+        while code not in [str(entry.code) for entry in client.diagnostics.get(uri, [])]:
+            await asyncio.sleep(0.02)
+
+
+def _ignore(*_: object) -> None:
+    return None
+
+
+def environment(python_path: str | None) -> dict[str, str]:
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "ROBBDD_"))}
+    return kept if python_path is None else {**kept, "PYTHONPATH": python_path}
+
+
+def test_the_trap_works(tmp_path: Path) -> None:
+    hostile = HostileFolder(tmp_path)
+    command = [sys.executable, "-c", "import calendar, rdflib, robbdd_tools.cli"]
+    subprocess.run(command, cwd=hostile.models, env=environment(None), capture_output=True)
+    assert {"calendar", "rdflib", "robbdd_tools"} <= set(hostile.imported())
+    assert len(importable_names()) > 300
+
+
+@pytest.mark.physics
+@pytest.mark.skipif(os.name == "nt", reason="the interpreter reads PYTHONPATH before the commands of Windows can help")
+@pytest.mark.parametrize(
+    ("inside", "python_path"),
+    [(True, None), (True, ":"), (False, ":models:.")],
+    ids=["inside", "inside-empty-entry", "outside-relative-entries"],
+)
+def test_no_command_imports_a_planted_module(inside: bool, python_path: str | None, tmp_path: Path) -> None:
+    hostile = HostileFolder(tmp_path)
+    start = hostile.models if inside else hostile.root
+    for command in COMMANDS:
+        words = command.split()
+        if not inside:
+            names = {path.name for path in hostile.models.iterdir()} | {"."}
+            words = [str(hostile.models / word) if word in names else word for word in words]
+        done = subprocess.run(
+            [SCRIPTS / "robbdd", *words], cwd=start, env=environment(python_path), capture_output=True, text=True
+        )
+        assert hostile.imported() == [], command
+        assert done.returncode in (0, FINDINGS), (command, done.stderr)
+        assert "Traceback" not in done.stderr, (command, done.stderr)
+
+
+@pytest.mark.physics
+@pytest.mark.skipif(os.name == "nt", reason="the interpreter reads PYTHONPATH before the commands of Windows can help")
+@pytest.mark.parametrize("python_path", [None, ":"], ids=["clean", "empty-entry"])
+@pytest.mark.parametrize("trusted", [True, False], ids=["trusted", "untrusted"])
+async def test_no_process_of_the_server_imports_a_planted_module(
+    trusted: bool, python_path: str | None, tmp_path: Path
+) -> None:
+    hostile = HostileFolder(tmp_path)
+    (hostile.models / "robbdd.toml").write_text('shapes = ["rule.ttl"]\n', encoding="utf-8")
+    (hostile.models / "rule.ttl").write_text(RULE, encoding="utf-8")
+    (hostile.models / "closed.bdd").write_text("Scenario (", encoding="utf-8")
+    client = make_test_lsp_client()
+    for method in ASKED:
+        # In place of what pytest-lsp may do by itself; pygls leaves the type of its table open.
+        client.protocol.fm.features[method] = _ignore  # pyright: ignore[reportUnknownMemberType]
+    start = cast(Any, client).start_io
+    await start(str(SCRIPTS / "robbdd-lsp"), "--stdio", cwd=hostile.models, env=environment(python_path))
+    await client.initialize_session(
+        types.InitializeParams(
+            capabilities=client_capabilities("visual-studio-code"),
+            workspace_folders=[types.WorkspaceFolder(uri=path_to_uri(hostile.root), name="hostile")],
+            initialization_options={"trusted": trusted},
+        )
+    )
+    path = hostile.models / "pickplace.bdd"
+    uri = path_to_uri(path)
+    item = types.TextDocumentItem(uri=uri, language_id="bdd", version=0, text=path.read_text(encoding="utf-8"))
+    client.text_document_did_open(types.DidOpenTextDocumentParams(text_document=item))
+
+    async def execute(command: str, **options: object) -> Any:
+        params = types.ExecuteCommandParams(command=command, arguments=[{"uri": uri, **options}])
+        return await client.workspace_execute_command_async(params)
+
+    # The process for open files has found this one, the process for all others the next one.
+    await _published(client, uri, "shape-rule")
+    await _published(client, path_to_uri(hostile.models / "closed.bdd"), "syntax")
+    answer = await execute("robbdd.run", first=1)
+    assert ("problem" in cast("dict[str, Any]", answer)) is not trusted, answer
+    await execute("robbdd.gherkin")
+    assert hostile.imported() == []
+    await client.shutdown_session()
+    assert hostile.imported() == []
