@@ -6,7 +6,7 @@ from pathlib import PurePath, PurePosixPath, PureWindowsPath
 
 import pytest
 
-from robbdd_tools.base.uris import canonical_uri, path_of, uri_of
+from robbdd_tools.base.uris import canonical_uri, drive_uri, path_of, uri_of
 
 PAIRS = [
     (PurePosixPath("/home/you/lab.scene"), "file:///home/you/lab.scene"),
@@ -57,3 +57,10 @@ def test_what_is_no_file_stays_as_it_is(uri: str) -> None:
 def test_only_windows_reads_files_of_another_machine() -> None:
     assert path_of("file://server/share/x.bdd", PurePosixPath) is None
     assert path_of("file://server/share/x.bdd", PureWindowsPath) == PureWindowsPath("//server/share/x.bdd")
+
+
+@pytest.mark.parametrize("path", ["C:/cell/lab.scene", "c:/cell/lab.scene"])
+def test_only_windows_has_drives(path: str) -> None:
+    assert drive_uri(path, PureWindowsPath) == "file:///c%3A/cell/lab.scene"
+    assert drive_uri(path, PurePosixPath) is None
+    assert drive_uri("cell/lab.scene", PureWindowsPath) is None

@@ -1,11 +1,12 @@
 """Names of executable scenes and executions are found across all kinds of files."""
 
 import sys
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 
 import pytest
 
 from kit import FOLDER, MODEL, Fixture, assert_diagnostics, corpus, fixture
+from robbdd_tools.base import uris
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import complete
@@ -216,6 +217,18 @@ def test_an_address_or_a_drive_is_no_package() -> None:
     assert imports.import_uri("file:///a/b.bdd", "lab.scene") == "file:///a/lab.scene"
     for path in ("https://example.org/a.scene", "C:/models/a.scene"):
         assert imports.missing_package(imports.import_uri("file:///a/b.bdd", path)) is None
+
+
+def test_a_path_with_backslashes_is_reported_with_the_one_that_all_systems_read() -> None:
+    found = findings(fixture("//- a.bdd\n" + r'import "cells\lab.scene"' + "\n"))
+    assert [entry.message for entry in found] == [
+        r"only Windows reads 'cells\lab.scene': write 'cells/lab.scene', which all systems read"
+    ]
+
+
+def test_windows_reads_a_path_with_a_drive(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(uris, "HERE", PureWindowsPath)
+    assert imports.import_uri("file:///c%3A/a/b.bdd", "D:/lab/one.scene") == "file:///d%3A/lab/one.scene"
 
 
 def test_names_behind_an_unread_file_of_their_kind_are_not_reported() -> None:

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.base.file_names import safe_stem
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import thumbnail_file
 
@@ -118,7 +119,7 @@ def _videos(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
 
 
 def _stem(spec: ScenarioSpec) -> str:
-    return spec.name.rpartition(":")[2].replace(" -- ", "-")
+    return safe_stem(spec.name.rpartition(":")[2].replace(" -- ", "-"))
 
 
 def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]], small: bool = False) -> Iterator[Path]:

@@ -38,6 +38,12 @@ def uri_of(path: PurePath) -> str:
     return canonical_uri(text, type(path))
 
 
+def drive_uri(path: str, kind: type[PurePath] | None = None) -> str | None:
+    """Return the URI of a path that begins with a drive; ``None`` for any other, and where there are no drives."""
+    found = (kind or HERE)(path)
+    return uri_of(found) if isinstance(found, PureWindowsPath) and found.drive and found.is_absolute() else None
+
+
 def canonical_uri(uri: str, kind: type[PurePath] = HERE) -> str:
     """Return the one URI of a file; any other URI as it is."""
     found = _FILE.fullmatch(uri)

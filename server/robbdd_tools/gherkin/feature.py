@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from robbdd_tools.base.file_names import safe_stem
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.outline import Outline, outline, variable_name
@@ -107,8 +108,7 @@ def feature_file_name(model: AcceptanceModel, story: Story) -> str:
 
 
 def _file_stem(model: AcceptanceModel, iri: Iri) -> str:
-    name = model.curie(iri).rsplit(":", 1)[-1]
-    return "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in name)
+    return safe_stem(model.curie(iri).rsplit(":", 1)[-1])
 
 
 class _FeatureWriter:

@@ -11,6 +11,7 @@ from pathlib import Path
 from urllib.parse import quote, unquote, urljoin, urlsplit
 
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.uris import drive_uri
 
 IMPORTABLE: Mapping[str, tuple[str, ...]] = {
     "scene": ("scene",),
@@ -20,6 +21,7 @@ IMPORTABLE: Mapping[str, tuple[str, ...]] = {
     "bddx": ("bdd", "scenex"),
 }
 """The kinds of file that each kind may import."""
+BACKSLASH = "\\"
 _PACKAGE = "package:"
 _ADDRESS = "address:"
 # URLs, and the shared folders of other machines as Windows and URLs write them.
@@ -29,13 +31,16 @@ _ADDRESSES = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*://|file:|//|\\\\")
 def import_uri(importer: str, path: str) -> str:
     """Return the URI that an import's path means: relative to its file, or ``package:path`` inside a package.
 
-    A file of a package that is not installed has a URI by which ``missing_package`` knows it, an address of another
-    machine or a URL one by which ``not_a_path`` does: nothing is read from there.
+    A file of a package that is not installed has a URI by which ``missing_package`` knows it; an address of another
+    machine, a URL or a path with backslashes has one by which ``not_a_path`` does: nothing is read from there.
     """
-    if _ADDRESSES.match(path):
+    if _ADDRESSES.match(path) or BACKSLASH in path:
         return f"{_ADDRESS}{quote(path)}"
+    drive = drive_uri(path)
+    if drive is not None:
+        return drive
     package, colon, inside = path.partition(":")
-    # One letter is a drive of Windows; a package's code must not run, so that only its place is looked up.
+    # A package's code must not run: only its place is looked up. One letter is a drive, which POSIX has none of.
     if not colon or not package.isidentifier() or len(package) == 1 or inside.startswith("//"):
         return urljoin(importer, quote(path))
     folder = _package_folder(package)
@@ -65,10 +70,13 @@ def missing_package(uri: str) -> str | None:
 
 
 def not_a_path(uri: str) -> str | None:
-    """Say that an import is an address instead of a path; ``None`` when it is none."""
+    """Say that an import is no path that every system reads; ``None`` when it is one."""
     if not uri.startswith(_ADDRESS):
         return None
-    return f"'{unquote(uri.removeprefix(_ADDRESS))}' is an address: import a file of this machine by its path"
+    written = unquote(uri.removeprefix(_ADDRESS))
+    if not _ADDRESSES.match(written):
+        return f"only Windows reads '{written}': write '{written.replace(BACKSLASH, '/')}', which all systems read"
+    return f"'{written}' is an address: import a file of this machine by its path"
 
 
 def not_importable(importer: str, imported: str) -> str | None:

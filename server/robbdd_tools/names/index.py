@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Document, Span
-from robbdd_tools.names.imports import import_uri
+from robbdd_tools.names.imports import BACKSLASH, import_uri
 from robbdd_tools.names.table import Entry, NameTable, make_table, update_table
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import Placed
@@ -90,11 +91,18 @@ def imports_of(document: Document) -> tuple[ImportPath, ...]:
     return _imports(document, (Placed(parse_declaration(language, chunk.text), chunk.offset) for chunk in chunks))
 
 
+# Quotes and backslashes are what else is escaped.
+_WINDOWS_PATH = re.compile(r"\\[^\\\"']")
+
+
 def _imports(document: Document, declarations: Iterable[Placed]) -> tuple[ImportPath, ...]:
     found: list[ImportPath] = []
     for placed in declarations:
         if isinstance(placed.declaration.tree, tree.Import):
             path = placed.declaration.tree.path
             span = Span(path.span.start + 1, path.span.end - 1).shifted(placed.offset)
-            found.append(ImportPath(span, path.value, import_uri(document.uri, path.value)))
+            # A backslash is an escape in a string: the one between two folders of Windows is not part of its value.
+            written = document.text[span.start : span.end]
+            meant = written if _WINDOWS_PATH.search(written) and BACKSLASH not in path.value else path.value
+            found.append(ImportPath(span, path.value, import_uri(document.uri, meant)))
     return tuple(found)
