@@ -9,9 +9,10 @@ import sys
 import threading
 import tracemalloc
 import weakref
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import psutil
 import pytest
@@ -118,6 +119,26 @@ async def test_a_handler_that_is_done_leaves_no_future_behind() -> None:
     await asyncio.sleep(0)
     assert not server.protocol._request_futures  # pyright: ignore[reportPrivateUsage]
     server.stop()
+
+
+async def test_handlers_that_go_on_are_ended_by_a_shutdown() -> None:
+    server = create_server()
+    protocol = server.protocol
+
+    async def wait(*_: object) -> None:
+        await asyncio.Event().wait()
+
+    def edit(*_: object) -> Generator[Any, Any, None]:
+        yield wait, (), {}
+
+    for number in range(3):
+        protocol._execute_handler(f"edit {number}", edit, lambda _: None)  # pyright: ignore[reportPrivateUsage]
+    # As pygls does it, step by step.
+    for _ in protocol.lsp_shutdown():  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
+        pass
+    for _ in range(4):
+        await asyncio.sleep(0)
+    assert not protocol._request_futures  # pyright: ignore[reportPrivateUsage]
 
 
 def test_digests_do_not_keep_the_texts_that_they_were_made_of() -> None:

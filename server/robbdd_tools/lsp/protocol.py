@@ -56,8 +56,16 @@ class Protocol(LanguageServerProtocol):
         """Call a handler and drop its future when it is done: pygls keeps those of edits for ever."""
         super()._execute_handler(msg_id, handler, callback, args, kwargs)
         future = self._request_futures.get(msg_id)
-        if future is not None:
-            future.add_done_callback(lambda _: self._request_futures.pop(msg_id, None))
+        if future is None:
+            return
+
+        def drop() -> None:
+            if self._request_futures.get(msg_id) is future:
+                del self._request_futures[msg_id]
+
+        # Not at once: as it shuts down, pygls cancels all futures while it iterates over them.
+        loop = asyncio.get_running_loop()
+        future.add_done_callback(lambda _: loop.call_soon(drop))
 
     def _send_data(self, data: Any) -> None:
         self._outbox.submit(self._write, data)
