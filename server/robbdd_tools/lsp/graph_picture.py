@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools.features.graph_picture import MOST_DRAWN, GraphPicture, graph_picture
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.last_good import LastGood
+from robbdd_tools.lsp.parameters import Parameters
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.source_map import Location
@@ -29,20 +30,22 @@ def register_graph(server: RobbddServer) -> None:
 
     @server.feature(GRAPH)
     async def show(ls: RobbddServer, params: Any) -> dict[str, Any]:
+        asked = Parameters(params)
+
         def answer(snapshot: Snapshot) -> dict[str, Any]:
-            uri = str(params.uri)
-            made, problem = kept.of(snapshot, uri, None, lambda: _drawn(snapshot, ls.convert, params))
+            uri = asked.text("uri")
+            made, problem = kept.of(snapshot, uri, None, lambda: _drawn(snapshot, ls.convert, asked))
             return {"uri": uri, "problem": problem, **(made or NOTHING)}
 
         return await ls.in_background(answer)
 
 
-def _drawn(snapshot: Snapshot, convert: Converter, params: Any) -> dict[str, Any]:
-    uri = str(params.uri)
-    position = getattr(params, "position", None)
+def _drawn(snapshot: Snapshot, convert: Converter, asked: Parameters) -> dict[str, Any]:
+    uri = asked.text("uri")
+    position = asked.optional_position("position")
     offset = None if position is None else convert.offset(document_of(snapshot, uri), position)
-    before = str(getattr(params, "iri", None) or "")
-    most = int(getattr(params, "most", None) or MOST_DRAWN)
+    before = asked.optional_text("iri") or ""
+    most = asked.optional_number("most") or MOST_DRAWN
     return _answer(snapshot, convert, graph_picture(snapshot, uri, offset, before, most))
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools.gherkin.preview import MOST_SHOWN, Preview, preview
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.last_good import LastGood
+from robbdd_tools.lsp.parameters import Parameters
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -29,11 +30,11 @@ class Previews:
         self._kept = LastGood()
         self.forget = self._kept.forget
 
-    def show(self, snapshot: Snapshot, convert: Converter, params: Any) -> dict[str, Any]:
+    def show(self, snapshot: Snapshot, convert: Converter, asked: Parameters) -> dict[str, Any]:
         """Return the answer to a request; text with errors is answered with the last preview without."""
-        uri = str(params.uri)
-        scenario = getattr(params, "scenario", None)
-        most = int(getattr(params, "most", None) or MOST_SHOWN)
+        uri = asked.text("uri")
+        scenario = asked.optional_text("scenario")
+        most = asked.optional_number("most") or MOST_SHOWN
         made, problem = self._kept.of(
             snapshot, uri, scenario, lambda: _answer(snapshot, convert, preview(snapshot, uri, scenario, most))
         )
@@ -48,7 +49,7 @@ def register_preview(server: RobbddServer) -> None:
 
     @server.feature(PREVIEW)
     async def show(ls: RobbddServer, params: Any) -> dict[str, Any]:
-        return await ls.in_background(lambda snapshot: previews.show(snapshot, ls.convert, params))
+        return await ls.in_background(lambda snapshot: previews.show(snapshot, ls.convert, Parameters(params)))
 
 
 def _answer(snapshot: Snapshot, convert: Converter, made: Preview) -> dict[str, Any]:

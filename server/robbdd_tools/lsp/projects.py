@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.base.scaffold import ScaffoldProblem, begin_project, templates
+from robbdd_tools.lsp.parameters import Parameters
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -29,10 +30,12 @@ def register_projects(server: RobbddServer) -> None:
 
     @server.feature(NEW_PROJECT)
     async def new_project(params: Any) -> dict[str, Any]:
-        folder = uri_to_path(str(params.uri))
+        asked = Parameters(params)
+        uri, template = asked.text("uri"), asked.text("template")
+        folder = uri_to_path(uri)
         if folder is None:
-            return {"models": [], "problem": f"{params.uri} is not a folder of this machine"}
-        return await asyncio.to_thread(_begin, folder, str(params.template))
+            return {"models": [], "problem": f"{uri} is not a folder of this machine"}
+        return await asyncio.to_thread(_begin, folder, template)
 
 
 def _begin(folder: Path, template: str) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
 from robbdd_tools.names.variants import variants_of
 from robbdd_tools.run.shown import NoTrace, find_trace, scenarios, shown_trace, summary
@@ -31,7 +32,9 @@ def register_stored_runs(server: RobbddServer) -> None:
 
     @server.feature(RUNS)
     async def runs(ls: RobbddServer, params: Any) -> dict[str, Any]:
-        return await _answered(lambda: _runs(ls.stores.of(str(params.uri)), params))
+        asked = Parameters(params)
+        uri = asked.text("uri")
+        return await _answered(lambda: _runs(ls.stores.of(uri), asked))
 
     @server.feature(TRACE)
     async def trace(ls: RobbddServer, params: Any) -> dict[str, Any]:
@@ -41,8 +44,10 @@ def register_stored_runs(server: RobbddServer) -> None:
         def now(snapshot: Snapshot) -> set[tuple[str, str]] | None:
             return _stated(snapshot, files, scenario["variant"], scenario["variation"])
 
-        found = await _answered(lambda: _trace(ls.stores.of(str(params.uri)), params))
-        files, scenario = list(dict.fromkeys([str(params.uri), found.pop("model")])), found["scenario"]
+        asked = Parameters(params)
+        uri = asked.text("uri")
+        found = await _answered(lambda: _trace(ls.stores.of(uri), asked))
+        files, scenario = list(dict.fromkeys([uri, found.pop("model")])), found["scenario"]
         placed, sentences = await ls.in_background(lambda snapshot: (places(snapshot), now(snapshot)))
         for clause in found["clauses"]:
             iri, written = clause["iri"], clause.pop("written")
@@ -51,27 +56,23 @@ def register_stored_runs(server: RobbddServer) -> None:
         return {**found, "source": placed.get(scenario["variant"])}
 
 
-def _runs(store: RunStore, params: Any) -> dict[str, Any]:
-    word = getattr(params, "run", None)
+def _runs(store: RunStore, asked: Parameters) -> dict[str, Any]:
+    word = asked.run()
     if word is None:
         listed = [summary(run) for run in store.runs()]
     else:
-        run = store.find(str(word))
+        run = store.find(word)
         listed = [{**summary(run), "scenarios": list(scenarios(run))}]
     return {"store": path_to_uri(store.folder), "runs": listed}
 
 
-def _trace(store: RunStore, params: Any) -> dict[str, Any]:
-    # The parameters are a named tuple, which has an ``index`` of its own.
-    given: dict[str, Any] = params._asdict()
-    word, index = map(given.get, ("run", "index"))
-    word = None if word is None else str(word)
+def _trace(store: RunStore, asked: Parameters) -> dict[str, Any]:
+    word, index = asked.run(), asked.optional_number("index")
     if index is None:
-        wanted = ("variant", "variation", "execution", "repetition")
-        run, index = find_trace(store, word, {name: given[name] for name in wanted if given.get(name) is not None})
+        run, index = find_trace(store, word, asked.others("variant", "variation", "execution", "repetition"))
     else:
         run = store.find(word or "latest")
-    return {**shown_trace(run, int(index)), "model": path_to_uri(run.model())}
+    return {**shown_trace(run, index), "model": path_to_uri(run.model())}
 
 
 def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: int) -> set[tuple[str, str]] | None:

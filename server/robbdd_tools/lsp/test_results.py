@@ -13,6 +13,7 @@ from robbdd_tools.features.clause_results import verdict_of
 from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.results import Digests, JudgedScenario, digests_of
 from robbdd_tools.features.stories import stories_in, story_files
+from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.run.imported import BrokenResults, ImportedScenario, read_results
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def register_test_results(server: RobbddServer) -> None:
 
     @server.feature(IMPORT)
     async def imported(ls: RobbddServer, params: Any) -> dict[str, Any]:
-        uri, folders = str(params.uri), list(ls.workspace.folders)
+        uri, folders = Parameters(params).text("uri"), list(ls.workspace.folders)
         read = await ls.in_background(lambda _: _read(uri))
         if isinstance(read, str):
             return {"problem": read, "left": 0, "scenarios": []}

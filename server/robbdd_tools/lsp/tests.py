@@ -14,6 +14,7 @@ from robbdd_tools.features.executions import PlacedExecution, executions_of
 from robbdd_tools.features.results import execution_digest, variant_digest
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.features.stories import ListedStory, ListedVariant, stories_in, story_files
+from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
 from robbdd_tools.names.clauses import clauses_in
 from robbdd_tools.run.listing import ListedScenario, listed_scenarios
@@ -38,19 +39,17 @@ def register_tests(server: RobbddServer) -> None:
 
     @server.feature(TESTS)
     async def tests(ls: RobbddServer, params: Any) -> dict[str, Any]:
-        uri = getattr(params, "uri", None)
-        variant = getattr(params, "variant", None)
+        asked = Parameters(params)
+        uri, variant = asked.optional_text("uri"), asked.optional_text("variant")
         if uri is None:
             folders = list(ls.workspace.folders)
             files = await ls.in_background(lambda snapshot: story_files(snapshot, folders))
             return {"problem": None, "files": files, "tests": []}
         if variant is None:
-            return await ls.in_background(lambda snapshot: _stories(snapshot, ls.convert, str(uri)), str(uri))
-        first = max(1, int(getattr(params, "first", None) or 1))
-        most = max(0, min(MOST, int(getattr(params, "most", None) or MOST)))
-        return await ls.in_background(
-            lambda snapshot: _scenarios(snapshot, ls.convert, str(uri), str(variant), first, most), str(uri)
-        )
+            return await ls.in_background(lambda snapshot: _stories(snapshot, ls.convert, uri), uri)
+        first = max(1, asked.optional_number("first") or 1)
+        most = min(MOST, asked.optional_number("most") or MOST)
+        return await ls.in_background(lambda snapshot: _scenarios(snapshot, ls.convert, uri, variant, first, most), uri)
 
 
 def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]:
