@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo test setup lint test-python test-client test-editors fuzz bench package publish clean
+.PHONY: demo test setup lint test-python test-client test-editors fuzz nightly bench package publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -40,6 +40,11 @@ test-editors: $(READY) $(CLIENT_READY)
 SEQUENCES ?= 20000
 fuzz: $(READY)
 	ROBBDD_FUZZ=$(SEQUENCES) $(BIN)/pytest -q tests/names/test_incremental.py
+
+# Soak, fuzzing, kills and versions, for as long as one likes: make nightly MINUTES=480; a seed repeats a night.
+MINUTES ?= 60
+nightly: $(READY)
+	$(BIN)/python -m tests.nightly --minutes $(MINUTES) $(if $(ONLY),--only $(ONLY)) $(if $(SEED),--seed $(SEED))
 
 # Measures speed as ratios of one run and writes the figures into docs/performance.md.
 bench: $(READY)

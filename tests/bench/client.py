@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import IO, Any, Self
 
 PATIENCE = 60.0
 """Seconds after which a server is taken for dead."""
@@ -37,10 +37,16 @@ CAPABILITIES: Mapping[str, Any] = {
 class Client:
     """Talks to ``command`` over its standard input and output; all times are seconds of ``time.monotonic``."""
 
-    def __init__(self, command: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self, command: Sequence[str], environment: Mapping[str, str] | None = None, errors: IO[bytes] | None = None
+    ) -> None:
         self.started = time.monotonic()
         self._process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env={**os.environ, **(environment or {})}
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+            env={**os.environ, **(environment or {})},
         )
         self._heard: list[tuple[float, Message]] = []
         self._changed = threading.Condition()
@@ -55,17 +61,30 @@ class Client:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if error is None:
-            self.request("shutdown", None)
-            self.notify("exit", None)
-            self._process.wait(PATIENCE)
+            self.close()
+        self.kill()
+
+    @property
+    def pid(self) -> int:
+        """The server's process."""
+        return self._process.pid
+
+    def close(self) -> int:
+        """End the session as an editor does; returns the server's exit code."""
+        self.request("shutdown", None)
+        self.notify("exit", None)
+        return self._process.wait(PATIENCE)
+
+    def kill(self) -> None:
+        """End the server at once."""
         self._process.kill()
         self._process.wait()
 
-    def initialize(self, folder: Path) -> None:
+    def initialize(self, folder: Path, capabilities: Mapping[str, Any] = CAPABILITIES) -> None:
         """Begin a session on one workspace folder."""
         folders = [{"uri": folder.as_uri(), "name": folder.name}]
         parameters = {"processId": os.getpid(), "rootUri": folder.as_uri(), "workspaceFolders": folders}
-        self.request("initialize", {**parameters, "capabilities": CAPABILITIES})
+        self.request("initialize", {**parameters, "capabilities": capabilities})
         self.notify("initialized", {})
 
     def open(self, uri: str, text: str, version: int = 1) -> None:

@@ -1,0 +1,73 @@
+"""Long forms of tests that have a short form in the suite, and the versions that the dependency ranges allow."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent.parent
+SEQUENCES = 20_000
+KILLS = 1_000
+SMOKE = (
+    "tests/syntax",
+    "tests/names/test_resolve.py",
+    "tests/graph",
+    "tests/gherkin",
+    "tests/monitor",
+    "tests/agent/test_trace_file.py",
+    "tests/agent/test_behaviour_tree.py",
+    "tests/commands/test_cli.py",
+    "tests/commands/test_query.py",
+    "tests/commands/test_run.py",
+    "tests/lsp/test_server.py",
+)
+"""Tests that use each dependency at least once."""
+
+
+def edits() -> str:
+    """Edit models at random and compare with a fresh analysis."""
+    return _pytest("tests/names/test_incremental.py", {"ROBBDD_FUZZ": str(SEQUENCES)})
+
+
+def kills() -> str:
+    """Kill runs at random instants: no finished result is lost."""
+    return _pytest("tests/run", {"ROBBDD_KILLS": str(KILLS)}, "-k", "kill")
+
+
+def versions() -> str:
+    """Run a part of the tests with the lowest and with the newest versions that the dependency ranges allow."""
+    return "; ".join(_with_versions(resolution) for resolution in ("lowest-direct", "highest"))
+
+
+def _with_versions(resolution: str) -> str:
+    with tempfile.TemporaryDirectory(prefix="robbdd-versions-") as name:
+        folder = Path(name)
+        python = folder / "venv" / ("Scripts" if os.name == "nt" else "bin") / "python"
+        _call(sys.executable, "-m", "venv", str(folder / "uv"))
+        uv = folder / "uv" / python.parent.name / "uv"
+        _call(str(uv.with_name("python")), "-m", "pip", "install", "--quiet", "uv")
+        _call(str(uv), "venv", "--quiet", "--python", sys.executable, str(folder / "venv"))
+        install = (str(uv), "pip", "install", "--quiet", "--python", str(python), "--resolution", resolution)
+        _call(*install, "--editable", ".[video,fast-queries]")
+        # The tests' own tools are installed as they are newest, around the versions that are tested.
+        frozen = folder / "frozen.txt"
+        frozen.write_text(_call(str(uv), "pip", "freeze", "--python", str(python), "--exclude-editable"))
+        _call(str(uv), "pip", "install", "--quiet", "--python", str(python), "-c", str(frozen), "--editable", ".[dev]")
+        return f"{resolution}: {_call(str(python), '-m', 'pytest', '-q', '-x', '-n', '0', *SMOKE).splitlines()[-1]}"
+
+
+def _pytest(path: str, environment: Mapping[str, str], *options: str) -> str:
+    return _call(sys.executable, "-m", "pytest", "-q", path, *options, environment=environment).splitlines()[-1]
+
+
+def _call(*command: str, environment: Mapping[str, str] | None = None) -> str:
+    """Run a command at the project's root and return its output; raises ``AssertionError`` with it on failure."""
+    done = subprocess.run(
+        command, cwd=ROOT, env={**os.environ, **(environment or {})}, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, f"{' '.join(command)} fails:\n{done.stdout[-3000:]}{done.stderr[-3000:]}"
+    return done.stdout
