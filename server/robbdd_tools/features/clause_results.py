@@ -142,13 +142,15 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
         if hint.vacuous and not hint.stale:
             message = f"This clause proved little in the last run: {hint.vacuous}."
             found.append(Diagnostic(uri, hint.span, Severity.HINT, "clause-vacuous", message))
-        if hint.failing and not hint.stale:
-            told = list(map(_line, hint.failing))
+        # An error in users' code is reported where it is, not at every clause that it leaves without evidence.
+        failing = [judged for judged in hint.failing if not judged[1].fault]
+        if failing and not hint.stale:
+            told = list(map(_line, failing))
             lines = told[:1] if brief else _shortened(told, MOST_TOLD)
             severity = Severity.ERROR if hint.outcome == "violated" else Severity.WARNING
             related = tuple(
                 Related(uri, rows[scenario.variant, scenario.row], _line((scenario, judgement)))
-                for scenario, judgement in hint.failing[:MOST_TOLD]
+                for scenario, judgement in failing[:MOST_TOLD]
                 if (scenario.variant, scenario.row) in rows
             )
             message = "\n".join((hint.label, *lines))
@@ -180,6 +182,8 @@ def _clause_hint(span: Span, judged: Sequence[Judged], *, stale: bool) -> Result
         label = f"{sign} {holding}/{len(judged)}" + (f"  worst {worst.margin}" if worst.margin else "")
     if worst.outcome == "undefined":
         label += " no step"
+    if worst.fault:
+        label += " error in code"
     vacuous = worst.vacuous if all(judgement.vacuous for _, judgement in judged) else ""
     shown = " ".join((label, *[VACUOUS] * bool(vacuous), *[STALE] * stale))
     return ResultHint(span, shown, worst.outcome, tuple(map(_line, ranked)), stale, failing, ranked[0], vacuous)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.features.executions import executions_of, what_matters
+from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.names.clauses import clauses_in
 from robbdd_tools.names.variants import variants_of
 
@@ -31,7 +32,8 @@ class Judgement:
     ``outcome`` is ``holds``, ``violated``, ``unknown`` or ``undefined`` (no step can judge it); ``margin`` and ``said``
     are words, the latter with instant and reason; of several the one of the smallest ``rank`` is the worst. ``digest``
     is that of the clause's text at the time; ``line`` that of its step in the feature. ``vacuous`` says why the clause
-    could not have failed in the whole run, nothing where it could.
+    could not have failed in the whole run, nothing where it could. ``fault`` is the ``id`` of the error in users' code
+    that it is unknown for.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Judgement:
     digest: str
     line: int = 0
     vacuous: str = ""
+    fault: str = ""
 
 
 @dataclass(slots=True)
@@ -51,7 +54,7 @@ class JudgedScenario:
     ``digest`` is that of the text of the variant and its template, ``row`` that of its row in a table (empty without).
     ``run`` is the number of the stored run that has it as scenario number ``index``; 0 where none is known.
     ``execution`` is the IRI of the ``.bddx`` execution that it was run by and ``execution_digest`` that of its text,
-    both empty for a scenario that was run as it is.
+    both empty for a scenario that was run as it is. ``faults`` are the errors that users' code had in it.
     """
 
     model: str
@@ -66,6 +69,7 @@ class JudgedScenario:
     index: int = 0
     execution: str = ""
     execution_digest: str = ""
+    faults: tuple[Fault, ...] = ()
 
     @property
     def outcome(self) -> str:

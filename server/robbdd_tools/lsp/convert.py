@@ -118,10 +118,11 @@ class Converter:
             source=SOURCE,
             related_information=related or None,
             tags=_tags(diagnostic.code),
-            code_description=self._description(diagnostic.code),
+            code_description=self.code_description(diagnostic.code),
         )
 
-    def _description(self, code: str) -> types.CodeDescription | None:
+    def code_description(self, code: str) -> types.CodeDescription | None:
+        """Return the link to the page about a code, for a client that shows it."""
         page = code_page(code) if self.with_pages else None
         return None if page is None else types.CodeDescription(href=page)
 

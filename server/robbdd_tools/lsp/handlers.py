@@ -25,6 +25,7 @@ from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.test_results import register_test_results
 from robbdd_tools.lsp.tests import register_tests
 from robbdd_tools.lsp.tokens import register_tokens
+from robbdd_tools.lsp.user_errors import register_user_errors
 from robbdd_tools.lsp.watching import register_watching, watch_files
 from robbdd_tools.lsp.ways import register_ways
 from robbdd_tools.names.project import Snapshot
@@ -41,6 +42,7 @@ def create_server() -> RobbddServer:
     register_lenses(server)
     register_settings(server)
     register_watching(server)
+    register_user_errors(server)
     register_navigation(server)
     register_tokens(server)
     register_ways(server)

@@ -16,6 +16,7 @@ from robbdd_tools.run.protocol import (
     RunMessage,
     ScenarioFinished,
     ScenarioStarted,
+    UserCodeFailed,
 )
 from robbdd_tools.run.report import plain_sentence, values_words
 from robbdd_tools.run.scheduler import CANCELLED
@@ -56,6 +57,8 @@ def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage
                 }
             if isinstance(message, ClauseJudged):
                 fields["cancelled"] = message.reason == CANCELLED
+        case UserCodeFailed(_, fault):
+            fields["id"], fields["lines"] = fault.id, [f"{fault.code} failed", *fault.traceback()]
         case ScenarioFinished(index):
             fields["verdict"] = str(results.scenarios[index].verdict)
         case RunFinished():

@@ -28,6 +28,7 @@ from robbdd_tools.run.protocol import (
     RunStarted,
     ScenarioFinished,
     ScenarioStarted,
+    UserCodeFailed,
 )
 from robbdd_tools.run.report import margin, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.run.store import StoredRun
 
 PICTURES = "pictures"
@@ -130,6 +132,7 @@ class _Follower:
         self._plan = plan
         self._results = results
         self._loop = asyncio.get_running_loop()
+        self._shared_fault = ""
         self._begun: dict[str, set[tuple[int, str]]] = {}
 
     def hear(self, message: RunMessage) -> None:
@@ -196,6 +199,8 @@ class _Follower:
                 self._scenario(index)
             case ClauseJudged():
                 self._judge(message)
+            case UserCodeFailed(index, fault):
+                self._fault(index, fault)
             case ScenarioFinished(index):
                 self._scenario(index).finished = True
                 self._report_progress()
@@ -228,6 +233,15 @@ class _Follower:
             self._ls.results.add([found])
         return found
 
+    def _fault(self, index: int | None, fault: Fault) -> None:
+        """Keep an error in users' code with the scenario that it spoils, or with all."""
+        if index is None:
+            self._shared_fault = fault.id
+        for spoilt in range(len(self._results.scenarios)) if index is None else (index,):
+            scenario = self._scenario(spoilt)
+            scenario.faults = (*scenario.faults, fault)
+        self._ls.show_results(self._plan.uris)
+
     def _drop_unjudged(self) -> None:
         """Forget scenarios that a cancelled run began, and no clause of which was judged."""
         for scenario in self._run.judged.values():
@@ -249,6 +263,7 @@ class _Follower:
             verdict_words(message),
             self._plan.digests.clauses.get(clause.iri, ""),
             message.line,
+            fault=message.fault or (self._shared_fault if outcome is Outcome.UNKNOWN else ""),
         )
         self._scenario(message.index).judge(clause.iri, judgement)
         self._ls.show_results(self._plan.uris)

@@ -35,6 +35,7 @@ from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.stores import Stores
 from robbdd_tools.lsp.survey import Survey
+from robbdd_tools.lsp.user_errors import UserErrors, model_errors
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 
@@ -86,6 +87,7 @@ class RobbddServer(LanguageServer):
         self.refreshes = Refreshes(self)
         self.importers = Importers(self)
         self.survey = Survey(self)
+        self.user_errors = UserErrors(self)
         self._tasks: set[asyncio.Task[None]] = set()
         self._publishing = Newest(self.spawn)
         self._changed: dict[str, None] = {}
@@ -134,6 +136,7 @@ class RobbddServer(LanguageServer):
             return
         await self.publish(uri)
         self.survey.look([uri])
+        await self.user_errors.refresh()
 
     async def text_closed(self, uri: str) -> None:
         """Go back to the file on disk and take its diagnostics from the editor."""
@@ -164,6 +167,7 @@ class RobbddServer(LanguageServer):
     async def settings_changed(self, files: Sequence[str] | None = None) -> None:
         """Look at all documents again, as what is asked of them may have changed, or only ``files`` have."""
         self.survey.look(files)
+        await self.user_errors.refresh()
         for uri in list(self._opened):
             await self.publish(uri)
 
@@ -235,6 +239,7 @@ class RobbddServer(LanguageServer):
         self.findings = self.results.findings()
         self.refreshes.want(HINTS, LENSES)
         await self._show_diagnostics(changed)
+        await self.user_errors.refresh()
 
     async def _show_diagnostics(self, uris: Iterable[str]) -> None:
         """Bring the diagnostics of some files before the user again."""
@@ -276,11 +281,14 @@ class RobbddServer(LanguageServer):
     async def diagnostics(self, uri: str) -> tuple[int, list[types.Diagnostic]]:
         """Return all that is known of a file now, with the version of the text that it is about."""
 
+        broken = [scenario for scenario in self.results if scenario.faults]
+
         def find(snapshot: Snapshot) -> tuple[int, list[types.Diagnostic]]:
             found = [*fast_diagnostics(snapshot, uri), *self._shapes.valid(snapshot, uri)]
             found += clause_diagnostics(snapshot, uri, self.findings, brief=self.shows_pictures)
             document = document_of(snapshot, uri)
-            return document.version, [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
+            shown = [self.convert.diagnostic(snapshot, entry) for entry in dict.fromkeys(found)]
+            return document.version, [*shown, *model_errors(snapshot, self.convert, uri, broken)]
 
         return await self.analyse(find, urgent=False)
 

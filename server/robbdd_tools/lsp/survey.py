@@ -102,6 +102,8 @@ class Survey:
             for uri, found in self._found[owner].items():
                 if not self._server.is_open(uri):
                     parts.setdefault(uri, []).append(found)
+        for uri, found in self._server.user_errors.elsewhere().items():
+            parts.setdefault(uri, []).append(Findings.of(found))
         return {uri: _together(told) for uri, told in sorted(parts.items())}
 
     def _begin(self) -> None:
@@ -124,7 +126,7 @@ class Survey:
             if is_new or not changed.isdisjoint(self._reached.get(uri, ())):
                 self._waiting[uri] = None
         self._ask()
-        self._tell_soon()
+        self.tell_soon()
 
     def _ask(self) -> None:
         while len(self._asked) < AT_ONCE:
@@ -151,7 +153,7 @@ class Survey:
         finally:
             self._asked.discard(answer.uri)
             self._ask()
-            self._tell_soon()
+            self.tell_soon()
 
     def _converted(self, answer: Answer) -> dict[str, Findings]:
         convert, documents = self._server.convert, answer.documents
@@ -161,7 +163,8 @@ class Survey:
             found.setdefault(one.uri, []).append(convert.diagnostic(documents, one))
         return {uri: Findings.of(diagnostics) for uri, diagnostics in found.items()}
 
-    def _tell_soon(self) -> None:
+    def tell_soon(self) -> None:
+        """Show soon what has been found."""
         if self._telling is None:
             self._telling = asyncio.get_running_loop().call_later(GATHERING, self._tell)
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 WATCHED = f"**/{{{','.join((*(f'*.{name}' for name in LANGUAGES), '*.ttl', 'robbdd.toml', 'pyproject.toml'))}}}"
 """Models, and what may hold a project's own rules about them."""
+PYTHON = "**/*.py"
+"""Code that models may name: an error that it had in a run is out of date when it changes."""
 RUNS = f"**/{FOLDER.as_posix()}/*/{RESULTS}"
 """What a run has when it is stored, be it one of the command line."""
 
@@ -28,9 +30,12 @@ def register_watching(server: RobbddServer) -> None:
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     async def files(ls: RobbddServer, params: types.DidChangeWatchedFilesParams) -> None:
         # Runs are looked up when a lens is asked for; nothing that is analysed depends on them.
-        changed = [change.uri for change in params.changes if not change.uri.endswith(f"/{RESULTS}")]
-        if len(changed) < len(params.changes):
+        every = [change.uri for change in params.changes]
+        changed = [uri for uri in every if not uri.endswith((f"/{RESULTS}", ".py"))]
+        if any(uri.endswith(f"/{RESULTS}") for uri in every):
             ls.refreshes.want(LENSES)
+        if any(uri.endswith(".py") for uri in every):
+            await ls.user_errors.code_changed()
         if changed:
             await ls.files_changed(changed)
 
@@ -49,7 +54,7 @@ async def watch_files(ls: RobbddServer) -> None:
     if watched is None or not watched.dynamic_registration:
         return
     options = types.DidChangeWatchedFilesRegistrationOptions(
-        watchers=[types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, RUNS)]
+        watchers=[types.FileSystemWatcher(glob_pattern=pattern) for pattern in (WATCHED, PYTHON, RUNS)]
     )
     entry = types.Registration(
         id="robbdd-files", method=types.WORKSPACE_DID_CHANGE_WATCHED_FILES, register_options=options

@@ -1,0 +1,159 @@
+"""Shows errors in users' code: in open models with their other diagnostics, in all other files beside the survey's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lsprotocol import types
+
+from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.features.user_errors import CODE, UserError, errors_in, user_errors
+from robbdd_tools.lsp.convert import SOURCE, document_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from robbdd_tools.features.results import JudgedScenario
+    from robbdd_tools.lsp.convert import Converter
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.names.project import Snapshot
+
+CODE_EDITED = "robbdd/codeEdited"
+"""Notification of a client: the user edits a Python file, whose ``uri`` it tells, and has not saved it yet."""
+END_OF_LINE = 10_000
+"""A character beyond any line's end, which clients take for that end."""
+
+
+class UserErrors:
+    """The errors in files that are not open as models: Python files, and models that a run has reached."""
+
+    def __init__(self, server: RobbddServer) -> None:
+        self._server = server
+        self._elsewhere: Mapping[str, list[types.Diagnostic]] = {}
+
+    def elsewhere(self) -> Mapping[str, list[types.Diagnostic]]:
+        """Return the errors by file, of files that the client has not opened."""
+        return {uri: found for uri, found in self._elsewhere.items() if not self._server.is_open(uri)}
+
+    async def refresh(self) -> None:
+        """Find the errors again, after a run or a change of a file."""
+        scenarios = [scenario for scenario in self._server.results if scenario.faults]
+        if not (scenarios or self._elsewhere):
+            return
+        models = sorted({scenario.model for scenario in scenarios})
+        convert = self._server.convert
+        found = await self._server.in_background(lambda snapshot: _everywhere(snapshot, convert, scenarios), *models)
+        if found != self._elsewhere:
+            self._elsewhere = found
+            self._server.survey.tell_soon()
+
+    async def code_changed(self) -> None:
+        """Show the errors of code that is still as it was executed."""
+        if any(scenario.faults for scenario in self._server.results):
+            await self.refresh()
+            self._server.show_results(self._server.opened())
+
+    async def code_edited(self, uri: str) -> None:
+        """Drop the errors in a file whose text is not any more what was executed."""
+        found = False
+        for scenario in self._server.results:
+            kept = tuple(fault for fault in scenario.faults if fault.place is None or _uri(fault.place.file) != uri)
+            if len(kept) < len(scenario.faults):
+                scenario.faults, found = kept, True
+        if found:
+            await self.refresh()
+            self._server.show_results(self._server.opened())
+
+
+def register_user_errors(server: RobbddServer) -> None:
+    """Add the notification to a server."""
+
+    @server.feature(CODE_EDITED)
+    async def edited(ls: RobbddServer, params: Any) -> None:
+        await ls.user_errors.code_edited(_uri(str(params.uri)))
+
+
+def model_errors(
+    snapshot: Snapshot, convert: Converter, uri: str, scenarios: Iterable[JudgedScenario]
+) -> list[types.Diagnostic]:
+    """Return the errors of users' code at their places in a model."""
+    return _in_model(snapshot, convert, uri, user_errors(snapshot, scenarios))
+
+
+def _everywhere(
+    snapshot: Snapshot, convert: Converter, scenarios: Sequence[JudgedScenario]
+) -> dict[str, list[types.Diagnostic]]:
+    errors = user_errors(snapshot, scenarios)
+    models = dict.fromkeys(scenario.model for error in errors for scenario in error.scenarios)
+    files = dict.fromkeys(
+        file.document.uri for model in models if snapshot.file(model) for file in snapshot.closure(model)
+    )
+    found = {uri: _in_model(snapshot, convert, uri, errors) for uri in files}
+    for error in errors:
+        place = error.fault.place
+        if place is not None and place.own:
+            found.setdefault(_uri(place.file), []).append(_in_code(convert, error))
+    return {uri: diagnostics for uri, diagnostics in found.items() if diagnostics}
+
+
+def _in_model(snapshot: Snapshot, convert: Converter, uri: str, errors: Sequence[UserError]) -> list[types.Diagnostic]:
+    document = document_of(snapshot, uri)
+    return [
+        _diagnostic(convert, convert.range(document, span), message, _related(error))
+        for span, error, message in errors_in(snapshot, uri, errors)
+    ]
+
+
+def _in_code(convert: Converter, error: UserError) -> types.Diagnostic:
+    place = error.fault.place
+    assert place is not None
+    count = len(error.scenarios)
+    spoilt = "1 scenario" if count == 1 else f"{count} scenarios"
+    return _diagnostic(convert, _line(place.line), f"{error.fault.summary} (in the last run, {spoilt})", _calls(error))
+
+
+def _diagnostic(
+    convert: Converter, range: types.Range, message: str, related: list[types.DiagnosticRelatedInformation]
+) -> types.Diagnostic:
+    return types.Diagnostic(
+        range=range,
+        message=message,
+        severity=types.DiagnosticSeverity.Error,
+        code=CODE,
+        source=SOURCE,
+        related_information=related or None,
+        code_description=convert.code_description(CODE),
+    )
+
+
+def _related(error: UserError) -> list[types.DiagnosticRelatedInformation]:
+    place = error.fault.place
+    if place is None:
+        return []
+    location = types.Location(uri=_uri(place.file), range=_line(place.line))
+    return [types.DiagnosticRelatedInformation(location=location, message=error.fault.summary)]
+
+
+def _calls(error: UserError) -> list[types.DiagnosticRelatedInformation]:
+    """Return the other calls of the traceback in the user's files."""
+    calls = [frame for frame in error.fault.frames if frame.own and frame != error.fault.place]
+    return [
+        types.DiagnosticRelatedInformation(
+            location=types.Location(uri=_uri(frame.file), range=_line(frame.line)),
+            message=f"called in {frame.function}",
+        )
+        for frame in reversed(calls)
+    ]
+
+
+def _line(number: int) -> types.Range:
+    """Return the range of a line, which is counted from 1."""
+    start = types.Position(line=number - 1, character=0)
+    return types.Range(start=start, end=types.Position(line=number - 1, character=END_OF_LINE))
+
+
+def _uri(file: str) -> str:
+    """Return a file's URI in the one form that is used here."""
+    path = uri_to_path(file) if file.startswith("file:") else Path(file)
+    return str(file) if path is None else path_to_uri(path)
