@@ -186,6 +186,13 @@ export class Server implements vscode.Disposable {
     }
   }
 
+  /** Tell the server something, if it runs. */
+  notify(method: string, params: object): void {
+    if (this.isRunning()) {
+      void this.client?.sendNotification(method, params);
+    }
+  }
+
   /** Wait until a start or stop under way has ended. */
   settled(): Promise<void> {
     return this.pending;

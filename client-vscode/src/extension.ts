@@ -58,6 +58,12 @@ export function activate(context: vscode.ExtensionContext): void {
         void started.begin();
       }
     }),
+    vscode.workspace.onDidChangeTextDocument(({ document, contentChanges }) => {
+      // The server sees code only when it is saved: an error that a run found in it is out of date from the first edit on.
+      if (document.languageId === "python" && contentChanges.length > 0 && hasOurs(document.uri)) {
+        started.notify("robbdd/codeEdited", { uri: document.uri.toString() });
+      }
+    }),
     vscode.workspace.onDidGrantWorkspaceTrust(() => {
       // The server is told when it starts; and there may be another one now.
       void started.restart();
@@ -76,6 +82,11 @@ export function activate(context: vscode.ExtensionContext): void {
       context.subscriptions.push(listener);
     }
   });
+}
+
+/** Whether the server has found an error in a file. */
+function hasOurs(uri: vscode.Uri): boolean {
+  return vscode.languages.getDiagnostics(uri).some(({ source }) => source === "robbdd");
 }
 
 export function deactivate(): Promise<void> | undefined {

@@ -1,5 +1,6 @@
 // The one place that talks to the Python extension, which may be absent.
 import * as vscode from "vscode";
+import { answerOf } from "./environment";
 
 const PYTHON_EXTENSION = "ms-python.python";
 
@@ -23,7 +24,14 @@ export async function selectedInterpreter(
   if (api === undefined) {
     return undefined;
   }
-  const environment = await api.environments.resolveEnvironment(api.environments.getActiveEnvironmentPath(folder));
+  const { environments } = api;
+  const environment = await answerOf(
+    "The Python extension could not tell the selected environment",
+    () => environments.resolveEnvironment(environments.getActiveEnvironmentPath(folder)),
+    (message) => {
+      log.warn(message);
+    },
+  );
   return environment?.executable.uri?.fsPath;
 }
 
@@ -37,12 +45,12 @@ export async function onInterpreterChange(
 
 async function pythonApi(log: vscode.LogOutputChannel): Promise<PythonApi | undefined> {
   const extension = vscode.extensions.getExtension<Partial<PythonApi> | undefined>(PYTHON_EXTENSION);
-  try {
-    const api = await extension?.activate();
-    return api?.environments === undefined ? undefined : { environments: api.environments };
-  } catch (error) {
-    // Somebody else's extension that fails must not keep ours from looking further.
-    log.warn(`The Python extension could not be asked for its environment: ${String(error)}`);
-    return undefined;
-  }
+  const api = await answerOf(
+    "The Python extension could not be started",
+    () => extension?.activate(),
+    (message) => {
+      log.warn(message);
+    },
+  );
+  return api?.environments === undefined ? undefined : { environments: api.environments };
 }

@@ -166,3 +166,35 @@ test("every field that is read is one of the server's protocol", () => {
     assert.deepEqual(sent.filter((name) => !declared.includes(name)), [], type);
   }
 });
+
+const FAILED = { id: "e1", lines: ["carrying:Carry failed", '  File "/cell/carrying.py", line 33, in reset', "KeyError: 'goal'"] };
+
+test("an error in code of the user is told once with its traceback, and what it printed with its scenario", () => {
+  const spoilt = (index: number): RunMessage[] => [
+    started(index),
+    { type: "Output", index, text: "one\ntwo" },
+    { type: "UserCodeFailed", index, ...FAILED },
+    judged(index, "unknown", { reason: "carrying:Carry failed: KeyError: 'goal' (/cell/carrying.py:33)", fault: "e1" }),
+    finished(index),
+  ];
+  const { lines } = report(runStarted(2), { type: "Output", index: null, text: "loading" }, ...spoilt(0), ...spoilt(1));
+  assert.deepEqual(lines.slice(1, 11), [
+    "    │ loading",
+    "    error 1: carrying:Carry failed",
+    '      File "/cell/carrying.py", line 33, in reset',
+    "    KeyError: 'goal'",
+    "  Scenario 1 of 2: t:fetch -- 1  part = cube",
+    "    │ one",
+    "    │ two",
+    "    ? cube is located at bin: unknown: no evidence, because of error 1",
+    "    undecided after 9.00 s simulated, 0.51 s on the clock",
+    "  Scenario 2 of 2: t:fetch -- 1  part = cube",
+  ]);
+  assert.equal(lines.filter((line) => line.includes("KeyError")).length, 1);
+});
+
+test("an error of code that all scenarios share has no scenario, and one that is no error is not understood", () => {
+  const notification = (message: object) => isRunNotification({ uri: "file:///m.bdd", message });
+  assert.ok(notification({ type: "UserCodeFailed", index: null, ...FAILED }));
+  assert.ok(!notification({ type: "UserCodeFailed", index: null, id: "e1", lines: [7] }));
+});

@@ -61,6 +61,8 @@ export interface ClauseJudged extends ClauseWords {
   readonly reason: string;
   /** Why the clause could not have been violated; empty where it could. */
   readonly vacuous?: string;
+  /** The error in code of the user that it is unknown for; empty where there is none. */
+  readonly fault?: string;
   /** The run was cancelled before the clause was judged, which is no result. */
   readonly cancelled?: boolean;
 }
@@ -82,6 +84,23 @@ export interface ScenarioFinished {
   readonly stepping: number;
 }
 
+/** Code of the user failed, and the scenario has no result because of it; null: no scenario has. */
+export interface UserCodeFailed {
+  readonly type: "UserCodeFailed";
+  readonly index: number | null;
+  /** The same for the same error in several scenarios. */
+  readonly id: string;
+  /** What failed, and the traceback. */
+  readonly lines: readonly string[];
+}
+
+/** Lines that code of the user printed. */
+export interface Output {
+  readonly type: "Output";
+  readonly index: number | null;
+  readonly text: string;
+}
+
 export interface LogLine {
   readonly type: "LogLine";
   readonly level: string;
@@ -100,6 +119,8 @@ export type RunMessage =
   | ClauseJudged
   | MarginRanges
   | ScenarioFinished
+  | UserCodeFailed
+  | Output
   | LogLine
   | RunFinished;
 
@@ -133,6 +154,8 @@ const FIELDS: Record<RunMessage["type"], Record<string, Check>> = {
   },
   MarginRanges: { index: isNumber, line: isNumber },
   ScenarioFinished: { index: isNumber, simulated: isNumber, wall: isNumber, stepping: isNumber },
+  UserCodeFailed: { index: isNumberOrNull, id: isText, lines: (value) => Array.isArray(value) && value.every(isText) },
+  Output: { index: isNumberOrNull, text: isText },
   LogLine: { level: isText, text: isText },
   RunFinished: { ok: (value) => typeof value === "boolean" },
 };

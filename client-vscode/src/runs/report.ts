@@ -1,6 +1,6 @@
 // One run as text: messages in, lines for the output channel and a summary out.
 import { signed } from "../quantity";
-import type { ClauseJudged, RunMessage } from "./messages";
+import type { ClauseJudged, RunMessage, UserCodeFailed } from "./messages";
 
 export const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
 
@@ -22,6 +22,8 @@ export class RunReport {
   private readonly verdicts = new Map<number, ClauseJudged["verdict"][]>();
   /** Scenarios that are executed side by side are told one after the other, each when it has ended. */
   private readonly told = new Map<number, string[]>();
+  /** The errors in code of the user that have been told, with their numbers. */
+  private readonly faults = new Map<string, number>();
   private readonly outcomes = new Map<number, Outcome>();
 
   constructor(private readonly name: string) {}
@@ -53,10 +55,18 @@ export class RunReport {
         return [];
       case "ClauseJudged":
         this.verdicts.get(message.index)?.push(message.verdict);
-        this.told.get(message.index)?.push(`    ${describeClause(message)}`);
+        this.told.get(message.index)?.push(`    ${describeClause(message, this.faults.get(message.fault ?? ""))}`);
         return [];
       case "ScenarioFinished":
         return [...this.open(message.index), this.finishScenario(message.index, message.simulated, message.wall)];
+      case "UserCodeFailed":
+        return this.traceback(message);
+      case "Output": {
+        const lines = message.text.split("\n").map((line) => `    │ ${line}`);
+        const told = message.index === null ? undefined : this.told.get(message.index);
+        told?.push(...lines);
+        return told === undefined ? lines : [];
+      }
       case "LogLine":
         return message.text.split(/\r?\n/).map((line) => `    ${message.level}: ${line}`);
       case "RunFinished":
@@ -91,6 +101,16 @@ export class RunReport {
     return `${this.name}: ${parts.join(", ")}.`;
   }
 
+  /** An error is told once, however many scenarios have no result because of it. */
+  private traceback({ id, lines: [failed = "", ...calls] }: UserCodeFailed): string[] {
+    if (this.faults.has(id)) {
+      return [];
+    }
+    const number = this.faults.size + 1;
+    this.faults.set(id, number);
+    return [`    error ${number}: ${failed}`, ...calls.map((line) => `    ${line}`)];
+  }
+
   /** What is to be told of a scenario and was not yet. */
   private open(index: number): string[] {
     const lines = this.told.get(index) ?? [];
@@ -117,9 +137,10 @@ function decide(verdicts: readonly ClauseJudged["verdict"][]): Outcome {
   return verdicts.length === 0 || verdicts.includes("unknown") ? "undecided" : "passed";
 }
 
-function describeClause(clause: ClauseJudged): string {
+function describeClause(clause: ClauseJudged, error?: number): string {
   const instant = clause.at === null ? "" : ` at ${seconds(clause.at)}`;
-  const reason = clause.reason === "" ? "" : `: ${clause.reason}`;
+  const because = error === undefined ? clause.reason : `no evidence, because of error ${error}`;
+  const reason = because === "" ? "" : `: ${because}`;
   return `${SIGNS[clause.verdict]} ${clause.sentence}: ${clause.verdict}${margin(clause)}${instant}${reason}`;
 }
 

@@ -50,7 +50,7 @@ export class RunFollower<I extends Item<I>> {
       } else if (message.type === "ClauseJudged") {
         this.judge(message, instant);
       }
-      const scenario = "index" in message ? this.scenarios.get(message.index) : undefined;
+      const scenario = "index" in message && message.index !== null ? this.scenarios.get(message.index) : undefined;
       for (const line of this.report.add(message)) {
         this.sink.output(line, scenario?.item);
       }
