@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.files import load_bytes
 from robbdd_tools.features.executions import executions_of
 from robbdd_tools.features.results import digests_of
 from robbdd_tools.names.variants import variants_of
@@ -101,7 +102,7 @@ def _is_unchanged(fault: Fault, known: dict[str, str]) -> bool:
         return True
     if place.file not in known:
         try:
-            known[place.file] = hashlib.sha256(Path(place.file).read_bytes()).hexdigest()
+            known[place.file] = hashlib.sha256(load_bytes(Path(place.file))).hexdigest()
         except OSError:
             known[place.file] = ""
     return known[place.file] == fault.digest
