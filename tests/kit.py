@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import sys
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -189,6 +190,13 @@ def schema_errors(name: str, document: object) -> list[str]:
     schema = json.loads((DOCS / "schemas" / name).read_text(encoding="utf-8"))
     as_sent = json.loads(json.dumps(document))
     return [error.message for error in validator(schema).iter_errors(as_sent)]
+
+
+def make_fifo(path: Path) -> None:
+    """Make a named pipe in a folder; skips the test where there are none."""
+    if sys.platform == "win32":
+        pytest.skip("Windows has no named pipes in folders")
+    os.mkfifo(path)
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:

@@ -167,6 +167,24 @@ def test_commands_print_only_through_what_escapes() -> None:
     assert {module: used for module, used in found.items() if not used <= homes.get(module, set())} == {}
 
 
+SYSTEM_MODULES = {"signal", "fcntl", "msvcrt", "resource", "select", "termios", "pty", "ctypes", "winreg"}
+SYSTEM_CALLS = {f"os.{name}" for name in ("kill", "killpg", "fork", "nice", "setsid", "waitpid", "mkfifo", "getuid")}
+SYSTEM_HOMES = {"base.processes", "base.descendants", "base.locks", "commands.execute"}
+
+
+def system_specifics(path: Path) -> Iterator[str]:
+    """Yield the modules and calls that a module uses and only some operating systems have."""
+    yield from (name for name in imports(path) if name in SYSTEM_MODULES)
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Attribute) and ast.unparse(node) in SYSTEM_CALLS:
+            yield ast.unparse(node)
+
+
+def test_what_differs_between_operating_systems_has_one_home() -> None:
+    found = {module: set(system_specifics(path)) for module, path in modules() if module not in SYSTEM_HOMES}
+    assert {module: used for module, used in found.items() if used} == {}
+
+
 OPENS_ITSELF = {
     "base.files": "the one that reads",
     "base.writing": "the one that writes",

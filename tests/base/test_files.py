@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kit import make_fifo
 from robbdd_tools.base import files
 from robbdd_tools.base.document import Document, Position, Span
 from robbdd_tools.base.files import (
@@ -78,7 +79,7 @@ def a_socket(path: Path) -> None:
 
 
 NO_FILES: dict[str, tuple[Callable[[Path], object], str, str]] = {
-    "pipe": (os.mkfifo, "file-not-regular", "'m.bdd' is a named pipe; only regular files are read"),
+    "pipe": (make_fifo, "file-not-regular", "'m.bdd' is a named pipe; only regular files are read"),
     "zeros": (lambda path: path.symlink_to("/dev/zero"), "file-not-regular", "is a device (through a link)"),
     "socket": (a_socket, "file-not-regular", "'m.bdd' is a socket"),
     "folder": (Path.mkdir, "file-is-folder", "'m.bdd' is a folder"),
@@ -104,7 +105,7 @@ def test_what_is_no_regular_file_is_not_opened(
 
 def test_a_file_that_becomes_a_pipe_meanwhile_does_not_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "m.bdd"
-    os.mkfifo(path)
+    make_fifo(path)
     monkeypatch.setattr(files, "unreadable", returns(None))
     with pytest.raises(UnreadableFile, match="is a named pipe"):
         open_regular(path)

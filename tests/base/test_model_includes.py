@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
+from kit import make_fifo
 from robbdd_tools.base.model_includes import model_files, unusable
 
 
@@ -25,7 +25,7 @@ def test_included_models_meshes_and_pictures_are_found(tmp_path: Path) -> None:
 
 
 def test_a_mesh_that_is_a_pipe_is_found_before_an_engine_waits_for_it(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "hull.stl")
+    make_fifo(tmp_path / "hull.stl")
     (tmp_path / "more.xml").write_text('<mujoco><mesh file="hull.stl"/></mujoco>')
     (tmp_path / "arm.xml").write_text('<mujoco><include file="more.xml"/></mujoco>')
     problem = unusable(tmp_path / "arm.xml")

@@ -11,6 +11,7 @@ from typing import Any, TextIO
 
 import pytest
 
+from kit import make_fifo
 from robbdd_tools.base.writing import replace_file, replacing
 
 
@@ -130,7 +131,7 @@ def test_a_file_that_may_not_be_written_stays(tmp_path: Path, monkeypatch: pytes
 
 def test_what_is_no_file_is_written_to_or_refused(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
+    make_fifo(pipe)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     replace_file(pipe, "new")
     assert os.read(reader, 10) == b"new"

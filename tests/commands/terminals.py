@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
-import pty
 import re
 import struct
 import subprocess
-import termios
 from collections.abc import Sequence
+
+import pytest
 
 CONTROL = re.compile(r"\r|\x1b\[[?\d;]*[A-Za-z]")
 STEERING = {"COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE"}
@@ -21,6 +20,9 @@ def environment(**variables: str) -> dict[str, str]:
 
 def on_a_terminal(command: Sequence[str], columns: int, expected: int = 0, **variables: str) -> str:
     """All that a command writes to a terminal, with its escape sequences; it must end with the expected exit code."""
+    pty, fcntl, termios = (
+        pytest.importorskip(name, reason="only POSIX has pseudo-terminals") for name in ("pty", "fcntl", "termios")
+    )
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 40, columns, 0, 0))
     variables = {"TERM": "xterm-256color", **variables}

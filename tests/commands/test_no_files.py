@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from kit import EVENTS, MODEL, SCENE
+from kit import EVENTS, MODEL, SCENE, make_fifo
 from robbdd_tools.cli import main
 
 Make = Callable[[Path], object]
@@ -35,7 +35,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (os.mkfifo, "'other.scene' is a named pipe; only regular files are read"),
+        (make_fifo, "'other.scene' is a named pipe; only regular files are read"),
         (link_to("/dev/zero"), "'other.scene' is a device (through a link); only regular files are read"),
         (link_to("other.scene"), "'other.scene' cannot be read: its symbolic links form a loop"),
         (link_to("gone.scene"), "its link leads to gone.scene, which is missing"),
@@ -88,7 +88,7 @@ def test_models_above_the_folder_and_at_absolute_paths_are_imported(
 def test_a_pipe_among_the_models_of_a_folder_is_reported_and_the_others_are_checked(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    os.mkfifo(folder / "pipe.bdd")
+    make_fifo(folder / "pipe.bdd")
     (folder / "folder.bdd").mkdir()
     assert main(["check", "."]) == 2
     said = capsys.readouterr().out
@@ -115,7 +115,7 @@ def test_every_command_refuses_a_pipe(
 ) -> None:
     (folder / "steps").mkdir()
     (folder / name).unlink(missing_ok=True)
-    os.mkfifo(folder / name)
+    make_fifo(folder / name)
     assert main(arguments) != 0
     captured = capsys.readouterr()
     assert f"'{Path(name).name}' is a named pipe; only regular files are read" in captured.out + captured.err

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import signal
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 from lsprotocol import types
 from pytest_lsp import LanguageClient
@@ -102,7 +101,7 @@ async def test_a_killed_process_is_started_again_with_what_it_owes(answers: Answ
     assert (await answers.next()).diagnostics == ()
     killed = answers.validator.process_id
     assert killed is not None
-    os.kill(killed, signal.SIGKILL)
+    psutil.Process(killed).kill()
     answers.ask(2, MODEL.replace("0.5 seconds", "0 seconds"))
     answer = await answers.next()
     assert (answer.revision, [entry.code for entry in answer.diagnostics]) == (2, ["shacl-horizon"])

@@ -13,6 +13,7 @@ from time import monotonic
 import pytest
 
 from agent.worlds import CUBE, SCENE, Steps, write_run
+from kit import make_fifo
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
     ClauseJudged,
@@ -141,7 +142,7 @@ def test_features_that_cannot_be_read_are_said_once(tmp_path: Path) -> None:
 @pytest.fixture
 def fifo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     path = tmp_path / "fifo"
-    os.mkfifo(path)
+    make_fifo(path)
     monkeypatch.setenv("ROBBDD_TEST_FIFO", str(path))
     return path
 
