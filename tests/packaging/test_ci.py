@@ -58,7 +58,7 @@ def test_every_command_exists() -> None:
             case ["npm", "run", script]:
                 assert script in scripts
             case ["robbdd" | "robbdd-lsp" as program, *_]:
-                assert program in PROJECT["scripts"]
+                assert f"{program}.py" in PROJECT["scripts"]
             case [program, *_]:
                 assert program in {"python", "pytest", "npm", "sudo"}, command
             case _:
