@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from kit import DOCS
+from kit import DOCS, ROOT
 
 PAGES = sorted(DOCS.rglob("*.md"))
 LINK = re.compile(r"\]\((?!\w+:)([^)#\s]+)(?:#[^)]*)?\)")
+PROMISE = re.compile(r"`(tests/[\w/.]+)(?:::(\w+))?`")
 A_TEST = re.compile(r"^(?:async )?def test_", re.MULTILINE)
 TEST = re.compile(r"\]\((\.\./tests/[^)]+\.py)\)")
 
@@ -19,6 +20,15 @@ TEST = re.compile(r"\]\((\.\./tests/[^)]+\.py)\)")
 def test_links_lead_to_files(page: Path) -> None:
     targets = LINK.findall(page.read_text(encoding="utf-8"))
     assert [target for target in targets if not (page.parent / target).exists()] == []
+
+
+@pytest.mark.parametrize("page", [ROOT / "SECURITY.md", DOCS / "reliability.md"], ids=lambda page: page.name)
+def test_a_promise_names_a_test_that_exists(page: Path) -> None:
+    named = PROMISE.findall(page.read_text(encoding="utf-8"))
+    assert len(named) > 5
+    for file, test in named:
+        assert (ROOT / file).exists(), file
+        assert not test or f"def {test}(" in (ROOT / file).read_text(encoding="utf-8"), f"{file}::{test}"
 
 
 def test_each_feature_that_is_compared_is_linked_to_a_file_of_tests() -> None:

@@ -24,7 +24,7 @@ from robbdd_tools.syntax.salvage import salvage, salvage_scenario, with_lost
 from robbdd_tools.syntax.symbols import references, symbols, variant_symbols
 
 KEPT_FRAMES = 100
-KEPT_LETTERS = 100_000
+KEPT_LETTERS = 30_000
 """Letters of scenarios that are kept beside those of the story that was read last, however long that is."""
 STAND_IN = f"Scenario {HOLE}{{template:<{HOLE}>scene:<{HOLE}>variation:var<{HOLE}>:{{}}}}\n"
 _NAME = r"[^\W\d][\w\-]*"
