@@ -73,6 +73,6 @@ def test_memory_that_settles_after_warm_up_is_none_of_a_fault() -> None:
 
 @pytest.mark.parametrize("held", ["memory", "descriptors", "threads", "processes"])
 def test_growth_after_warm_up_is_a_fault(held: str) -> None:
-    grows: list[Any] = [used(**{held: 10 + step}) for step in range(12)]
+    grows: list[Any] = [used(**{held: 10 + 20 * step}) for step in range(12)]
     with pytest.raises(Fault, match=f"{held} grow"):
         judged(measured(*grows))
