@@ -38,7 +38,7 @@ def edits() -> str:
 
 def kills() -> str:
     """Kill runs at random instants: no finished result is lost."""
-    return _pytest("tests/run", {"ROBBDD_KILLS": str(KILLS)}, "-k", "kill")
+    return _pytest("tests/run/test_kills.py", {"ROBBDD_KILLS": str(KILLS)})
 
 
 def versions() -> str:
