@@ -4,7 +4,7 @@ import type { LanguageClient } from "vscode-languageclient/node";
 import { openFiles } from "./written";
 import { type Lookup, OWN, findServer } from "./lookup";
 import { complain, warn } from "./notices";
-import type { ServerState } from "./presentation";
+import { type ServerState, afterInstallation, notInstalled } from "./presentation";
 import { isRunNotification } from "./runs/messages";
 import type { RunMonitor } from "./runs/monitor";
 import { openServerSetting } from "./settings";
@@ -85,10 +85,22 @@ export class Server implements vscode.Disposable {
     if (!this.isRunning()) {
       this.publish({ kind: "installing" });
     }
-    if (await this.setup.install()) {
+    const ended = await this.setup.install();
+    if (ended.kind === "installed") {
       await this.restart();
     } else if (this.state.kind === "installing") {
-      this.publish(before);
+      this.publish(afterInstallation(ended, before));
+    }
+    if (ended.kind === "failed") {
+      complain(notInstalled(ended.problem), {
+        Retry: () => void this.install(),
+        "Show Log": () => {
+          this.log.show();
+        },
+        "Open Setting": () => {
+          openServerSetting("package");
+        },
+      });
     }
     return this.isRunning();
   }

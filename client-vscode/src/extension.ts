@@ -22,7 +22,7 @@ export function activate(context: vscode.ExtensionContext): void {
     status.showRuns(progress, summary);
   });
   const { version } = context.extension.packageJSON as { readonly version: string };
-  const setup = new Setup(context.globalStorageUri.fsPath, version, log);
+  const setup = new Setup(context.globalStorageUri.fsPath, version, context.asAbsolutePath("out/server"), log);
   const started = new Server(log, runs, setup, (state) => {
     status.showServer(state);
     if (state.kind === "ready") {

@@ -9,6 +9,18 @@ export type ServerState =
   | { readonly kind: "missing"; readonly problem: string }
   | { readonly kind: "installing" };
 
+/** How an installation of the server ended: with a `problem` where it failed. */
+export type Installed = { readonly kind: "installed" | "cancelled" } | { readonly kind: "failed"; readonly problem: string };
+
+/** The state after an installation that did not bring a server: that from before it, or why there is none. */
+export function afterInstallation(ended: Installed, before: ServerState): ServerState {
+  return ended.kind === "failed" ? { kind: "missing", problem: notInstalled(ended.problem) } : before;
+}
+
+export function notInstalled(problem: string): string {
+  return `The RobBDD language server could not be installed: ${problem}${/[.?!]$/.test(problem) ? "" : "."}`;
+}
+
 export interface RunProgress {
   readonly finished: number;
   readonly total: number;

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type ServerState, present } from "../src/presentation";
+import { afterInstallation, type ServerState, present } from "../src/presentation";
 import { RestartBudget } from "../src/restarts";
 
 const READY: ServerState = { kind: "ready", command: "/usr/bin/robbdd-lsp" };
@@ -48,4 +48,14 @@ test("crashes of long ago are forgotten", () => {
   const budget = new RestartBudget();
   const minute = 60_000;
   assert.deepEqual([0, 1, 2, 3, 4, 5].map((index) => budget.crashed(2 * minute * index)), Array(6).fill(true));
+});
+
+test("an installation that failed says so with a way to retry, and a cancelled one changes nothing", () => {
+  const before = { kind: "missing", problem: "It is nowhere." } as const;
+  const after = afterInstallation({ kind: "failed", problem: "the disk is full" }, before);
+  const { text, tooltip, severity, command } = present(after, [], "");
+  assert.ok(!text.includes("spin"));
+  assert.equal(tooltip, "The RobBDD language server could not be installed: the disk is full. Click to install it.");
+  assert.deepEqual([severity, command], ["warning", "robbdd.installServer"]);
+  assert.equal(afterInstallation({ kind: "cancelled" }, before), before);
 });

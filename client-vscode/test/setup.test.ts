@@ -4,7 +4,7 @@ import { chmodSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSyn
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { afterEach, beforeEach, test } from "node:test";
-import { discardAbandoned, freshFolder, installedServer, recordInstalled } from "../src/setup/environments";
+import { bundledWheel, discardAbandoned, freshFolder, installedServer, recordInstalled } from "../src/setup/environments";
 import { type Installation, InstallProblem, installServer } from "../src/setup/installer";
 import { failureOf, installation, packageProblem, progressOf, wantedPackage } from "../src/setup/steps";
 
@@ -36,7 +36,7 @@ function program(name: string, script: string): void {
 function install(changes: Partial<Installation> = {}): ReturnType<typeof installServer> {
   return installServer({
     storage: join(folder, "storage"),
-    wanted: "robbdd-tools==1.0",
+    wanted: { name: "robbdd-tools==1.0", requirement: "robbdd-tools==1.0" },
     folders: [join(folder, "bin")],
     python: undefined,
     signal: new AbortController().signal,
@@ -57,9 +57,21 @@ async function problem(changes: Partial<Installation> = {}): Promise<string> {
   throw new Error("it was installed");
 }
 
-test("without a setting the server of the extension's own version is wanted, with what moving pictures need", () => {
-  assert.equal(wantedPackage(" ", "1.2.3"), "robbdd-tools[video]==1.2.3");
-  assert.equal(wantedPackage("/srv/robbdd.whl", "1.2.3"), "/srv/robbdd.whl");
+test("without a setting the server that the extension brings is wanted, with what moving pictures need", () => {
+  const own = "robbdd-tools[video]==1.2.3";
+  assert.deepEqual(wantedPackage(" ", "1.2.3"), { name: own, requirement: own });
+  assert.deepEqual(wantedPackage("", "1.2.3", "/ext/a b.whl"), { name: own, requirement: "robbdd-tools[video] @ file:///ext/a%20b.whl" });
+  const set = "/srv/robbdd.whl";
+  assert.deepEqual(wantedPackage(set, "1.2.3", "/ext/a.whl"), { name: set, requirement: set });
+});
+
+test("the wheel of the extension's own version is found, where there is one", () => {
+  assert.equal(bundledWheel(join(folder, "nowhere"), "1.0"), undefined);
+  writeFileSync(join(folder, "robbdd_tools-0.9-py3-none-any.whl"), "");
+  assert.equal(bundledWheel(folder, "1.0"), undefined);
+  const wheel = join(folder, "robbdd_tools-1.0-py3-none-any.whl");
+  writeFileSync(wheel, "");
+  assert.equal(bundledWheel(folder, "1.0"), wheel);
 });
 
 test("a package cannot be an option of the installer", () => {
@@ -68,7 +80,7 @@ test("a package cannot be an option of the installer", () => {
 
 test("uv makes the environment where it is there, else Python does", () => {
   const shown = (kind: "uv" | "python") =>
-    installation({ kind, program: kind }, "/env", "robbdd", "linux").map(({ program, args }) => [program, ...args].join(" "));
+    installation({ kind, program: kind }, "/env", { name: "robbdd", requirement: "robbdd" }, "linux").map(({ program, args }) => [program, ...args].join(" "));
   assert.deepEqual(shown("uv"), ["uv venv --python >=3.11 /env", "uv pip install --python /env/bin/python -- robbdd"]);
   assert.equal(shown("python")[0], "python -I -m venv /env");
   assert.match(shown("python")[1] ?? "", /^\/env\/bin\/python -I -m pip install .* -- robbdd$/);

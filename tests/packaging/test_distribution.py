@@ -29,7 +29,9 @@ def test_an_installed_wheel_finds_its_grammars_metamodels_and_robots(built: Path
     scripts = environment / ("Scripts" if sys.platform == "win32" else "bin")
     python = scripts / "python"
     (wheel,) = built.glob("*.whl")
-    subprocess.run([python, "-m", "pip", "install", "--quiet", "--no-deps", wheel], check=True)
+    # As the extension asks for the wheel that it brings.
+    wanted = f"robbdd-tools[video] @ {wheel.as_uri()}"
+    subprocess.run([python, "-I", "-m", "pip", "install", "--quiet", "--no-deps", "--", wanted], check=True)
     code = "import sysconfig; print(sysconfig.get_path('purelib'))"
     site = Path(subprocess.run([python, "-c", code], check=True, capture_output=True, text=True).stdout.strip())
     borrowed = "\n".join(path for path in sys.path if path.endswith("site-packages"))

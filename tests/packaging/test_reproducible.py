@@ -7,11 +7,14 @@ import shutil
 import subprocess
 import sys
 from hashlib import sha256
+from io import BytesIO
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 
 from kit import ROOT
+from robbdd_tools import __version__
 
 pytestmark = [pytest.mark.packaging, pytest.mark.skipif(sys.platform == "win32", reason="modes of files")]
 CLIENT = ROOT / "client-vscode"
@@ -62,7 +65,11 @@ def test_vsix(checkouts: tuple[Path, Path]) -> None:
     for source, umask in zip(checkouts, (0o077, 0o002), strict=True):
         client = source / "client-vscode"
         (client / "node_modules").symlink_to(CLIENT / "node_modules")
-        command = ["node", "scripts/package.mjs"]
-        subprocess.run(command, cwd=client, check=True, capture_output=True, umask=umask, env={**os.environ, **EPOCH})
+        command = ["npm", "run", "--silent", "package"]
+        environment = {**os.environ, **EPOCH, "PYTHON": sys.executable}
+        subprocess.run(command, cwd=client, check=True, capture_output=True, umask=umask, env=environment)
         packed.append((client / "robbdd-workbench.vsix").read_bytes())
     assert packed[0] == packed[1]
+    with ZipFile(BytesIO(packed[0])) as archive:
+        wheels = [name for name in archive.namelist() if name.endswith(".whl")]
+    assert wheels == [f"extension/out/server/robbdd_tools-{__version__}-py3-none-any.whl"]

@@ -13,7 +13,7 @@ const KEPT = 2;
 export interface PrivateServer {
   /** Path of the program. */
   readonly command: string;
-  /** What was asked of the installer. */
+  /** The name of the package that was installed. */
   readonly package: string;
 }
 
@@ -21,6 +21,16 @@ interface Installed extends PrivateServer {
   readonly folder: string;
   /** ms since the epoch. */
   readonly time: number;
+}
+
+/** The wheel of a version in a folder; undefined where an extension was packed without it. */
+export function bundledWheel(folder: string, version: string): string | undefined {
+  try {
+    const name = readdirSync(folder).find((file) => file.startsWith(`robbdd_tools-${version}-`) && file.endsWith(".whl"));
+    return name && join(folder, name);
+  } catch {
+    return undefined;
+  }
 }
 
 /** Make a new folder for an environment. */

@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { SERVER } from "../lookup";
 import { type PrivateServer, discard, freshFolder, recordInstalled } from "./environments";
 import { runProgram } from "./processes";
-import { OLDEST_PYTHON, type Step, type Tool, failureOf, installation, packageProblem, programIn, progressOf } from "./steps";
+import { OLDEST_PYTHON, type Step, type Tool, type Wanted, failureOf, installation, packageProblem, programIn, progressOf } from "./steps";
 
 /** The server could not be installed; the message says why, for the user. */
 export class InstallProblem extends Error {}
@@ -13,8 +13,7 @@ export class InstallProblem extends Error {}
 export interface Installation {
   /** The folder of the private environments. */
   readonly storage: string;
-  /** What is asked of pip. */
-  readonly wanted: string;
+  readonly wanted: Wanted;
   /** Where programs are looked for, in this order. */
   readonly folders: readonly string[];
   /** An interpreter that the user has selected. */
@@ -34,7 +33,7 @@ const PROBE = `import sys; sys.exit(sys.version_info < (${OLDEST_PYTHON.join(", 
 
 /** Install the server; raises `InstallProblem`. What was begun is deleted when it fails or is cancelled. */
 export async function installServer(installation: Installation): Promise<PrivateServer> {
-  const problem = packageProblem(installation.wanted);
+  const problem = packageProblem(installation.wanted.name);
   if (problem !== undefined) {
     throw new InstallProblem(problem);
   }
@@ -49,9 +48,10 @@ export async function installServer(installation: Installation): Promise<Private
 
 async function installInto(folder: string, { storage, signal, ...wishes }: Installation): Promise<PrivateServer> {
   const platform = process.platform;
+  const { name, requirement } = wishes.wanted;
   wishes.onProgress("Looking for Python");
   const tool = await findTool(wishes.folders, wishes.python, storage, signal);
-  for (const step of installation(tool, folder, expandHome(wishes.wanted), platform)) {
+  for (const step of installation(tool, folder, { name, requirement: expandHome(requirement) }, platform)) {
     signal.throwIfAborted();
     wishes.onProgress(step.title);
     wishes.onLine(`> ${[step.program, ...step.args].join(" ")}`);
@@ -65,9 +65,9 @@ async function installInto(folder: string, { storage, signal, ...wishes }: Insta
   }
   const command = programIn(folder, SERVER, platform);
   if (!existsSync(command)) {
-    throw new InstallProblem(`${wishes.wanted} was installed, but it brings no ${SERVER}`);
+    throw new InstallProblem(`${name} was installed, but it brings no ${SERVER}`);
   }
-  const server = { command, package: wishes.wanted };
+  const server = { command, package: name };
   recordInstalled(storage, folder, server);
   return server;
 }

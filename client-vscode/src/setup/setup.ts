@@ -1,30 +1,32 @@
 // Installs the language server for the user: progress, cancelling, what went wrong, and when it is too old.
 import * as vscode from "vscode";
 import { searchFolders } from "../lookup";
-import { openServerSetting } from "../settings";
+import type { Installed } from "../presentation";
 import { surroundings } from "../surroundings";
-import { type PrivateServer, discardAbandoned, installedServer } from "./environments";
+import { type PrivateServer, bundledWheel, discardAbandoned, installedServer } from "./environments";
 import { InstallProblem, installServer } from "./installer";
-import { wantedPackage } from "./steps";
+import { type Wanted, wantedPackage } from "./steps";
 
 export class Setup {
-  private installing: Promise<boolean> | undefined;
+  private installing: Promise<Installed> | undefined;
   /** What an update was offered for: once in a window is enough. */
   private offered: string | undefined;
 
   /**
    * @param storage the folder of the private environments
    * @param version that of the extension, and so of its server
+   * @param bundled the folder of the wheel that the extension brings along
    */
   constructor(
     private readonly storage: string,
     private readonly version: string,
+    private readonly bundled: string,
     private readonly log: vscode.LogOutputChannel,
   ) {}
 
   /** The server in a private environment, if there is one. */
   installed(): PrivateServer | undefined {
-    return installedServer(this.storage, this.wanted());
+    return installedServer(this.storage, this.wanted().name);
   }
 
   /** Delete what earlier windows have left of installations that they did not finish. */
@@ -32,8 +34,8 @@ export class Setup {
     return discardAbandoned(this.storage);
   }
 
-  /** Install the server; false when that failed or was cancelled, of which the user has been told. */
-  install(): Promise<boolean> {
+  /** Install the server. The caller tells the user of a problem: nothing here waits for an answer to that. */
+  install(): Promise<Installed> {
     this.installing ??= this.installNow().finally(() => {
       this.installing = undefined;
     });
@@ -43,7 +45,7 @@ export class Setup {
   /** Offer an update when the private server in use is not the one that belongs to this extension. */
   offerUpdate(command: string, update: () => void): void {
     const server = this.installed();
-    const wanted = this.wanted();
+    const wanted = this.wanted().name;
     if (server?.command !== command || server.package === wanted || this.offered === wanted) {
       return;
     }
@@ -56,11 +58,12 @@ export class Setup {
     });
   }
 
-  private wanted(): string {
-    return wantedPackage(vscode.workspace.getConfiguration("robbdd").get("server.package", ""), this.version);
+  private wanted(): Wanted {
+    const setting = vscode.workspace.getConfiguration("robbdd").get("server.package", "");
+    return wantedPackage(setting, this.version, bundledWheel(this.bundled, this.version));
   }
 
-  private async installNow(): Promise<boolean> {
+  private async installNow(): Promise<Installed> {
     const title = "Installing the RobBDD language server";
     const where = vscode.ProgressLocation.Notification;
     const problem = await vscode.window.withProgress({ location: where, title, cancellable: true }, (progress, token) =>
@@ -69,17 +72,10 @@ export class Setup {
       }, token),
     );
     if (problem === undefined || problem === "cancelled") {
-      return problem === undefined;
+      return { kind: problem ?? "installed" };
     }
     this.log.error(problem);
-    const message = `The RobBDD language server could not be installed: ${problem}`;
-    const choice = await vscode.window.showErrorMessage(message, "Retry", "Show Log", "Open Setting");
-    if (choice === "Show Log") {
-      this.log.show();
-    } else if (choice === "Open Setting") {
-      openServerSetting("package");
-    }
-    return choice === "Retry" && this.installNow();
+    return { kind: "failed", problem };
   }
 
   /** Install it once; returns what went wrong. */

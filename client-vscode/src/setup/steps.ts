@@ -1,8 +1,15 @@
 // What is done to install the server, as plain data: no file is touched and nothing is started here.
 import { posix, win32 } from "node:path";
+import { pathToFileURL } from "node:url";
 
 /** The distribution that brings the server, with what moving pictures need. */
 const DISTRIBUTION = "robbdd-tools[video]";
+
+/** A package to install: what users call it, and what the installer is asked for. */
+export interface Wanted {
+  readonly name: string;
+  readonly requirement: string;
+}
 export const OLDEST_PYTHON = [3, 11] as const;
 
 /** Something to start: a program with its arguments. */
@@ -16,9 +23,16 @@ export interface Step {
 /** What can make an environment: uv brings its own installer, Python has venv and pip. */
 export type Tool = { readonly kind: "uv"; readonly program: string } | { readonly kind: "python"; readonly program: string };
 
-/** What pip is asked for: the setting `robbdd.server.package`, or the server of the extension's own version. */
-export function wantedPackage(setting: string, version: string): string {
-  return setting.trim() || `${DISTRIBUTION}==${version}`;
+/**
+ * The package to install: that of the setting `robbdd.server.package`, else the server of the extension's own version.
+ *
+ * @param wheel path of the wheel that the extension brings along; without it the package index must have that version
+ */
+export function wantedPackage(setting: string, version: string, wheel?: string): Wanted {
+  const own = `${DISTRIBUTION}==${version}`;
+  const name = setting.trim() || own;
+  const bundled = name === own && wheel !== undefined;
+  return { name, requirement: bundled ? `${DISTRIBUTION} @ ${pathToFileURL(wheel).href}` : name };
 }
 
 /** Why a package cannot be asked for, or undefined. */
@@ -29,15 +43,15 @@ export function packageProblem(name: string): string | undefined {
 }
 
 /** The steps that make an environment in a folder and install a package into it. */
-export function installation(tool: Tool, folder: string, wanted: string, platform: NodeJS.Platform): Step[] {
+export function installation(tool: Tool, folder: string, { name, requirement }: Wanted, platform: NodeJS.Platform): Step[] {
   const python = programIn(folder, "python", platform);
   const making = "Making a Python environment";
-  const installing = `Installing ${wanted}`;
+  const installing = `Installing ${name}`;
   if (tool.kind === "uv") {
     const oldest = `>=${OLDEST_PYTHON.join(".")}`;
     return [
       { title: making, program: tool.program, args: ["venv", "--python", oldest, folder] },
-      { title: installing, program: tool.program, args: ["pip", "install", "--python", python, "--", wanted] },
+      { title: installing, program: tool.program, args: ["pip", "install", "--python", python, "--", requirement] },
     ];
   }
   return [
@@ -45,7 +59,7 @@ export function installation(tool: Tool, folder: string, wanted: string, platfor
     {
       title: installing,
       program: python,
-      args: ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--progress-bar=off", "--", wanted],
+      args: ["-I", "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--progress-bar=off", "--", requirement],
     },
   ];
 }
