@@ -152,7 +152,9 @@ def _take_results(parser: argparse.ArgumentParser) -> None:
 
 def _allow_hosts(*parsers: argparse.ArgumentParser) -> None:
     for parser in parsers:
-        text = "fetch JSON-LD contexts from this host, once; may be repeated (always: the setting context-hosts)"
+        text = (
+            "fetch JSON-LD contexts from this host, once; may be repeated (always: context-hosts in your own settings)"
+        )
         parser.add_argument("--allow-host", metavar="HOST", action="append", help=text)
 
 

@@ -98,32 +98,46 @@ def address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     server.server_close()
 
 
-@pytest.mark.parametrize(
-    ("config", "text", "allowed"),
-    [
-        ("robbdd.toml", 'context-hosts = ["127.0.0.1"]', True),
-        ("pyproject.toml", '[tool.robbdd]\ncontext-hosts = ["localhost", "127.0.0.1"]', True),
-        ("robbdd.toml", 'context-hosts = ["example.org"]', False),
-        ("pyproject.toml", '[tool.other]\ncontext-hosts = ["127.0.0.1"]', False),
-    ],
-)
-def test_a_projects_settings_allow_hosts_of_contexts(
-    tmp_path: Path, address: str, config: str, text: str, allowed: bool
-) -> None:
-    (tmp_path / config).write_text(text, encoding="utf-8")
+def with_context(folder: Path, address: str) -> None:
     model = {"@context": f"{address}/c.json", "@id": "ex:a", "@type": "ex:b"}
-    (tmp_path / "m.json").write_text(json.dumps(model), encoding="utf-8")
+    (folder / "m.json").write_text(json.dumps(model), encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("config", "text"),
+    [("robbdd.toml", ""), ("pyproject.toml", "[tool.robbdd]\n")],
+)
+def test_a_folder_cannot_allow_itself_to_use_the_network(
+    tmp_path: Path, address: str, config: str, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROBBDD_CONFIG", str(tmp_path / "user" / "robbdd.toml"))
+    (tmp_path / config).write_text(f'{text}context-hosts = ["127.0.0.1"]\n', encoding="utf-8")
+    with_context(tmp_path, address)
     done = robbdd("check", "m.json", folder=tmp_path)
-    assert ("is not fetched" not in done.stdout + done.stderr) == allowed
-    assert (tmp_path / "cache").exists() == allowed
+    line = text.count("\n") + 1
+    assert f"{config}:{line}:1: warning: 'context-hosts' is ignored here" in done.stderr
+    assert f"'--allow-host HOST', or write the setting into {tmp_path / 'user' / 'robbdd.toml'}" in done.stderr
+    assert "is not fetched" in done.stdout
+    assert not (tmp_path / "cache").exists()
 
 
-def test_a_wrong_setting_of_hosts_is_told_at_its_place(tmp_path: Path) -> None:
-    (tmp_path / "pyproject.toml").write_text('[tool.robbdd]\ncontext-hosts = "a.org"\n', encoding="utf-8")
+def test_the_users_own_settings_allow_hosts(tmp_path: Path, address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "user").mkdir()
+    (tmp_path / "user" / "robbdd.toml").write_text('context-hosts = ["127.0.0.1"]', encoding="utf-8")
+    monkeypatch.setenv("ROBBDD_CONFIG", str(tmp_path / "user" / "robbdd.toml"))
+    with_context(tmp_path, address)
+    done = robbdd("check", "m.json", folder=tmp_path)
+    assert "is not fetched" not in done.stdout + done.stderr
+    assert (tmp_path / "cache").exists()
+
+
+def test_a_wrong_setting_of_hosts_is_reported_at_its_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "own.toml").write_text('\ncontext-hosts = "a.org"\n', encoding="utf-8")
+    monkeypatch.setenv("ROBBDD_CONFIG", str(tmp_path / "own.toml"))
     (tmp_path / "m.json").write_text("{}", encoding="utf-8")
     done = robbdd("check", "m.json", folder=tmp_path)
     assert done.returncode == 2
-    assert "pyproject.toml:2:1: error: 'context-hosts' is a list of host names" in done.stderr
+    assert "own.toml:2:1: error: 'context-hosts' is a list of host names" in done.stderr
 
 
 @pytest.mark.physics

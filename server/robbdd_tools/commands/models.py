@@ -11,12 +11,16 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.files import path_to_uri, read_text, uri_to_path
 from robbdd_tools.base.printable import printable_json
+from robbdd_tools.base.user_settings import user_file
 from robbdd_tools.commands.output import print_note
 from robbdd_tools.features.diagnostics import all_diagnostics
 from robbdd_tools.graph.foreign import GRAPH_FORMATS, graph_format
 from robbdd_tools.names.index import FileIndex, language_of
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.syntax.parse import LANGUAGES
+
+HOSTS = "context-hosts"
+HOSTS_FORM = 'a list of host names, such as ["example.org"]'
 
 
 def load(paths: Iterable[Path]) -> tuple[Snapshot, list[str]]:
@@ -67,8 +71,8 @@ def not_a_model(paths: Iterable[Path]) -> str | None:
 def fetch_contexts(paths: Iterable[Path], hosts: Iterable[str]) -> str | None:
     """Fetch the JSON-LD contexts of models from hosts that the user allows; returns what to say when one fails.
 
-    Allowed are ``hosts`` and those of the setting ``context-hosts`` of a model's project. What was fetched is kept, so
-    that reading the models later needs no network.
+    Allowed are ``hosts`` and those of the setting ``context-hosts`` in the user's own configuration; that of the model's
+    project is reported as ignored. What was fetched is kept, so that reading the models later needs no network.
     """
     allowed = frozenset(hosts)
     for path in paths:
@@ -80,14 +84,21 @@ def fetch_contexts(paths: Iterable[Path], hosts: Iterable[str]) -> str | None:
 
 
 def _fetch(path: Path, hosts: frozenset[str]) -> str | None:
-    from robbdd_tools.graph.configuration import nearest_setting
+    from robbdd_tools.graph.configuration import nearest_setting, user_setting
     from robbdd_tools.graph.contexts import ContextLoader
     from robbdd_tools.graph.serialize import UnreadableGraph, parse
 
-    setting = nearest_setting(path_to_uri(path), "context-hosts", 'a list of host names, such as ["example.org"]')
+    setting = user_setting(HOSTS, HOSTS_FORM)
     for fault in setting.faults if setting else ():
         return f"{_place(Project().snapshot(), fault.uri, fault.span)}: error: {fault.message} [{fault.code}]"
     allowed = hosts.union(setting.values if setting else ())
+    stated = nearest_setting(path_to_uri(path), HOSTS, HOSTS_FORM)
+    if stated is not None and not allowed.issuperset(stated.values):
+        place = stated.fault(
+            f"'{HOSTS}' is ignored here, as a folder cannot permit itself to use the network: give '--allow-host HOST', "
+            f"or write the setting into {user_file()}"
+        )
+        print_note(f"{_place(Project().snapshot(), place.uri, place.span)}: warning: {place.message} [{place.code}]")
     text = read_text(path)
     if not allowed or not isinstance(text, str):
         return None

@@ -12,6 +12,7 @@ from typing import Any, cast
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.base.files import Unreadable, path_to_uri, read_text, uri_to_path
+from robbdd_tools.base.user_settings import user_file
 from robbdd_tools.graph.libraries import json_object
 
 _LINE_COLUMN = re.compile(r"\(at line (\d+), column (\d+)\)")
@@ -44,6 +45,12 @@ def nearest_setting(uri: str, key: str, form: str) -> Setting | None:
             if found is not None:
                 return found
     return None
+
+
+def user_setting(key: str, form: str) -> Setting | None:
+    """Return what the user's own configuration says under a key; see ``nearest_setting``."""
+    file = user_file()
+    return _setting(file, key, form) if os.path.lexists(file) else None
 
 
 def config_fault(file: Path, offset: int, message: str) -> Diagnostic:

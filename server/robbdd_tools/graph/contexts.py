@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from time import monotonic
 from typing import Any, cast
 from urllib.error import URLError
 from urllib.parse import urlsplit
@@ -17,6 +18,7 @@ from urllib.parse import urlsplit
 from robbdd_tools.base.data import data_file
 from robbdd_tools.base.files import Unreadable, load_text, read_text, uri_to_path
 from robbdd_tools.base.limits import MIB, MODEL_SIZE
+from robbdd_tools.base.user_settings import user_file
 from robbdd_tools.base.writing import replace_file
 
 Json = dict[str, Any]
@@ -64,7 +66,7 @@ class ContextLoader:
         opener = urllib.request.build_opener(_Redirects(self._check))
         try:
             with opener.open(urllib.request.Request(url, headers={"Accept": _WANTED}), timeout=TIMEOUT) as answer:
-                data = answer.read(MODEL_SIZE.value() + 1)
+                data = _read(answer, url)
             text = data.decode("utf-8-sig")
         except UnicodeDecodeError:
             raise UnknownContext(f"the context '{url}' is not UTF-8 text") from None
@@ -82,7 +84,7 @@ class ContextLoader:
         if urlsplit(url).scheme not in ("http", "https") or host not in self.hosts:
             raise UnknownContext(
                 f"the context '{url}' is not fetched: allow it once with '--allow-host {host}', "
-                f"or in the project's settings with 'context-hosts = [\"{host}\"]', "
+                f"or always with 'context-hosts = [\"{host}\"]' in {user_file()}, "
                 "or write the context into the document itself"
             )
 
@@ -96,6 +98,16 @@ class _Redirects(urllib.request.HTTPRedirectHandler):
     def redirect_request(self, req: Any, fp: Any, code: Any, msg: Any, headers: Any, newurl: str) -> Any:
         self._check_host(newurl)
         return super().redirect_request(req, fp, code, msg, headers, newurl)
+
+
+def _read(answer: Any, url: str) -> bytes:
+    """Return what a server sends, up to one byte more than is allowed; raises ``UnknownContext`` for a slow one."""
+    most, data, deadline = MODEL_SIZE.value() + 1, bytearray(), monotonic() + TIMEOUT
+    while len(data) < most and (part := answer.read1(min(65536, most - len(data)))):
+        data += part
+        if monotonic() > deadline:
+            raise UnknownContext(f"the context '{url}' cannot be fetched: the server takes longer than {TIMEOUT:g} s")
+    return bytes(data)
 
 
 @cache

@@ -56,6 +56,7 @@ def shacl_report(graph: Graph, shapes: Graph) -> Graph:
     """
     import pyshacl
 
+    _keep_sparql_off_the_network()
     # It prints what it raises as well.
     logging.getLogger("pyshacl-validate").disabled = True
     try:
@@ -65,6 +66,20 @@ def shacl_report(graph: Graph, shapes: Graph) -> Graph:
     if not hasattr(outcome[1], "triples"):
         raise UnusableShapes(str(outcome[2]).strip() or repr(outcome[1]))
     return cast("Graph", outcome[1])
+
+
+def _keep_sparql_off_the_network() -> None:
+    """Let no SPARQL of shapes ask a server, however it writes ``SERVICE`` or ``FROM``."""
+    from rdflib.plugins import sparql
+
+    def refuse_service(_context: object, part: Any) -> Any:
+        if part.name == "ServiceGraphPattern":
+            raise UnusableShapes("the SPARQL of a shape asks this model only: SERVICE is not followed")
+        raise NotImplementedError
+
+    loose: Any = sparql
+    loose.SPARQL_LOAD_GRAPHS = False
+    loose.CUSTOM_EVALS["robbdd"] = refuse_service
 
 
 def json_object(value: Any) -> Json:
