@@ -7,12 +7,14 @@ work; 130 interrupted.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
 from robbdd_tools import __version__
+from robbdd_tools.base.isolation import NO_USER_CODE
 from robbdd_tools.base.memory import collect_rarely
 from robbdd_tools.base.printable import printable
 from robbdd_tools.commands import FAILED, INTERRUPTED, OK
@@ -31,6 +33,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             reconfigure(encoding="utf-8", errors="replace")
     options = _parser().parse_args(arguments)
     collect_rarely()
+    if getattr(options, "no_user_code", False):
+        os.environ[NO_USER_CODE] = "1"
     command: Callable[[argparse.Namespace], int] = options.command
     try:
         return _fetch_contexts(options) or command(options)
@@ -141,6 +145,7 @@ def _parser() -> argparse.ArgumentParser:
     doctor.add_argument("path", metavar="FILE|DIR", nargs="?", type=Path, default=Path(), help="whose store to test")
     doctor.add_argument("--json", action="store_true", help="print one JSON object")
     doctor.set_defaults(command=_doctor)
+    _allow_refusal(run, replay, judge, view)
     _allow_hosts(check, graph, gherkin, run, imported, query)
     return parser
 
@@ -148,6 +153,12 @@ def _parser() -> argparse.ArgumentParser:
 def _take_results(parser: argparse.ArgumentParser) -> None:
     text = "with the results of a run: its JSON, or the number of a stored run (default: the newest)"
     parser.add_argument("--results", metavar="RESULT.json|RUN", nargs="?", const="latest", help=text)
+
+
+def _allow_refusal(*parsers: argparse.ArgumentParser) -> None:
+    for parser in parsers:
+        text = "refuse what needs Python code of users: steps, behaviours, evaluators, models"
+        parser.add_argument("--no-user-code", action="store_true", help=text)
 
 
 def _allow_hosts(*parsers: argparse.ArgumentParser) -> None:

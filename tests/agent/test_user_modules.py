@@ -6,8 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from robbdd_tools.base.interpreter import NO_USER_CODE
-from robbdd_tools.base.isolation import INHERITED
+from robbdd_tools.base.isolation import INHERITED, NO_USER_CODE
 
 SCRIPT = """
 import sys

@@ -8,8 +8,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from robbdd_tools.base.files import uri_to_path
-from robbdd_tools.base.interpreter import NO_USER_CODE, inherited_paths, started_in
-from robbdd_tools.base.isolation import SEARCHED
+from robbdd_tools.base.interpreter import inherited_paths, started_in
+from robbdd_tools.base.isolation import NO_USER_CODE, SEARCHED
 from robbdd_tools.catalog.registry import load_catalog
 
 _folders: list[str] = []

@@ -25,8 +25,6 @@ from robbdd_tools.base.processes import Ending, own_group
 PACKAGE_ROOT = Path(__file__).resolve().parents[2]
 STARTED_IN = "ROBBDD_STARTED_IN"
 """Environment variable: the working directory of the process that started this one."""
-NO_USER_CODE = "ROBBDD_NO_USER_CODE"
-"""Environment variable: when it is set, an agent imports no code of users."""
 _DROPPED = (SEARCHED, INHERITED, "PYTHONINSPECT", "PYTHONSTARTUP")
 _FOLDERS = ("PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX")
 """Variables that name a folder to load code from: a relative one would be found in whatever folder is opened."""

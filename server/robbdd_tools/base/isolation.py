@@ -10,6 +10,8 @@ import sys
 SEARCHED = "PYTHONPATH"
 INHERITED = "ROBBDD_PYTHONPATH"
 """Holds ``PYTHONPATH`` for the agent, which searches its absolute folders last."""
+NO_USER_CODE = "ROBBDD_NO_USER_CODE"
+"""Environment variable: when it is set, no process of ours imports code of users."""
 
 
 def isolate() -> None:

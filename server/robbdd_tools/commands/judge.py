@@ -21,6 +21,7 @@ from robbdd_tools.run.prepare import prepare_all
 from robbdd_tools.run.protocol import LogLine, scenario_key
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.store import NoSuchRun
+from robbdd_tools.run.user_code import refusal
 
 if TYPE_CHECKING:
     from robbdd_tools.run.protocol import Manifest
@@ -60,6 +61,9 @@ def judge(options: JudgeOptions) -> int:
         judged = prepare_all(found, str(options.path), manifest.seed, Path(name))
         if not judged.scenarios:
             return fail(f"no scenario of {options.path} has the values of one in run {options.run}")
+        problem = refusal(judged, Path(name), simulates=False)
+        if problem:
+            return fail(problem)
         results = _judged(Path(name), judged, stored)
     if options.report is not None:
         replace_file(options.report, printable_json(results.as_json(), indent=1) + "\n")

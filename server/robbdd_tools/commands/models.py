@@ -71,7 +71,7 @@ def not_a_model(paths: Iterable[Path]) -> str | None:
 def fetch_contexts(paths: Iterable[Path], hosts: Iterable[str]) -> str | None:
     """Fetch the JSON-LD contexts of models from hosts that the user allows; returns what to say when one fails.
 
-    Allowed are ``hosts`` and those of the setting ``context-hosts`` in the user's own configuration; that of the model's
+    Allowed are ``hosts`` and those of ``context-hosts`` in the user's own configuration; the setting of the model's
     project is reported as ignored. What was fetched is kept, so that reading the models later needs no network.
     """
     allowed = frozenset(hosts)
@@ -95,8 +95,8 @@ def _fetch(path: Path, hosts: frozenset[str]) -> str | None:
     stated = nearest_setting(path_to_uri(path), HOSTS, HOSTS_FORM)
     if stated is not None and not allowed.issuperset(stated.values):
         place = stated.fault(
-            f"'{HOSTS}' is ignored here, as a folder cannot permit itself to use the network: give '--allow-host HOST', "
-            f"or write the setting into {user_file()}"
+            f"'{HOSTS}' is ignored here, as a folder cannot permit itself to use the network: "
+            f"give '--allow-host HOST', or write the setting into {user_file()}"
         )
         print_note(f"{_place(Project().snapshot(), place.uri, place.span)}: warning: {place.message} [{place.code}]")
     text = read_text(path)

@@ -20,6 +20,7 @@ from robbdd_tools.commands.execute import execute
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.requests import digest, load_models
 from robbdd_tools.commands.runs import store_at
+from robbdd_tools.run import user_code
 from robbdd_tools.run.manifest import MANIFEST
 from robbdd_tools.run.prepare import FEATURES
 from robbdd_tools.run.protocol import trace_file
@@ -56,6 +57,9 @@ def replay(options: ReplayOptions) -> int:
     refusal = "" if options.force else _refusal(stored, record)
     if refusal:
         return fail(refusal)
+    problem = user_code.refusal(manifest, stored.folder)
+    if problem:
+        return fail(problem)
     wanted = [
         index
         for index, spec in enumerate(manifest.scenarios)

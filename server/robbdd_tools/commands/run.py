@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools import __version__
+from robbdd_tools.base.isolation import NO_USER_CODE
 from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
@@ -23,6 +24,7 @@ from robbdd_tools.run.prepare import prepare_all
 from robbdd_tools.run.protocol import VIEWER
 from robbdd_tools.run.store import NoSuchRun, RunRecord, RunStore, StoredRun, origin, shown_path, store_beside
 from robbdd_tools.run.used_files import digests
+from robbdd_tools.run.user_code import refusal
 
 if TYPE_CHECKING:
     from robbdd_tools.run.prepare import RunRequest
@@ -91,6 +93,9 @@ def run(options: RunOptions) -> int:
     found = requests(models, choice)
     if isinstance(found, str):
         return fail(found)
+    problem = _user_code(found, options)
+    if problem:
+        return fail(problem)
     try:
         with _place(store, outputs) as place:
             start = origin(options.path, place.folder)
@@ -98,6 +103,14 @@ def run(options: RunOptions) -> int:
             return _run(options, found, record, place)
     except OSError as error:
         return fail(f"{error.filename or outputs.folder or outputs.report}: {error.strerror or error}")
+
+
+def _user_code(found: list[RunRequest], options: RunOptions) -> str:
+    """Say why ``--no-user-code`` refuses a run, before anything of it is kept."""
+    if not os.environ.get(NO_USER_CODE):
+        return ""
+    with tempfile.TemporaryDirectory(prefix="robbdd-") as name:
+        return refusal(prepare_all(found, str(options.path), options.choice.wanted.seed, Path(name)), Path(name))
 
 
 def _run(options: RunOptions, found: list[RunRequest], record: RunRecord, place: StoredRun) -> int:

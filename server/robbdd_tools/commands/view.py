@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from robbdd_tools.commands.models import sound_model
 from robbdd_tools.commands.output import fail, print_line
 from robbdd_tools.run.pictures import NoPictures, render_scene
 from robbdd_tools.run.prepare import RunRequest, prepare
+from robbdd_tools.run.user_code import refusal
 
 if TYPE_CHECKING:
     from robbdd_tools.run.protocol import Manifest
@@ -35,6 +37,9 @@ def view(path: Path, name: str | None, seed: int | None, output: Path | None) ->
             known = dict.fromkeys(_variant(scenario.name) for scenario in manifest.scenarios)
             wanted = "no scenario" if name is None else f"no scenario '{name}'; the model has {', '.join(known)}"
             return fail(f"there is {wanted}")
+        problem = refusal(replace(manifest, scenarios=(manifest.scenarios[index],)), Path(folder), judges=False)
+        if problem:
+            return fail(problem)
         try:
             render_scene(Path(folder), index, target)
         except NoPictures as error:

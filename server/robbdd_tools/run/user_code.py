@@ -1,0 +1,62 @@
+"""Which code of users a run would execute: the one rule by which ``--no-user-code`` refuses."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.isolation import NO_USER_CODE
+from robbdd_tools.run.protocol import OWN_STEPS
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.protocol import ExecutionSpec, Manifest, ScenarioSpec
+
+FIX = "leave out --no-user-code if you trust this code, or run what does without it"
+
+
+def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates: bool = True) -> str:
+    """Say which code of users a prepared run has, where, and what to do; nothing where it has none or may run it.
+
+    A run both simulates and judges; judging stored traces needs evaluators only, a picture models only.
+    """
+    if not os.environ.get(NO_USER_CODE):
+        return ""
+    found = list(dict.fromkeys(_uses(manifest, folder, judges, simulates)))
+    return f"{'; '.join(found)}: {FIX}" if found else ""
+
+
+def _uses(manifest: Manifest, folder: Path, judges: bool, simulates: bool) -> Iterator[str]:
+    for spec in manifest.scenarios:
+        if spec.execution is not None and simulates:
+            yield from _models(spec.execution)
+        if spec.execution is not None and judges:
+            yield from _evaluators(spec.execution, spec)
+        if simulates and judges:
+            yield from _behaviours(spec)
+    if simulates and judges:
+        for file in sorted((folder / "features" / "steps").glob(OWN_STEPS)):
+            source = manifest.sources.get(file.relative_to(folder).as_posix(), str(file))
+            yield f"{source} holds steps of users"
+
+
+def _models(execution: ExecutionSpec) -> Iterator[str]:
+    scene = execution.scene
+    sources = () if scene is None else (*scene.models, *(one for entry in scene.elements for one in entry.models))
+    for source in sources:
+        if source.kind == "python":
+            yield f"{source.origin or execution.name}: a model is made by the Python code {source.name}"
+
+
+def _evaluators(execution: ExecutionSpec, spec: ScenarioSpec) -> Iterator[str]:
+    for policy in execution.policies:
+        if policy.rule.kind == "python":
+            yield f"{spec.model}: the policy {policy.iri} judges by the Python code {policy.rule.name}"
+
+
+def _behaviours(spec: ScenarioSpec) -> Iterator[str]:
+    own = None if spec.execution is None else spec.execution.implementation
+    for code in (own, None if spec.tree is None else spec.tree.source):
+        if code is not None and code.kind == "python":
+            yield f"{code.origin or spec.model}: a behaviour is the Python code {code.name}"
