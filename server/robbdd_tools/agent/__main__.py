@@ -8,6 +8,8 @@ from __future__ import annotations
 import os
 import sys
 
+from robbdd_tools.agent.standard_streams import reserve_channel
+from robbdd_tools.base.descendants import adopt_orphans
 from robbdd_tools.base.processes import on_end_request
 
 
@@ -21,15 +23,14 @@ def _main() -> int:
     if len(sys.argv) != 2:
         print("usage: python -m robbdd_tools.agent RUN_FOLDER", file=sys.stderr)
         return 2
-    # Whatever else prints, behave and the engine included, must not end up among the messages.
-    messages = os.dup(1)
-    os.dup2(2, 1)
+    orders, messages = reserve_channel()
+    adopt_orphans()
     # Executing needs no graphics: a back end that does not work here must not keep the engine from loading.
     os.environ["MUJOCO_GL"] = "disable"
     # The handlers are in place before the slow imports.
     from robbdd_tools.agent.runner import run_folder
 
-    return run_folder(sys.argv[1], sys.stdin, messages)
+    return run_folder(sys.argv[1], os.fdopen(orders, encoding="utf-8"), messages)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ FOLDER is a run folder whose scenarios are to be judged, RUN the stored run with
 from __future__ import annotations
 
 import json
-import os
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -16,6 +15,7 @@ from robbdd_tools.agent.channel import Reports
 from robbdd_tools.agent.clauses import decide
 from robbdd_tools.agent.output import Printed, finish_output
 from robbdd_tools.agent.sentences import fluents_of, read_event
+from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.agent.stated import stated_clause, stated_iteration
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
@@ -150,9 +150,7 @@ def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
 
 
 def _main() -> int:
-    channel = Reports(os.dup(1))
-    # Users' evaluators may print; that must not end up among the messages.
-    os.dup2(2, 1)
+    channel = Reports(reserve_channel()[1])
     sys.stdout = Printed(channel, sys.stdout)
     folder, run = map(Path, sys.argv[1:])
     try:

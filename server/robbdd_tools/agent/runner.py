@@ -19,6 +19,7 @@ from robbdd_tools.agent.session import STRANGER
 from robbdd_tools.agent.steps import load_steps
 from robbdd_tools.agent.user_code import fault_of, original
 from robbdd_tools.agent.user_modules import folder_of, search
+from robbdd_tools.base.descendants import end_descendants
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
     OWN_STEPS,
@@ -33,6 +34,7 @@ from robbdd_tools.run.protocol import (
 )
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.coordination import TreeSpec
     from robbdd_tools.run.protocol import Manifest
 
 QUIET = ("--format=null", "--no-summary", "--no-capture", "--no-capture-stderr", "--no-logcapture", "--no-snippets")
@@ -90,6 +92,7 @@ class Features:
         self.folder = folder
         self._manifest = manifest
         self._channel = channel
+        self._tree: TreeSpec | None = None
         self._parsed: dict[str, tuple[Any, dict[int, Any]] | Exception] = {}
 
     def own_steps(self) -> list[Path]:
@@ -106,6 +109,10 @@ class Features:
         """Yield one feature per order, with the one scenario that was ordered; every order gets its report."""
         for line in orders:
             index = decode_order(line).index
+            tree = self._manifest.scenarios[index].tree
+            if self._tree is not None and self._tree != tree:
+                end_descendants()
+            self._tree = tree
             self._channel.finished.discard(index)
             userdata[EXECUTION] = str(index)
             try:
@@ -116,6 +123,9 @@ class Features:
                 self._unknown(index, reason)
             if index not in self._channel.finished:
                 self._unknown(index, "behave did not execute the scenario")
+            # The execution of a behaviour tree goes on in the next scenario that is judged from it.
+            if tree is None:
+                end_descendants()
 
     def report_broken_steps(self, error: BaseException) -> str:
         """Report that the users' steps cannot be loaded; returns the reason."""

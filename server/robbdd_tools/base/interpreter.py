@@ -51,15 +51,17 @@ def run_for(
     return processes.run_for(seconds, _command("-m", module, *arguments), working_folder(), environment, sent)
 
 
-def start(module: str, *arguments: str, folder: Path, log: IO[bytes]) -> subprocess.Popen[str]:
+def start(
+    module: str, *arguments: str, folder: Path, log: IO[bytes], more: Mapping[str, str] | None = None
+) -> subprocess.Popen[str]:
     """Start a module of ours that works in ``folder``, speaks over its standard streams and logs to ``log``.
 
-    It leads a process group, see ``own_group``.
+    ``more`` are further environment variables. It leads a process group, see ``own_group``.
     """
     return subprocess.Popen(
         _command("-m", module, *arguments),
         cwd=folder,
-        env=_environment(),
+        env={**_environment(), **(more or {})},
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=log,

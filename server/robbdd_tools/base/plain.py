@@ -9,18 +9,25 @@ from types import UnionType
 from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
 Kind = TypeVar("Kind")
+_SCALARS = (bool, int, float, str)
 
 
 def from_plain(kind: type[Kind], data: object) -> Kind:
-    """Return a dataclass made of its fields as JSON gives them; raises ``TypeError`` or ``KeyError`` for others.
+    """Return a dataclass made of its fields as JSON gives them; raises ``TypeError``, ``ValueError`` or ``KeyError``.
 
-    Fields may be plain values, dataclasses, tuples and mappings of these, and any of them or ``None``.
+    Fields may be plain values, dataclasses, tuples and mappings of these, and any of them or ``None``. A value of
+    another type is refused, but for an integer where a float is expected.
     """
     return cast(Kind, _value(kind, data))
 
 
 def _value(kind: Any, data: Any) -> Any:
     origin, inner = get_origin(kind), get_args(kind)
+    if kind in _SCALARS:
+        accepted = (int, float) if kind is float else kind
+        is_other_bool = isinstance(data, bool) and kind is not bool
+        _expect(isinstance(data, accepted) and not is_other_bool, data, kind.__name__)
+        return data
     if is_dataclass(kind):
         hints = _hints(kind)
         return cast(Any, kind)(**{name: _value(hints[name], value) for name, value in data.items()})
@@ -31,11 +38,18 @@ def _value(kind: Any, data: Any) -> Any:
         listed = [one for one in kinds if get_origin(one) is tuple] if isinstance(data, list) else []
         return _value((listed or kinds)[0], data)
     if origin is tuple:
+        _expect(isinstance(data, list | tuple), data, "list")
         kinds = [inner[0]] * len(data) if inner[-1] is Ellipsis else inner
         return tuple(_value(one, value) for one, value in zip(kinds, data, strict=True))
     if origin is not None and issubclass(origin, Mapping):
+        _expect(isinstance(data, Mapping), data, "mapping")
         return {key: _value(inner[1], value) for key, value in data.items()}
     return data
+
+
+def _expect(is_fitting: bool, data: object, name: str) -> None:
+    if not is_fitting:
+        raise TypeError(f"{data!r} is no {name}")
 
 
 @cache

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,8 +18,9 @@ from robbdd_tools.commands.runs import store_at
 from robbdd_tools.gherkin.select import Wanted
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.launch import Agent, stop
+from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.prepare import prepare_all
-from robbdd_tools.run.protocol import LogLine, scenario_key
+from robbdd_tools.run.protocol import LogLine, RunMessage, ScenarioStarted, scenario_key
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.store import NoSuchRun
 from robbdd_tools.run.user_code import refusal
@@ -72,13 +74,22 @@ def judge(options: JudgeOptions) -> int:
     return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS
 
 
+def _fitting(messages: Iterable[RunMessage], manifest: Manifest) -> Iterator[RunMessage]:
+    """Yield the messages, each that cannot be meant as a line of the log."""
+    present = None
+    for message in messages:
+        present = message.index if isinstance(message, ScenarioStarted) else present
+        problem = misfit(message, manifest.scenarios, present)
+        yield LogLine("warning", problem) if problem else message
+
+
 def _judged(folder: Path, manifest: Manifest, stored: StoredRun) -> RunResults:
     results = RunResults(manifest)
     agent = Agent(folder, module="robbdd_tools.agent.judge", arguments=[str(stored.folder.absolute())])
     ending = ""
     with Display(results) as display:
         try:
-            for message in agent.messages():
+            for message in _fitting(agent.messages(), manifest):
                 results.apply(message)
                 display.watch(message)
                 display.show(message)

@@ -9,8 +9,8 @@ from robbdd_tools.commands import FAILED
 
 
 def print_line(line: str) -> None:
-    """Print a line of a command's answer."""
-    print(printable(line))
+    """Print a line of a command's answer at once."""
+    print(printable(line), flush=True)
 
 
 def print_note(line: str) -> None:

@@ -2,41 +2,60 @@
 
 from __future__ import annotations
 
+import itertools
+import os
+import threading
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
+from io import TextIOWrapper
 from pathlib import Path
 from subprocess import TimeoutExpired
 from time import monotonic
+from typing import BinaryIO, cast
 
-from robbdd_tools.base.files import load_bytes
+from robbdd_tools.base.descendants import MARK, end_marked
 from robbdd_tools.base.interpreter import start
-from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.processes import describe_exit, end_group, request_end
+from robbdd_tools.run.agent_log import LIMIT, BoundedLog
 from robbdd_tools.run.protocol import Execute, LogLine, RunMessage, decode, encode
 
 LOGS = "logs"
 WORK = "work"
 """Working directory of the agents, in the run's folder: files that users' code writes are kept with the run."""
+LONGEST = 1024 * 1024
+"""Bytes that a line of the message channel has at most."""
+MOST_STRANGE = 20
+"""Lines that are no messages of which a run shows the text, for each process."""
 PATIENCE = 0.2
 """Seconds that agents have to end by themselves when they are told to stop."""
+_numbers = itertools.count(1)
 
 
 class Agent:
     """One agent process working on a run folder; ``number`` names its log.
 
-    ``module`` is what it runs, ``arguments`` what this is told beside the folder.
+    ``module`` is what it runs, ``arguments`` what this is told beside the folder. Of what it prints, ``log_limit``
+    bytes are kept.
     """
 
     def __init__(
-        self, folder: Path, number: int = 1, module: str = "robbdd_tools.agent", arguments: Sequence[str] = ()
+        self,
+        folder: Path,
+        number: int = 1,
+        module: str = "robbdd_tools.agent",
+        arguments: Sequence[str] = (),
+        log_limit: int = LIMIT,
     ) -> None:
         folder = folder.absolute()
         work = folder / WORK
         work.mkdir(exist_ok=True)
-        self._log = folder / LOGS / f"agent-{number}.log"
-        self._log.parent.mkdir(exist_ok=True)
-        with self._log.open("wb") as log:
-            self._process = start(module, str(folder), *arguments, folder=work, log=log)
+        (folder / LOGS).mkdir(exist_ok=True)
+        self._log = BoundedLog(folder / LOGS / f"agent-{number}.log", log_limit)
+        self._mark = f"{os.getpid()}-{next(_numbers)}"
+        with self._log.stream as log:
+            self._process = start(module, str(folder), *arguments, folder=work, log=log, more={MARK: self._mark})
+        self._leftovers = threading.Thread(target=self._end_leftovers, daemon=True)
+        self._leftovers.start()
 
     @property
     def pid(self) -> int:
@@ -54,12 +73,14 @@ class Agent:
 
     def messages(self) -> Iterator[RunMessage]:
         """Yield the messages as they come until the process ends; a line that is no message becomes a log line."""
-        assert self._process.stdout is not None
-        for line in self._process.stdout:
+        strange = 0
+        for line in _lines(cast(BinaryIO, cast(TextIOWrapper, self._process.stdout).buffer)):
             try:
                 yield decode(line)
-            except ValueError:
-                yield LogLine("warning", line.rstrip())
+            except ValueError as error:
+                strange += 1
+                if strange <= MOST_STRANGE:
+                    yield LogLine("warning", str(error))
         self._process.wait()
         self._close()
 
@@ -78,7 +99,8 @@ class Agent:
     def ending(self) -> str:
         """Say how the process ended, for clauses that it left open."""
         code = self._process.wait()
-        tail = self._last_log_line()
+        self._log.wait(PATIENCE)
+        tail = self._log.last_line()
         return f"the agent process ended unexpectedly with {describe_exit(code)}" + (f": {tail}" if tail else "")
 
     def terminate(self) -> None:
@@ -86,17 +108,31 @@ class Agent:
         if self._process.poll() is None:
             request_end(self._process)
 
+    def finish(self) -> None:
+        """End what is left of an ended process and complete its log."""
+        self._leftovers.join(PATIENCE)
+        self._log.wait(PATIENCE)
+
     def wait(self, seconds: float) -> None:
         """Wait for the process's end, at most for a time."""
         with suppress(TimeoutExpired):
             self._process.wait(max(0.0, seconds))
 
-    def _last_log_line(self) -> str:
-        try:
-            lines = load_bytes(self._log, RESULT_SIZE).decode(errors="replace").split("\n")
-        except OSError:
-            return ""
-        return next((line.strip() for line in reversed(lines) if line.strip()), "")
+    def _end_leftovers(self) -> None:
+        """End what the process leaves behind when it ends: it may hold the channel and the log open."""
+        self._process.wait()
+        end_group(self._process)
+        end_marked(self._mark)
+
+
+def _lines(stream: BinaryIO) -> Iterator[str]:
+    """Yield the lines of a stream that are not empty; of one that is too long only its beginning."""
+    while part := stream.readline(LONGEST + 1):
+        rest = part
+        while len(rest) > LONGEST and not rest.endswith(b"\n"):
+            rest = stream.readline(LONGEST + 1)
+        if part.strip():
+            yield part.decode("utf-8", "backslashreplace").rstrip("\n")
 
 
 def stop(agents: Iterable[Agent]) -> None:
@@ -110,3 +146,4 @@ def stop(agents: Iterable[Agent]) -> None:
         agent.kill()
     for agent in stopping:
         agent.wait(PATIENCE)
+        agent.finish()

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.policy import Policy
-from robbdd_tools.monitor.verdict import Verdict
+from robbdd_tools.monitor.verdict import Outcome, Verdict
 
 VIEWER = "ROBBDD_VIEWER"
 """Environment variable of the agent: when it is set, a window shows each scenario in real time."""
@@ -26,6 +27,8 @@ OWN_STEPS = "model_*steps.py"
 """Pattern of the files in a run's folder of steps that are copies of users' own."""
 NO_STEP = "no step definition"
 """How the reason begins why a clause is unknown that nothing can judge."""
+
+LEVELS = ("info", "warning", "error")
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,17 +296,29 @@ def judged(index: int, line: int, verdict: Verdict) -> ClauseJudged:
 
 
 def encode(message: RunMessage | Execute) -> str:
-    """Return a message as one line of JSON, without the line end."""
-    return json.dumps({"type": type(message).__name__, **asdict(message)}, ensure_ascii=False)
+    """Return a message as one line of JSON in ASCII, without the line end."""
+    return json.dumps({"type": type(message).__name__, **asdict(message)})
 
 
 def decode(line: str) -> RunMessage:
-    """Return the message of a line; raises ``ValueError`` for anything that is not one."""
+    """Return the message of a line; raises ``ValueError`` for anything that is not one, field by field."""
     try:
-        fields = json.loads(line)
-        return from_plain(_TYPES[fields.pop("type")], fields)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        fields = json.loads(line, parse_float=_finite, parse_constant=_finite)
+        message = from_plain(_TYPES[fields.pop("type")], fields)
+        if isinstance(message, ClauseJudged):
+            Outcome(message.verdict)
+        if isinstance(message, LogLine) and message.level not in LEVELS:
+            raise ValueError(message.level)
+        return message
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise ValueError(f"not a run message: {line[:200]!r}") from error
+
+
+def _finite(number: str) -> float:
+    value = float(number)
+    if not isfinite(value):
+        raise ValueError(number)
+    return value
 
 
 def decode_order(line: str) -> Execute:

@@ -18,6 +18,7 @@ from time import monotonic
 
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.launch import Agent, stop
+from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.order import InOrder
 from robbdd_tools.run.protocol import (
     ClauseJudged,
@@ -208,16 +209,24 @@ class Scheduler:
         self._events.put((worker, None))
 
     def _next_event(self) -> Event | None:
-        """Wait for a message, or for the first deadline: a process that missed it is ended, and says so itself."""
+        """Wait for a message, or for the first deadline: a process that missed it is ended, and says so itself.
+
+        One that never ceases to send messages misses it all the same.
+        """
         first = min(self._workers, key=lambda worker: worker.deadline)
-        try:
-            return self._events.get(timeout=None if first.deadline == inf else max(0.0, first.deadline - monotonic()))
-        except Empty:
+        left = first.deadline - monotonic()
+        if left <= 0.0:
             first.expire()
+        try:
+            return self._events.get(timeout=None if left == inf else max(0.0, left))
+        except Empty:
             return None
 
     def _take(self, worker: _Worker, message: RunMessage | None) -> Iterator[RunMessage]:
-        """Act on a message, or on the end of a process (``None``)."""
+        """Act on a message, or on the end of a process (``None``); one that cannot be meant is logged."""
+        problem = "" if message is None else self._misfit(worker, message)
+        if problem:
+            message = LogLine("warning", problem)
         match message:
             case None:
                 self._workers.remove(worker)
@@ -233,7 +242,8 @@ class Scheduler:
                 yield from self._pass_on(worker, message)
             case ScenarioStarted(index):
                 self._wasted = 0
-                worker.started, worker.deadline = True, monotonic() + self._limit(index)
+                if not worker.started:
+                    worker.started, worker.deadline = True, monotonic() + self._limit(index)
                 yield from self._pass_on(worker, message)
             case UserCodeFailed(None, fault):
                 # The code that all scenarios share is loaded by each process.
@@ -254,6 +264,18 @@ class Scheduler:
                 yield from self._pass_on(worker, message)
             case ScenarioFinished():
                 yield from self._finish(worker, message)
+
+    def _misfit(self, worker: _Worker, message: RunMessage) -> str:
+        """Say why a message of a process cannot be meant; nothing when it fits what the process does."""
+        match message:
+            case ClauseJudged(line=line) if line in worker.judged:
+                return f"ignored another verdict on the clause of line {line}"
+            case ClauseStarted() | ClauseJudged() | MarginRanges() | ScenarioFinished() if not worker.started:
+                return f"ignored {type(message).__name__} before the beginning of a scenario"
+            case RunFinished() if worker.started:
+                return "ignored RunFinished within a scenario"
+            case _:
+                return misfit(message, self._specs, worker.index)
 
     def _limit(self, _index: int) -> float:
         """Seconds that a scenario may take."""

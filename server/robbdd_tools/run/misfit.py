@@ -1,0 +1,24 @@
+"""Run messages that are well-formed but cannot come from the agent, only from code that writes to its channel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from robbdd_tools.run.protocol import RunMessage, ScenarioSpec
+
+
+def misfit(message: RunMessage, specs: Sequence[ScenarioSpec], executed: int | None) -> str:
+    """Say why a message of an agent that executes scenario ``executed`` cannot be meant; nothing when it fits.
+
+    ``specs`` are the scenarios of the manifest.
+    """
+    index: int | None = getattr(message, "index", None)
+    line: int | None = getattr(message, "line", None)
+    kind = type(message).__name__
+    if index is None:
+        return ""
+    if index != executed or not 0 <= index < len(specs):
+        return f"ignored {kind} of scenario {index}, which the agent does not execute"
+    if line is not None and all(line != clause.line for clause in specs[index].clauses):
+        return f"ignored {kind} of line {line}, where scenario {index} has no clause"
+    return ""
