@@ -56,6 +56,45 @@ def test_anything_else_is_refused_as_a_value_error(line: str) -> None:
         decode(line)
 
 
+JUDGED = '"index": 1, "line": 5, "verdict": "holds", "robustness": 1, "unit": "m", "at": null, "reason": ""'
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '{"type": "ScenarioStarted", "index": "1"}',
+        '{"type": "ScenarioStarted", "index": 1.5}',
+        '{"type": "ScenarioStarted", "index": true}',
+        '{"type": "ScenarioStarted", "index": null}',
+        '{"type": "ScenarioStarted"}',
+        '{"type": "ScenarioStarted", "index": 1, "more": 2}',
+        '{"type": ["ScenarioStarted"], "index": 1}',
+        '{"type": "Nothing"}',
+        '{"type": "LogLine", "level": "loud", "text": ""}',
+        '{"type": "RunStarted", "total": 1, "simulator": {}}',
+        '{"type": "MarginRanges", "index": 1, "line": 5, "ranges": [[0, 1, 2]]}',
+        '{"type": "MarginRanges", "index": 1, "line": 5, "ranges": "01"}',
+        '{"type": "ScenarioFinished", "index": 1, "simulated": NaN, "wall": 0, "stepping": 0}',
+        '{"type": "ScenarioFinished", "index": 1, "simulated": 1e999, "wall": 0, "stepping": 0}',
+        '{"type": "ClauseJudged", ' + JUDGED.replace("holds", "fine") + "}",
+        '{"type": "ClauseJudged", ' + JUDGED.replace('"m"', "7") + "}",
+        "[" * 100_000,
+        '{"type": ' * 100_000,
+        "1" * 10_000,
+    ],
+)
+def test_a_message_is_checked_field_by_field(line: str) -> None:
+    assert decode('{"type": "ClauseJudged", ' + JUDGED + "}") == ClauseJudged(1, 5, "holds", 1, "m", None, "")
+    with pytest.raises(ValueError, match="not a run message"):
+        decode(line)
+
+
+def test_half_characters_survive() -> None:
+    message = LogLine("info", "\udc80 \ud800 ü 😀")
+    assert encode(message).isascii()
+    assert decode(encode(message)) == message
+
+
 def test_a_manifest_comes_back_equal(tmp_path: Path) -> None:
     scene = SceneSpec(("e:a",), ("e:r",), {"e:w": ("e:t",)}, {"e:w": ("e:v",)}, {"e:a": "e:w"})
     clause = ClauseSpec(9, "https://x/c", "c", "then", '"e:a" is located at "e:w" after event "e:e"')

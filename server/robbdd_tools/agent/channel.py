@@ -28,8 +28,7 @@ class Lines(Channel):
 
     def send(self, message: RunMessage) -> None:
         """Write a message; the process ends quietly when nobody reads any more."""
-        # Whatever else wrote to the descriptor without ending its line does not spoil this one.
-        data = f"\n{encode(message)}\n".encode()
+        data = (encode(message) + "\n").encode()
         try:
             # Threads of users' code print, too.
             with self._writing:

@@ -43,6 +43,9 @@ class TakesArguments(Protocol):
         ...
 
 
+MEBIBYTE = 1024 * 1024
+
+
 def allow_store(parser: TakesArguments) -> None:
     """Add the argument that names another store."""
     text = "where runs are kept (default: .robbdd/runs in the project's root)"
@@ -55,6 +58,8 @@ def allow_policy(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--jobs", metavar="N", type=positive, help=text)
     text = "wall time that a scenario may take (default: 300; 0: any)"
     parser.add_argument("--timeout", metavar="SECONDS", type=_seconds, help=text)
+    text = "MiB kept of what each agent process prints, half from the beginning and half from the end (default: 4)"
+    parser.add_argument("--log-limit", metavar="MIB", type=positive, help=text)
     parser.add_argument("--stop-on-failure", action="store_true", help="leave out what comes after the first failure")
 
 
@@ -76,6 +81,7 @@ def policy(options: argparse.Namespace) -> Policy:
 
     found = Policy(stop_on_failure=options.stop_on_failure)
     found = found if options.jobs is None else replace(found, jobs=options.jobs)
+    found = found if options.log_limit is None else replace(found, log_limit=options.log_limit * MEBIBYTE)
     return found if options.timeout is None else replace(found, timeout=options.timeout)
 
 

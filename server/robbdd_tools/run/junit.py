@@ -71,4 +71,5 @@ def _wall(scenario: ScenarioResult) -> float:
 
 
 def _lines(words: Iterable[str]) -> str:
-    return "\n".join(map(printable, words))
+    """Escape what XML cannot say and what would act on a terminal; the lines stay."""
+    return "\n".join(printable(line) for each in words for line in each.split("\n"))

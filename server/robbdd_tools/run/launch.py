@@ -22,6 +22,8 @@ from robbdd_tools.run.protocol import Execute, LogLine, RunMessage, decode, enco
 LOGS = "logs"
 WORK = "work"
 """Working directory of the agents, in the run's folder: files that users' code writes are kept with the run."""
+MESSAGE_BEGIN = '{"type": '
+"""How ``encode`` begins every message; within a string its quotes would be escaped."""
 LONGEST = 1024 * 1024
 """Bytes that a line of the message channel has at most."""
 MOST_STRANGE = 20
@@ -76,7 +78,7 @@ class Agent:
         strange = 0
         for line in _lines(cast(BinaryIO, cast(TextIOWrapper, self._process.stdout).buffer)):
             try:
-                yield decode(line)
+                yield _decoded(line)
             except ValueError as error:
                 strange += 1
                 if strange <= MOST_STRANGE:
@@ -123,6 +125,17 @@ class Agent:
         self._process.wait()
         end_group(self._process)
         end_marked(self._mark)
+
+
+def _decoded(line: str) -> RunMessage:
+    """Return the message of a line, behind what other code wrote to the channel without ending its line, if any."""
+    try:
+        return decode(line)
+    except ValueError:
+        begin = line.rfind(MESSAGE_BEGIN)
+        if begin <= 0:
+            raise
+        return decode(line[begin:])
 
 
 def _lines(stream: BinaryIO) -> Iterator[str]:

@@ -17,6 +17,7 @@ from queue import Empty, SimpleQueue
 from time import monotonic
 
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.agent_log import LIMIT
 from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.order import InOrder
@@ -47,11 +48,15 @@ STOPPED = "not executed: the run was stopped at the first failure"
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """How a run goes: processes at a time, seconds of wall time per scenario, whether its first failure ends it."""
+    """How a run goes: processes at a time, seconds of wall time per scenario, whether its first failure ends it.
+
+    ``log_limit`` is how many bytes are kept of what each process prints.
+    """
 
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
     timeout: float = TIMEOUT
     stop_on_failure: bool = False
+    log_limit: int = LIMIT
 
 
 @dataclass(slots=True, eq=False)
@@ -198,7 +203,7 @@ class Scheduler:
 
     def _launch(self) -> _Worker:
         self._launched += 1
-        worker = _Worker(Agent(self._folder, self._launched))
+        worker = _Worker(Agent(self._folder, self._launched, log_limit=self._policy.log_limit))
         self._workers.append(worker)
         threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
         return worker
