@@ -189,7 +189,8 @@ OPENS_ITSELF = {
     "base.files": "the one that reads",
     "base.writing": "the one that writes",
     "agent.moments": "adds lines to a file of its own run",
-    "run.launch": "gives a process its log",
+    "base.descendants": "reads what Linux tells of processes",
+    "run.agent_log": "adds to the log of a process",
 }
 
 

@@ -186,7 +186,7 @@ def test_processes_left_behind_end_with_their_agent(tmp_path: Path, pids: Path) 
     assert not any(map(is_running, left))
 
 
-def test_the_helpers_of_other_programs_are_left_alone() -> None:
+def test_the_helpers_of_other_programs_are_left_alone(tmp_path: Path) -> None:
     code = (
         "import subprocess, sys\n"
         "from robbdd_tools.base.descendants import end_marked\n"
@@ -195,4 +195,5 @@ def test_the_helpers_of_other_programs_are_left_alone() -> None:
         "print(child.poll())\n"
         "child.communicate(b'\\n')\n"
     )
-    assert run_for(60, [sys.executable, "-c", code], {**os.environ, "ROBBDD_AGENT": "mine"}).output == "None\n"
+    environment = {**os.environ, "ROBBDD_AGENT": "mine"}
+    assert run_for(60, [sys.executable, "-c", code], tmp_path, environment).output == "None\n"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
+from math import isfinite
 from types import UnionType
 from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
@@ -19,6 +20,14 @@ def from_plain(kind: type[Kind], data: object) -> Kind:
     another type is refused, but for an integer where a float is expected.
     """
     return cast(Kind, _value(kind, data))
+
+
+def finite(number: str) -> float:
+    """Return a number that JSON gives as text; raises ``ValueError`` for infinite ones and ``NaN``."""
+    value = float(number)
+    if not isfinite(value):
+        raise ValueError(number)
+    return value
 
 
 def _value(kind: Any, data: Any) -> Any:

@@ -10,11 +10,10 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from robbdd_tools.base.plain import from_plain
+from robbdd_tools.base.plain import finite, from_plain
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.fault import Fault
@@ -303,7 +302,7 @@ def encode(message: RunMessage | Execute) -> str:
 def decode(line: str) -> RunMessage:
     """Return the message of a line; raises ``ValueError`` for anything that is not one, field by field."""
     try:
-        fields = json.loads(line, parse_float=_finite, parse_constant=_finite)
+        fields = json.loads(line, parse_float=finite, parse_constant=finite)
         message = from_plain(_TYPES[fields.pop("type")], fields)
         if isinstance(message, ClauseJudged):
             Outcome(message.verdict)
@@ -312,13 +311,6 @@ def decode(line: str) -> RunMessage:
         return message
     except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise ValueError(f"not a run message: {line[:200]!r}") from error
-
-
-def _finite(number: str) -> float:
-    value = float(number)
-    if not isfinite(value):
-        raise ValueError(number)
-    return value
 
 
 def decode_order(line: str) -> Execute:
