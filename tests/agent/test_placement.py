@@ -87,7 +87,10 @@ def test_a_second_robot_faces_the_first_across_the_table() -> None:
     [
         (replace(SCENE, objects=("env:gizmo",)), "no model for object 'env:gizmo': .* one of ball, belt, bench, bin, "),
         (replace(SCENE, agents=("env:hal",)), "no model for agent 'env:hal': .* one of franka, gen3, kinova, panda"),
-        (replace(SCENE, agents=("t:panda1", "t:panda2", "t:panda3")), "room for two agents"),
+        (
+            replace(SCENE, agents=tuple(f"t:panda{number}" for number in range(1, 6))),
+            "room for 4 agents around 'env:bench', one at each side; place t:panda5 in a .scenex",
+        ),
         (replace(SCENE, places={CUBE: "env:void_ws"}), "'env:cube1' is to be at 'env:void_ws', but nothing"),
         (replace(SCENE, workspaces={BIN_WS: ("env:bin9",)}), "carried by 'env:bin9', which is not in the scene"),
         (
@@ -109,3 +112,36 @@ def test_places_that_overlap_are_drawn_again_and_counted() -> None:
     world = build_world(crowd, 1)
     assert world.resampled > 0
     assert build_world(crowd, 1).resampled == world.resampled
+
+
+def test_four_arms_fit_around_a_table_and_each_has_things_within_reach() -> None:
+    agents = tuple(f"t:panda{number}" for number in range(1, 5))
+    scene = replace(SCENE, agents=agents)
+    cast = cast_scene(scene)
+    bases = mounts(cast)
+    assert all(
+        hypot(*(a - b for a, b in zip(one.position, other.position, strict=True))) > 0.8
+        for one, other in combinations(bases.values(), 2)
+    )
+    for base in bases.values():
+        x, y, _ = arrange(scene, cast, base, np.random.default_rng(1)).poses[CUBE].position
+        assert hypot(x - base.position[0], y - base.position[1]) < 0.75
+
+
+def test_what_no_clause_speaks_of_needs_neither_model_nor_place() -> None:
+    scene = replace(
+        SCENE,
+        objects=(*SCENE.objects, "env:first-aid-kit"),
+        agents=("env:arm1", "env:panda", "env:ur10"),
+        unused=("env:first-aid-kit", "env:arm1", "env:ur10"),
+    )
+    cast = cast_scene(scene)
+    assert tuple(cast.agents) == ("env:panda",)
+    assert cast.left_out == ("env:first-aid-kit", "env:arm1", "env:ur10")
+    with pytest.raises(SceneError, match="no model for object 'env:first-aid-kit'"):
+        cast_scene(replace(scene, unused=("env:arm1", "env:ur10")))
+
+
+def test_the_name_of_a_set_chooses_a_model() -> None:
+    cast = cast_scene(replace(SCENE, agents=("env:robot1",), sets={"env:robot1": ("panda_arms",)}))
+    assert cast.agents["env:robot1"].name == "franka-panda"

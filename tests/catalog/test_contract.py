@@ -115,9 +115,16 @@ def test_prefixes_are_claimed_once() -> None:
         ("bench", "table"),
         ("dining_table", "table"),
         ("box3", "box"),
+        ("red-cube", "cube"),
+        ("cereal-box", "box"),
+        ("work_bench", "table"),
+        ("workbench", "table"),
+        ("RedCube", "cube"),
+        ("bin_cubes", "bin"),
+        ("big_shelf_box", "shelf"),
     ],
 )
-def test_objects_are_chosen_by_the_beginning_of_their_name(name: str, model: str) -> None:
+def test_objects_are_chosen_by_the_words_of_their_name(name: str, model: str) -> None:
     chosen = CATALOG.object_for(name)
     assert chosen is not None
     assert chosen.name == model
@@ -126,6 +133,22 @@ def test_objects_are_chosen_by_the_beginning_of_their_name(name: str, model: str
 def test_a_name_that_nothing_stands_for_has_no_model() -> None:
     assert CATALOG.object_for("gizmo") is None
     assert CATALOG.robot_for("gizmo") is None
+    assert CATALOG.object_for("first-aid-cabinet") is None
+
+
+@pytest.mark.parametrize(
+    ("name", "sets", "model"),
+    [
+        ("my-kinova-arm", [], "kinova-gen3"),
+        ("robot1", ["panda_arms"], "franka-panda"),
+        ("ur10", ["panda_arms"], "ur10"),
+        ("left-UR-10", [], "ur10"),
+        ("robot1", ["arms"], None),
+    ],
+)
+def test_agents_are_chosen_by_name_and_else_by_that_of_their_set(name: str, sets: list[str], model: str | None) -> None:
+    chosen = CATALOG.robot_for(name, sets)
+    assert (None if chosen is None else chosen.name) == model
 
 
 @every_object

@@ -50,3 +50,16 @@ def test_a_policy_that_asks_for_more_is_violated(project: Path) -> None:
     violated = [(name, margin) for name, verdict, margin in judgements(project / "run.json") if verdict == "violated"]
     assert [name for name, _ in violated] == ["at-goal"]
     assert all(margin is not None and -0.199 < margin < 0 for _, margin in violated)
+
+
+def test_a_policy_judges_a_text_for_which_there_is_no_step(project: Path) -> None:
+    model, execution = project / "pickplace.bdd", project / "pickplace.bddx"
+    text = model.read_text(encoding="utf-8")
+    clause = "at-goal: holds(<thing> is located at <goal>,"
+    assert clause in text
+    near = "at-goal: holds(pred('{thing} is near {goal}', thing=<thing>, goal=<goal>),"
+    model.write_text(text.replace(clause, near), encoding="utf-8")
+    assert main(["run", execution.name, "--where", "thing = cube0", "--json", "run.json"]) == 0
+    found = [entry for entry in judgements(project / "run.json") if entry[0] == "at-goal"]
+    assert found
+    assert all(verdict == "holds" and margin is not None for _, verdict, margin in found)

@@ -59,7 +59,10 @@ TURN = "euler { angles: (0, 0, 90) unit: deg }"
 
 
 def instance(orientation: str = TURN, form: str = "ttl") -> SceneInstance:
-    text = SCENEX.replace("ORIENTATION", orientation)
+    return instance_of(SCENEX.replace("ORIENTATION", orientation), form)
+
+
+def instance_of(text: str, form: str = "ttl") -> SceneInstance:
     case = fixture(f"//- run.bddx\n{BDDX}\n//- main.bdd\n{MODEL}\n//- lab.scene\n{SCENE}\n//- bench.scenex\n{text}")
     graph = build_graph(case.snapshot, case.uri).graph
     scene = read_model(parse(serialize(graph, form), form)).executions[0].scene
@@ -142,3 +145,14 @@ def test_what_is_read_can_be_written_as_json_and_tells_where_it_stands() -> None
     origin = scene.elements[-1].models[0].origin
     assert origin is not None
     assert str(origin) == f"/fixture/bench.scenex:{text[: text.index('panda_m')].count(chr(10)) + 1}:15"
+
+
+def test_as_and_to_may_be_left_out() -> None:
+    short = SCENEX.replace("nut_m as mjcf", "nut_m mjcf").replace('map body <g.nut> to "nut"', "map body <g.nut>")
+    assert 'to "nut"' not in short
+    assert _named(short) == _named(SCENEX)
+
+
+def _named(text: str) -> list[tuple[tuple[str, str], ...]]:
+    scene = instance_of(text.replace("ORIENTATION", TURN))
+    return [model.bodies for one in scene.elements for model in one.models]

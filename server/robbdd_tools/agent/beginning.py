@@ -25,6 +25,8 @@ class Courses:
 
     def __init__(self) -> None:
         self._kept: dict[str, Course] = {}
+        self.left_out: set[str] = set()
+        """Elements that were reported as left out."""
 
     def course(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing) -> Course:
         """Return the course of a scenario, a new one where it shares none; raises ``SceneError``."""

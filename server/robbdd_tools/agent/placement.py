@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.pose import Pose as Pose
 from robbdd_tools.agent.scene import carriers
-from robbdd_tools.catalog.api import ObjectModel, ShapeKind, Vector
+from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, ShapeKind, Vector
 from robbdd_tools.catalog.settings import NORMAL
 
 if TYPE_CHECKING:
@@ -35,6 +35,8 @@ BIN_SKEW = 0.2
 BIN_ROOM = 0.03
 """Half edge (m) of the square in a bin's middle that a hand can work in."""
 TRIES = 400
+SIDES = 4
+"""Sides of a table at which an agent has room."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,21 +76,37 @@ def footprint(model: ObjectModel) -> float:
 
 
 def mounts(cast: Cast) -> dict[str, Pose]:
-    """Return where each agent's base stands; raises ``SceneError`` for more than two agents.
+    """Return where each agent's base stands; raises ``SceneError`` when there is no room for one.
 
-    One whose place the scene does not tell stands at its model's mount if it is the first, else across the table.
+    One that an executable scene does not place stands at the table: the first at its model's mount, the others across
+    the table and at its ends.
     """
     placed = {name: pose for name in cast.agents if (pose := cast.base(name)) is not None}
-    if len(cast.agents) > 2 and len(placed) < len(cast.agents):
-        raise SceneError(f"there is room for two agents at the table, the scene has {len(cast.agents)}")
-    table = next(cast.objects[name] for name in cast.tables)
-    across = 2 * table.places[0][0]
+    table = next(iter(cast.tables))
+    free = list(range(SIDES))
     poses: dict[str, Pose] = {}
-    for index, (name, robot) in enumerate(cast.agents.items()):
-        x, y, z = robot.mount
-        standard = Pose((x, y, z)) if index == 0 else Pose((across - x, -y, z), pi)
-        poses[name] = placed.get(name, standard)
+    for name, robot in cast.agents.items():
+        if name not in placed and not free:
+            others = [other for other in cast.agents if other not in poses]
+            room = f"there is room for {SIDES} agents around '{table}', one at each side"
+            raise SceneError(f"{room}; place {', '.join(others)} in a .scenex")
+        poses[name] = placed[name] if name in placed else _beside(cast.objects[table], robot, free.pop(0))
     return poses
+
+
+def _beside(table: ObjectModel, robot: RobotModel, side: int) -> Pose:
+    """Return a base at a side of a table: 0 the front, 1 across, 2 and 3 the ends, as far from the edge as in front."""
+    x, y, z = robot.mount
+    # A user's own table has no standard place: its own pose decides where it is, and the front is all that is known.
+    middle = table.places[0][0] if table.places else x
+    half = (0.0, 0.0) if table.region is None else table.region.half[:2]
+    end = half[1] + (middle - half[0] - x)
+    return (
+        Pose((x, y, z)),
+        Pose((2 * middle - x, -y, z), pi),
+        Pose((middle, -end, z), pi / 2),
+        Pose((middle, end, z), -pi / 2),
+    )[side]
 
 
 def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) -> Arrangement:
@@ -147,10 +165,25 @@ def field_before(
     """
     if model.region is None:
         return None
+    if abs(base.position[1] - table.position[1]) > model.region.half[1]:
+        return _field_before_end(base, table, model.region, area)
     side = 1.0 if table.position[0] >= base.position[0] else -1.0
     (near, far), (low, high) = (sorted(side * edge for edge in edges) for edges in (area[:2], area[2:]))
     x = _overlap(base.position[0] + near, base.position[0] + far, table.position[0], model.region.half[0])
     y = _overlap(base.position[1] + low, base.position[1] + high, table.position[1], model.region.half[1])
+    if x is None or y is None:
+        return None
+    return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)
+
+
+def _field_before_end(
+    base: Pose, table: Pose, region: Region, area: Numbers
+) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """Return the same for a base beyond the left or right end of a table, ahead of which is along y."""
+    side = 1.0 if table.position[1] >= base.position[1] else -1.0
+    (near, far), (low, high) = sorted(side * edge for edge in area[:2]), sorted(-side * edge for edge in area[2:])
+    y = _overlap(base.position[1] + near, base.position[1] + far, table.position[1], region.half[1])
+    x = _overlap(base.position[0] + low, base.position[0] + high, table.position[0], region.half[0])
     if x is None or y is None:
         return None
     return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)

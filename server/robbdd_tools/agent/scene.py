@@ -42,6 +42,8 @@ class Cast:
 
     staging: Staging | None = None
     """What an executable scene says of the elements, if there is one."""
+    left_out: tuple[str, ...] = ()
+    """Elements that no clause speaks of and that have no model or, of agents, no place."""
 
     def pose(self, name: str, attempt: int = 0) -> Pose | None:
         """Return where an executable scene has an object; raises ``SceneError``."""
@@ -69,18 +71,26 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     """
     catalog = load_catalog()
     objects: dict[str, ObjectModel] = {}
+    left_out: list[str] = []
     # Sorted: what happens must not depend on the order in which a model declares its objects.
     for name in sorted(scene.objects):
         carrying = any(name in own for own in scene.workspaces.values())
         model = None if staging is None else staging.object_model(name, carrying)
-        model = model or catalog.object_for(local_name(name))
-        if model is None:
+        model = model or catalog.object_for(local_name(name), scene.sets.get(name, ()))
+        if model is not None:
+            objects[name] = model
+        elif name in scene.unused:
+            left_out.append(name)
+        else:
             raise SceneError(_no_model("object", name, (m.prefixes for m in catalog.objects.values())))
-        objects[name] = model
     agents: dict[str, RobotModel] = {}
     for name in scene.agents:
         robot = None if staging is None else staging.robot(name)
-        robot = robot or catalog.robot_for(local_name(name))
+        robot = robot or catalog.robot_for(local_name(name), scene.sets.get(name, ()))
+        # Bystanders stand where an executable scene places them; there is no other reason for them to be anywhere.
+        if name in scene.unused and (robot is None or staging is None or staging.base(name) is None):
+            left_out.append(name)
+            continue
         if robot is None:
             raise SceneError(_no_model("agent", name, (m.prefixes for m in catalog.robots.values())))
         agents[name] = robot
@@ -88,7 +98,9 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         objects[PEDESTAL] = catalog.objects["table"]
     found = Configured(objects, agents)
     configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
-    return Cast(objects, agents, _regions(scene, objects), found.ranges, found.seed, found.judged, staging)
+    return Cast(
+        objects, agents, _regions(scene, objects), found.ranges, found.seed, found.judged, staging, tuple(left_out)
+    )
 
 
 def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
@@ -99,7 +111,7 @@ def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
 def _no_model(kind: str, name: str, prefixes: Iterable[tuple[str, ...]]) -> str:
     known = ", ".join(sorted(prefix for group in prefixes for prefix in group))
     return (
-        f"there is no model for {kind} '{name}': its name would have to begin with one of {known}; "
+        f"there is no model for {kind} '{name}': its name, or its set's, would have to hold one of {known}; "
         "or run a .bddx whose .scenex gives it a model"
     )
 
@@ -110,6 +122,8 @@ def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, 
         boxes: list[tuple[str, Region]] = []
         for carrier in carriers(scene, workspace):
             model = objects.get(carrier)
+            if carrier in scene.unused and model is None:
+                continue
             if model is None:
                 raise SceneError(f"workspace '{workspace}' is carried by '{carrier}', which is not in the scene")
             boxes += [(carrier, region) for region in model.spaces(local_name(workspace))]

@@ -16,7 +16,7 @@ from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.output import finish_output
-from robbdd_tools.agent.sentences import read_clause, read_doing, read_event
+from robbdd_tools.agent.sentences import Fluent, Unmatched, read_clause, read_doing, read_event
 from robbdd_tools.agent.stated import stated_clause, stated_iteration
 from robbdd_tools.agent.trace_codec import Evidence
 from robbdd_tools.agent.trace_file import verdict_views, write_trace
@@ -100,10 +100,19 @@ class ScenarioRun:
                 if again and not self._execution.simulated:
                     text = f"{self._spec.name}: {again} initial places overlapped and were drawn again"
                     self._channel.send(LogLine("info", text))
+                self._report_left_out(self._execution)
                 self._show(self._execution)
             except SceneError as error:
                 self._broken = error
                 raise
+
+    def _report_left_out(self, execution: Execution) -> None:
+        """Name the elements that are not simulated, each once."""
+        new = [name for name in execution.simulation.world.cast.left_out if name not in self._courses.left_out]
+        self._courses.left_out.update(new)
+        if new:
+            text = f"not simulated, as no clause speaks of them and no .scenex places them: {', '.join(new)}"
+            self._channel.send(LogLine("warning", text))
 
     def _show(self, execution: Execution) -> None:
         """Open a window on the scenario where one is wanted; verdicts stand without it."""
@@ -166,7 +175,11 @@ class ScenarioRun:
         self._report(line, verdict)
 
     def finish(self) -> None:
-        """Report what was left open as unknown, and the scenario as finished."""
+        """Judge texts that a policy judges, report what is left open as unknown, and the scenario as finished."""
+        for line, sentence in list(self._open.items()):
+            # behave knows no step for such a text.
+            if isinstance(read_clause(sentence), Unmatched) and isinstance(self._clauses.get(line), Fluent):
+                self.clause(line, sentence)
         for line, sentence in list(self._open.items()):
             self._report(line, _unknown(self._broken) if self._broken else unknown(f"{NO_STEP} for '{sentence}'"))
         execution = self._execution

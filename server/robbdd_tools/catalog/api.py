@@ -210,9 +210,9 @@ class Shape:
 class ObjectModel:
     """A thing of the simulated world.
 
-    Chosen for a scene object whose local name starts with one of ``prefixes``. ``mass`` in kg, ``friction`` the
-    sliding coefficient. A ``free`` object can move (a bin can be pushed), any other is fixed where it stands;
-    a ``graspable`` one is small enough for a gripper and is placed at random unless the scene says where.
+    Chosen for a scene object in whose name, or that of its set, one of ``prefixes`` occurs. ``mass`` in kg,
+    ``friction`` the sliding coefficient. A ``free`` object can move (a bin can be pushed), any other is fixed where it
+    stands; a ``graspable`` one is small enough for a gripper and is placed at random unless the scene says where.
     ``rest_height`` is the height (m) of its origin above the surface it stands on. ``region`` is the workspace it
     carries, if any. ``color`` is RGBA in [0, 1].
     """
@@ -252,8 +252,8 @@ class GripperKind(StrEnum):
 class RobotModel:
     """A robot arm with its tool.
 
-    Chosen for a scene agent whose local name starts with one of ``prefixes``. ``mjcf`` is a file beside the
-    catalog file. ``home`` are the joint positions (rad) at the start; ``velocity_limits`` rad/s and
+    Chosen for a scene agent in whose name, or that of its set, one of ``prefixes`` occurs. ``mjcf`` is a file beside
+    the catalog file. ``home`` are the joint positions (rad) at the start; ``velocity_limits`` rad/s and
     ``torque_limits`` N m per arm joint, as published. ``joints``, ``tool_site`` and ``gripper_actuator`` are names
     inside the MJCF; ``gripper_open`` and ``gripper_closed`` its control values. ``pads`` are the geoms of the
     gripping faces. ``mount`` is where the base of the first such robot stands (m, world frame) and ``stroke`` the

@@ -7,6 +7,7 @@ module-level ``Predicate``, ``Behaviour``, ``ObjectModel`` or ``RobotModel``.
 from __future__ import annotations
 
 import pkgutil
+import re
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     Word = Predicate | Behaviour | ObjectModel | RobotModel
 
 GROUP = "robbdd_tools.catalog"
+_HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
+"""Where a word begins inside a name like ``redCube``."""
 FOLDERS = ("predicates", "behaviours", "objects", "robots")
 Model = TypeVar("Model", ObjectModel, RobotModel)
 Entry = TypeVar("Entry", Predicate, Behaviour, ObjectModel, RobotModel)
@@ -40,13 +43,13 @@ class Catalog:
     objects: Mapping[str, ObjectModel]
     robots: Mapping[str, RobotModel]
 
-    def object_for(self, local_name: str) -> ObjectModel | None:
-        """Return the object model that a scene object of this name stands for (longest prefix wins)."""
-        return _by_prefix(self.objects, local_name)
+    def object_for(self, local_name: str, sets: Iterable[str] = ()) -> ObjectModel | None:
+        """Return the object model that a scene object of this name stands for, else one of its ``sets`` by name."""
+        return _by_names(self.objects, local_name, sets)
 
-    def robot_for(self, local_name: str) -> RobotModel | None:
-        """Return the robot model that a scene agent of this name stands for (longest prefix wins)."""
-        return _by_prefix(self.robots, local_name)
+    def robot_for(self, local_name: str, sets: Iterable[str] = ()) -> RobotModel | None:
+        """Return the robot model that a scene agent of this name stands for, else one of its ``sets`` by name."""
+        return _by_names(self.robots, local_name, sets)
 
 
 @cache
@@ -92,9 +95,29 @@ def _foreign_words() -> Iterable[tuple[str, Word]]:
         yield entry.value, entry.load()
 
 
-def _by_prefix(models: Mapping[str, Model], local_name: str) -> Model | None:
-    name = local_name.lower()
+def _by_names(models: Mapping[str, Model], local_name: str, sets: Iterable[str]) -> Model | None:
+    found = (_by_name(models, name) for name in (local_name, *sets))
+    return next((model for model in found if model is not None), None)
+
+
+def _by_name(models: Mapping[str, Model], name: str) -> Model | None:
+    words = re.findall(r"[a-z]+|[0-9]+", _HUMP.sub(" ", name).lower())
     matches = [
-        (len(prefix), model) for model in models.values() for prefix in model.prefixes if name.startswith(prefix)
+        (rank, model) for model in models.values() for prefix in model.prefixes if (rank := _rank(prefix, words))
     ]
     return max(matches, key=lambda match: match[0])[1] if matches else None
+
+
+def _rank(prefix: str, words: list[str]) -> tuple[bool, bool, int] | None:
+    """Return how well a model's word fits the words of a name, ``None`` where it does not.
+
+    Whole words come first, then words at the beginning of the name, then longer ones. A part of a word counts at its
+    beginning or end only: a cabinet is no bin.
+    """
+    wanted = re.findall(r"[a-z]+|[0-9]+", prefix)
+    count, joined = len(wanted), "".join(wanted)
+    places = [place for place in range(len(words) - count + 1) if words[place : place + count] == wanted]
+    if places:
+        return True, places[0] == 0, len(joined)
+    parts = [place for place, word in enumerate(words) if word.startswith(joined) or word.endswith(joined)]
+    return (False, parts[0] == 0 and words[0].startswith(joined), len(joined)) if parts else None

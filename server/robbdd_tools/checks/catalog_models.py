@@ -50,7 +50,8 @@ def _chosen(members: frozenset[Element]) -> tuple[dict[str, list[str]], list[str
         name = member.name.rpartition(".")[2]
         if member.kind not in ("object", "agent"):
             continue
-        model = catalog.object_for(name) if member.kind == "object" else catalog.robot_for(name)
+        sets = member.name.split(".")[:-1]
+        model = catalog.object_for(name, sets) if member.kind == "object" else catalog.robot_for(name, sets)
         if model is None:
             unknown.append(name)
         else:

@@ -169,8 +169,11 @@ class _InstanceWriter:
         if node is not None:
             target = self._named(mapping.reference)
             sink.add(node, "rbw:stands-for", target, self._frame.at(mapping.reference))
-            sink.add(node, "rbw:name", sink.literal(mapping.target.value), self._frame.at(mapping.target))
-            sink.mark_node(node, self._frame.at(mapping.target))
+            # Without a name of its own, the body or tree has the same name in the file.
+            where = mapping.target or mapping.reference
+            name = mapping.reference.path.rpartition(".")[2] if mapping.target is None else mapping.target.value
+            sink.add(node, "rbw:name", sink.literal(name), self._frame.at(where))
+            sink.mark_node(node, self._frame.at(where))
         return node
 
     def _arm(self, model: URIRef, arm: tree.Arm) -> None:

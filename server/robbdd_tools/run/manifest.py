@@ -69,6 +69,8 @@ def _scenario(
             {name: tuple(inner) for name, inner in scene["contains"].items()},
             dict(scene["places"]),
             tuple(ConfigSpec(**config) for config in scene["config"]),
+            tuple(scene.get("unused", ())),
+            {name: tuple(sets) for name, sets in scene.get("sets", {}).items()},
         ),
         clauses=tuple(from_plain(ClauseSpec, clause) for clause in clauses),
         execution=None if execution is None else executions[execution],

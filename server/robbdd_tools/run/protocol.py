@@ -45,7 +45,8 @@ class SceneSpec:
 
     ``workspaces`` maps a workspace to the objects that carry it; ``contains`` to the workspaces that lie within
     (a bin's workspace within the table's); ``places`` an object to the workspace where the Given clauses want it.
-    ``config`` is how the Given clauses want it set up.
+    ``config`` is how the Given clauses want it set up. ``unused`` are the objects and agents that no clause speaks of;
+    ``sets`` maps elements to the local names of the sets that hold them, where models are chosen by name.
     """
 
     objects: tuple[str, ...] = ()
@@ -54,6 +55,8 @@ class SceneSpec:
     contains: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     places: Mapping[str, str] = field(default_factory=dict[str, str])
     config: tuple[ConfigSpec, ...] = ()
+    unused: tuple[str, ...] = ()
+    sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,7 @@ from robbdd_tools.graph.model import (
     SceneModel,
     Variant,
 )
+from robbdd_tools.graph.read_clauses import used_names
 from robbdd_tools.monitor.policy import Observation, Policy
 from robbdd_tools.run.iterations import behaviour_scopes, iterations_of
 from robbdd_tools.run.protocol import (
@@ -83,6 +84,11 @@ class SpecWriter:
         policies = () if execution is None else execution.policies
         self._by_code = {policy.clause for policy in policies if policy.rule.kind == "python"}
         self._steps = StepWriter(model, load_catalog())
+        self._sets: dict[str, tuple[str, ...]] = {}
+        for name, elements in model.sets.items():
+            for element in elements:
+                known = self._sets.get(self._curie(str(element)), ())
+                self._sets[self._curie(str(element))] = (*known, self._curie(name).rpartition(":")[2])
         self.execution = None if execution is None else self._execution(execution)
 
     def _execution(self, execution: Execution) -> ExecutionSpec:
@@ -201,14 +207,31 @@ class SpecWriter:
                     places[self._curie(thing)] = self._curie(place)
             elif fluent.predicate == "has-config":
                 config += self._config(fluent, inner)
+        objects = self._members(shared.objects, extra, "object")
+        agents = self._members(scene.agents, extra, "agent")
+        used = self._used(shared, extra) | {one.target for one in config}
         return SceneSpec(
-            self._members(shared.objects, extra, "object"),
-            self._members(scene.agents, extra, "agent"),
+            objects,
+            agents,
             shared.workspaces,
             shared.contains,
             places,
             tuple(config),
+            tuple(name for name in (*objects, *agents) if name not in used),
+            {name: sets for name in (*objects, *agents) if (sets := self._sets.get(name))},
         )
+
+    def _used(self, shared: _Shared, extra: tuple[Iri, ...]) -> set[str]:
+        """Return what values and clauses speak of, and the objects that carry the workspaces among it."""
+        named = [iri for name in used_names(shared.clauses) for iri in (name, *self._model.sets.get(name, ()))]
+        used = {self._curie(str(name)) for name in (*extra, *named)}
+        waiting = [name for name in used if name in shared.workspaces or name in shared.contains]
+        while waiting:
+            workspace = waiting.pop()
+            inner = [name for name in shared.contains.get(workspace, ()) if name not in used]
+            used.update(shared.workspaces.get(workspace, ()), inner)
+            waiting += inner
+        return used
 
     def _members(self, own: tuple[Iri, ...], extra: tuple[Iri, ...], kind: str) -> tuple[str, ...]:
         added = (element for element in extra if self._model.kinds.get(element) == kind)

@@ -108,6 +108,8 @@ def _joined(scenes: list[SceneSpec]) -> SceneSpec:
         agents=tuple(dict.fromkeys(name for scene in scenes for name in scene.agents)),
         places=places,
         config=tuple(config.values()),
+        unused=tuple(name for name in first.unused if all(name in scene.unused for scene in scenes)),
+        sets={name: sets for scene in scenes for name, sets in scene.sets.items()},
     )
 
 

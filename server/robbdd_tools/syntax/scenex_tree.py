@@ -69,10 +69,10 @@ ModelSource = SystemPath | RosPath | PythonAttribute | CatalogEntry
 
 @dataclass(frozen=True, slots=True)
 class Mapping(Node):
-    """``map body <…> to "…"`` or ``map tree <…> to "…"``."""
+    """``map body <…> to "…"`` or ``map tree <…> to "…"``; without ``to`` the file has the same name."""
 
     reference: Ref
-    target: Text
+    target: Text | None
 
 
 @dataclass(frozen=True, slots=True)
