@@ -13,6 +13,7 @@ from pytest_lsp import LanguageClient
 
 from kit import FOLDER, MODEL, SCENE
 from lsp_kit import CLIENTS, PATIENCE, Editor
+from robbdd_tools.base.limits import VALIDATION_SECONDS
 from robbdd_tools.graph.user_shapes import EditorShapes
 from robbdd_tools.lsp import shapes
 from robbdd_tools.lsp.frames import Answer, Request
@@ -118,7 +119,7 @@ async def test_a_file_that_validation_fails_over_is_told_and_all_others_are_answ
     monkeypatch.setattr(
         shapes, "_WORKER", f"import sys; sys.path.insert(0, {folder!r}); from planted_worker import main; main"
     )
-    monkeypatch.setattr(shapes, "HANGING", 5.0)
+    monkeypatch.setenv(VALIDATION_SECONDS.variable, "5")
     other = f"{FOLDER}other.bdd"
     texts = {f"{FOLDER}lab.scene": (1, SCENE), other: (1, MODEL.replace("0.5 seconds", "0 seconds"))}
     texts |= {MAIN: (1, f"{MODEL}// planted {fault}")}

@@ -5,6 +5,7 @@ import pytest
 from kit import EVENTS, MODEL, SCENE, TEMPLATE, Fixture, assert_diagnostics, corpus, fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.names.imports import components
 from robbdd_tools.names.project import Project
 
 
@@ -186,3 +187,15 @@ def test_foreign_models_link_without_an_error() -> None:
         analysis = snapshot.file(uri)
         assert analysis is not None
         assert [entry for entry in analysis.diagnostics if entry.severity is Severity.ERROR] == []
+
+
+def test_files_that_import_each_other_are_told_from_those_on_the_way_to_them() -> None:
+    edges = {"a": ["b"], "b": ["c", "d"], "c": ["a"], "d": ["e", "gone"], "e": ["d"], "f": ["a", "d"]}
+    numbers = components(edges)
+    groups = {frozenset(uri for uri in edges if numbers[uri] == number) for number in numbers.values()}
+    assert groups == {frozenset("abc"), frozenset("de"), frozenset("f")}
+
+
+def test_a_chain_of_imports_longer_than_the_stack_is_followed() -> None:
+    edges = {str(number): [str((number + 1) % 50_000)] for number in range(50_000)}
+    assert set(components(edges).values()) == {0}

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import cast
 
 MIB = 1024 * 1024
+_GIVEN = dict(os.environ)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +34,9 @@ class Limit:
         return int(stated) if _is_positive(stated) else self.default
 
     def use(self, value: int | None) -> None:
-        """Set the limit for this process and those that it starts; ``None`` restores the default."""
-        os.environ.pop(self.variable, None)
-        if value is not None:
-            os.environ[self.variable] = str(value)
+        """Set the limit for this process and those that it starts; ``None`` restores what the process began with."""
+        stated = _GIVEN.get(self.variable, "") if value is None else str(value)
+        os.environ[self.variable] = stated
 
 
 MODEL_SIZE = Limit("model-size", 8 * MIB, "bytes")
@@ -49,10 +49,6 @@ SCANNED_ENTRIES = Limit("scanned-entries", 200_000, "files and folders")
 """Entries that one search of a folder looks at."""
 SCANNED_DEPTH = Limit("scanned-depth", 32, "levels of folders")
 """Folders inside each other that one search enters."""
-TEMPLATE_SECONDS = Limit("template-seconds", 10, "seconds")
-"""Time for one block of a user's Gherkin template."""
-TEMPLATE_SIZE = Limit("template-size", 8 * MIB, "characters")
-"""Text that one block of a user's Gherkin template may give."""
 VALIDATION_SECONDS = Limit("validation-seconds", 120, "seconds")
 """Time for one validation of a file; that of 10,000 lines takes about 5 s of processor."""
 
@@ -64,8 +60,6 @@ LIMITS: Mapping[str, Limit] = {
         MESSAGE_SIZE,
         SCANNED_ENTRIES,
         SCANNED_DEPTH,
-        TEMPLATE_SECONDS,
-        TEMPLATE_SIZE,
         VALIDATION_SECONDS,
     )
 }

@@ -19,7 +19,7 @@ def cyclic_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
     """Report each import through which a file comes back to itself."""
     uri = file.document.uri
     for link in file.imports:
-        if link.problem is None and any(index.document.uri == uri for index in snapshot.scope(link.uri).files):
+        if link.problem is None and snapshot.import_each_other(uri, link.uri):
             name, own = link.uri.rsplit("/", 1)[-1], uri.rsplit("/", 1)[-1]
             message = f"'{name}' imports '{own}' in turn: move what both need into a file of its own, imported by both"
             yield Diagnostic(uri, link.span, Severity.WARNING, "cyclic-import", message)

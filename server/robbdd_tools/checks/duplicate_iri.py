@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.checks.facts import UNIQUE_KINDS, facts_of
+from robbdd_tools.names.index import FileIndex
 from robbdd_tools.names.namespaces import only_namespace
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import Definition, FileAnalysis
-    from robbdd_tools.names.index import FileIndex
     from robbdd_tools.names.project import Snapshot
 
 Taken = Mapping[str, Mapping[str, int]]
@@ -25,6 +27,8 @@ def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
     """Report each declaration of the file whose IRI is taken, here or in a file that it imports."""
     uri = file.document.uri
     files = snapshot.scope(uri).files
+    if not _may_repeat(snapshot, files[0]):
+        return
     own, imported = _taken_by(files[:1], files), _taken(files[1:])
     names: set[str] = set()
     for namespace, counted in own.items():
@@ -59,6 +63,24 @@ def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
             definition = file.definitions[path]
             if definition.iri is not None and definition.kind in UNIQUE_KINDS:
                 yield definition
+
+
+def _may_repeat(snapshot: Snapshot, file: FileIndex) -> bool:
+    """Tell whether any name of a file is declared twice in the project, whatever the namespaces: quick to know."""
+    counted = _declared(snapshot)
+    return any(counted[name] > 1 for name in _own_names(file))
+
+
+@kept_with_key
+def _declared(snapshot: Snapshot) -> Counter[str]:
+    files = (source for source in snapshot.sources.values() if isinstance(source, FileIndex))
+    return Counter(name for file in files for name in _own_names(file))
+
+
+@kept_with_key
+def _own_names(file: FileIndex) -> tuple[str, ...]:
+    owned = (facts_of(placed.declaration).own_names for placed in file.declarations)
+    return tuple(name for names in owned for several in names.values() for name in several)
 
 
 @lru_cache(maxsize=4)

@@ -8,6 +8,7 @@ from itertools import islice
 from pathlib import Path
 
 from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.limits import SCANNED_DEPTH, SCANNED_ENTRIES
 from robbdd_tools.names.index import language_of
 
 MOST_FILES = 5_000
@@ -41,8 +42,13 @@ def files_near(uri: str, wanted: Callable[[str], object]) -> list[str]:
 
 
 def _below(folder: Path, wanted: Callable[[str], object], most_folders: int | None = None) -> Iterator[str]:
+    entries = 0
     for place, inner, names in islice(os.walk(folder), most_folders):
-        inner[:] = sorted(name for name in inner if not name.startswith(".") and name not in _PASSED_OVER)
+        entries += len(inner) + len(names)
+        if entries > SCANNED_ENTRIES.value():
+            return
+        deep = len(Path(place).parts) - len(folder.parts) >= SCANNED_DEPTH.value()
+        inner[:] = sorted(name for name in inner if not (deep or name.startswith(".") or name in _PASSED_OVER))
         for name in sorted(names):
             if wanted(name):
                 yield path_to_uri(Path(place) / name)

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robbdd_tools import __version__
+from robbdd_tools.lsp.transport import RefusalFilter, bounded, end_soon
 
 LOOPBACK = "127.0.0.1"
 LARGEST_PORT = 65535
@@ -42,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         server = create_server()
     collect_rarely()
     if options.tcp is None:
-        server.start_io()
+        server.start_io(bounded(sys.stdin.buffer))
     else:
         try:
             server.start_tcp(*options.tcp)
@@ -50,7 +51,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             host, port = options.tcp
             reason = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or error
             parser.error(f"no client can connect to {host}:{port}: {reason}")
-    return 0
+    server.stop()
+    code = server.exit_code()
+    end_soon(code)
+    return code
 
 
 def address(text: str) -> tuple[str, int]:
@@ -65,6 +69,7 @@ def _log_to(file: Path | None) -> None:
     """Log warnings to standard error, or everything of ours to a file; standard output belongs to the protocol."""
     handler = logging.StreamHandler(sys.stderr) if file is None else logging.FileHandler(file, encoding="utf-8")
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+    handler.addFilter(RefusalFilter())
     logging.getLogger().addHandler(handler)
     # pygls warns of every cancelled request that was answered already, which is what editors do all the time.
     logging.getLogger("pygls").setLevel(logging.ERROR)

@@ -10,11 +10,12 @@ from contextlib import suppress
 from typing import Any, cast
 
 from lsprotocol import types
-from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams, JsonRpcInvalidRequest
 from pygls.protocol import LanguageServerProtocol, lsp_method
 from pygls.protocol.json_rpc import JsonRPCNotification
 
 from robbdd_tools.base.uris import canonical_uri
+from robbdd_tools.lsp.transport import end_soon
 
 _LOG = logging.getLogger(__name__)
 
@@ -34,10 +35,35 @@ class Protocol(LanguageServerProtocol):
 
     @lsp_method(types.EXIT)
     def lsp_exit(self, *arguments: Any) -> Generator[Any, Any, None]:
-        """End the server when all is sent."""
+        """End the server when all is sent; at once where the client takes nothing or work does not end."""
+        end_soon(self.exit_code)
         self._outbox.shutdown(wait=True)
         # pygls leaves the types of these arguments open.
         yield from super().lsp_exit(*arguments)  # pyright: ignore[reportUnknownMemberType]
+
+    @property
+    def exit_code(self) -> int:
+        """The process's exit code: 0 if the client has asked for ``shutdown``, else 1, as the specification says."""
+        return 0 if self._shutdown else 1
+
+    def handle_message(self, message: Any) -> None:
+        """Handle a message; after ``shutdown`` every request is refused."""
+        if self._shutdown and hasattr(message, "id") and hasattr(message, "method"):
+            self._send_response(message.id, error=self._late().to_response_error())
+        elif getattr(message, "method", "") == types.EXIT:
+            self._exit(message)
+        else:
+            super().handle_message(message)
+
+    def _exit(self, message: Any, turns: int = 100) -> None:
+        """Handle ``exit`` when the answers that are ready, such as that of ``shutdown``, have been given."""
+        if turns and self._request_futures:
+            asyncio.get_running_loop().call_soon(self._exit, message, turns - 1)
+        else:
+            super().handle_message(message)
+
+    def _late(self) -> JsonRpcException:
+        return JsonRpcInvalidRequest("the server is shut down: only 'exit' may follow")
 
     def structure_message(self, data: dict[str, Any]) -> Any:
         """Read a message; one with unusable parameters is answered, as nobody else will."""
@@ -46,7 +72,8 @@ class Protocol(LanguageServerProtocol):
         except JsonRpcException as error:
             if "id" in data and "method" in data:
                 told = f"the parameters of {data['method']} are not as the protocol has them"
-                self._send_response(data["id"], error=JsonRpcInvalidParams(told).to_response_error())
+                refusal = self._late() if self._shutdown else JsonRpcInvalidParams(told)
+                self._send_response(data["id"], error=refusal.to_response_error())
             _LOG.warning("%s cannot be read: %s", data.get("method", "a response"), error)
             return JsonRPCNotification(method="$/unreadable", jsonrpc=self.VERSION, params=None)
 
@@ -68,7 +95,11 @@ class Protocol(LanguageServerProtocol):
         future.add_done_callback(lambda _: loop.call_soon(drop))
 
     def _send_data(self, data: Any) -> None:
-        self._outbox.submit(self._write, data)
+        try:
+            self._outbox.submit(self._write, data)
+        except RuntimeError:
+            # The session has ended: all earlier messages are written.
+            self._write(data)
 
     def _write(self, data: Any) -> None:
         super()._send_data(data)

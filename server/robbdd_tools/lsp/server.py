@@ -262,6 +262,11 @@ class RobbddServer(LanguageServer):
         """Tell the user why something was not done."""
         self.window_show_message(types.ShowMessageParams(type=types.MessageType.Error, message=message))
 
+    def exit_code(self) -> int:
+        """Return the process's exit code, see ``Protocol.exit_code``."""
+        protocol: Any = self.protocol
+        return protocol.exit_code
+
     def stop(self) -> None:
         """End what runs beside the server."""
         if self.run is not None:

@@ -10,6 +10,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.limits import use_limits
 from robbdd_tools.graph.user_shapes import EditorShapes
 
 if TYPE_CHECKING:
@@ -33,6 +34,9 @@ class Settings:
 
     def set(self, folder: str, section: object) -> str | None:
         """Take the section ``robbdd`` for a folder; returns what is wrong with it, if anything."""
+        limits = use_limits(cast("dict[str, Any]", section).get("limits")) if isinstance(section, dict) else None
+        if limits is not None:
+            return limits
         stated = cast("dict[str, Any]", section).get("shapes") if isinstance(section, dict) else None
         patterns = cast("list[object]", stated or []) if isinstance(stated or [], list) else [None]
         texts = tuple(pattern for pattern in patterns if isinstance(pattern, str))

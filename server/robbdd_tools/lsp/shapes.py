@@ -11,6 +11,7 @@ from contextlib import suppress
 from typing import Any
 
 from robbdd_tools.base.interpreter import start_worker
+from robbdd_tools.base.limits import VALIDATION_SECONDS
 from robbdd_tools.lsp.frames import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.lsp.requests import log_background_error
 
@@ -18,8 +19,6 @@ PAUSE = 0.02
 """Seconds in which edits that follow one another at once, as an editor sends them for several cursors, become one."""
 MOST_DEATHS = 2
 """Deaths of the process over the same file after which that file is given up until it changes."""
-HANGING = 120.0
-"""Seconds after which one validation is taken to hang: the first one of 10,000 lines takes about 5 s of processor."""
 # Not "-m": the messages' classes must have the same module name in both processes.
 _WORKER = "from robbdd_tools.lsp.worker import main; main"
 _LOG = logging.getLogger(__name__)
@@ -128,12 +127,12 @@ class ShapeValidator:
         self._working = uri
         if self._watch is not None:
             self._watch.cancel()
-        self._watch = asyncio.get_running_loop().call_later(HANGING, self._hangs) if uri else None
+        self._watch = asyncio.get_running_loop().call_later(VALIDATION_SECONDS.value(), self._hangs) if uri else None
 
     def _hangs(self) -> None:
         uri = self._working
         self._work_on("")
-        self._give_up(uri, f"it took longer than {HANGING:g} seconds")
+        self._give_up(uri, f"it took longer than {VALIDATION_SECONDS.value()} seconds")
         if self._process is not None:
             with suppress(ProcessLookupError):
                 self._process.kill()

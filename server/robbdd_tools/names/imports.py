@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from importlib.machinery import PathFinder
 from pathlib import Path
@@ -91,12 +91,54 @@ def not_importable(importer: str, imported: str) -> str | None:
 
 def reached(edges: Mapping[str, Iterable[str]], start: str) -> frozenset[str]:
     """Return where edges lead to from a start, which is itself left out."""
-    found, waiting = {start}, [start]
+    return reached_from(edges, (start,)) - {start}
+
+
+def reached_from(edges: Mapping[str, Iterable[str]], starts: Iterable[str]) -> frozenset[str]:
+    """Return the starts and where edges lead to from them."""
+    found = set(starts)
+    waiting = list(found)
     while waiting:
         fresh = [uri for uri in edges.get(waiting.pop(), ()) if uri not in found]
         found.update(fresh)
         waiting += fresh
-    return frozenset(found - {start})
+    return frozenset(found)
+
+
+def components(edges: Mapping[str, Sequence[str]]) -> dict[str, int]:
+    """Number the strongly connected components of a graph (Tarjan's algorithm, without recursion)."""
+    order: dict[str, int] = {}
+    low: dict[str, int] = {}
+    found: dict[str, int] = {}
+    stack: list[str] = []
+    for start in edges:
+        work = [(start, iter(edges[start]))] if start not in order else []
+        if work:
+            order[start] = low[start] = len(order)
+            stack.append(start)
+        while work:
+            node, successors = work[-1]
+            fresh = None
+            for other in successors:
+                if other not in edges:
+                    continue
+                if other not in order:
+                    fresh = other
+                    break
+                if other not in found:
+                    low[node] = min(low[node], order[other])
+            if fresh is not None:
+                order[fresh] = low[fresh] = len(order)
+                stack.append(fresh)
+                work.append((fresh, iter(edges[fresh])))
+                continue
+            work.pop()
+            if work:
+                low[work[-1][0]] = min(low[work[-1][0]], low[node])
+            if low[node] == order[node]:
+                while node not in found:
+                    found[stack.pop()] = order[node]
+    return found
 
 
 def _package_folder(package: str) -> Path | None:

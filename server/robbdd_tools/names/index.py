@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -58,6 +59,7 @@ class FileIndex:
         return Declared(placed.declaration.symbols[entry.symbol], placed.offset)
 
 
+@lru_cache(maxsize=20_000)
 def language_of(uri: str) -> str:
     """Return the language of a file by its ending; ``""`` for a kind that is not ours."""
     ending = PurePosixPath(uri).suffix.removeprefix(".").lower()

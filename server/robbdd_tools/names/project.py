@@ -11,7 +11,7 @@ from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text, too_large, uri_to_path
 from robbdd_tools.names.analyse import Resolved, analyse, syntax_errors
 from robbdd_tools.names.analysis import FileAnalysis, ImportLink
-from robbdd_tools.names.imports import missing_package, not_a_path, not_importable, reached
+from robbdd_tools.names.imports import components, missing_package, not_a_path, not_importable, reached, reached_from
 from robbdd_tools.names.index import FileIndex, index_file, language_of
 from robbdd_tools.names.scope import Scope
 
@@ -93,7 +93,7 @@ def _read(uri: str) -> Source:
     return text if isinstance(text, Unreadable) else index_file(Document(uri, 0, text))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Snapshot:
     """One revision of all files. Analyses are made when first asked for; asking never changes the answer."""
 
@@ -158,6 +158,27 @@ class Snapshot:
                 users.setdefault(link.uri, []).append(name)
         return users
 
+    @cached_property
+    def _faults(self) -> dict[str, list[Related]]:
+        """Syntax errors and unusable imports of each file that has any."""
+        files = (source for source in self.sources.values() if isinstance(source, FileIndex))
+        return {index.document.uri: faults for index in files if (faults := self._faults_of(index))}
+
+    @cached_property
+    def _leading_to_faults(self) -> frozenset[str]:
+        """The files with faults and those that import one, directly or not."""
+        return reached_from(self._users, self._faults)
+
+    @cached_property
+    def _cycles(self) -> dict[str, int]:
+        """A number for each file, equal for files that import each other, directly or not."""
+        files = self.sources.items()
+        return components({uri: [i.uri for i in f.imports] for uri, f in files if isinstance(f, FileIndex)})
+
+    def import_each_other(self, one: str, other: str) -> bool:
+        """Tell whether each of two files imports the other, directly or not."""
+        return one in self._cycles and self._cycles[one] == self._cycles.get(other)
+
     def _reach(self, uri: str) -> Scope:
         order: list[FileIndex] = []
         unread: list[str] = []
@@ -212,14 +233,17 @@ class Snapshot:
         return found
 
     def _faults_behind(self, uri: str) -> list[Related]:
-        """Syntax errors and unreadable imports of a file and all it imports."""
-        faults: list[Related] = []
-        for index in self.scope(uri).files:
-            faults += [Related(error.uri, error.span, error.message) for error in syntax_errors(index)]
-            for link in index.imports:
-                problem = self._import_problem(index, link.uri)
-                if problem is not None and missing_package(link.uri) is None:
-                    faults.append(Related(index.document.uri, link.span, problem))
+        """Return the faults of a file and all it imports."""
+        if uri not in self._leading_to_faults:
+            return []
+        return [fault for name in self.scope(uri).uris for fault in self._faults.get(name, ())]
+
+    def _faults_of(self, index: FileIndex) -> list[Related]:
+        faults = [Related(error.uri, error.span, error.message) for error in syntax_errors(index)]
+        for link in index.imports:
+            problem = self._import_problem(index, link.uri)
+            if problem is not None and missing_package(link.uri) is None:
+                faults.append(Related(index.document.uri, link.span, problem))
         return faults
 
 
