@@ -39,6 +39,7 @@ HOMES = {
     "behave": {"agent"},
     "mujoco": {"agent"},
     "mcap": {"agent"},
+    "sqlite3": {"run"},
     "py_trees": {"agent"},
     "pygls": {"lsp"},
     "lsprotocol": {"lsp"},
@@ -188,6 +189,7 @@ def test_what_differs_between_operating_systems_has_one_home() -> None:
 OPENS_ITSELF = {
     "base.files": "the one that reads",
     "base.writing": "the one that writes",
+    "base.locks": "keeps files of ours open",
     "agent.moments": "adds lines to a file of its own run",
     "base.descendants": "reads what Linux tells of processes",
     "run.agent_log": "adds to the log of a process",

@@ -1,7 +1,7 @@
 """The command line: what each ``robbdd`` command takes, and exit codes.
 
 Exit codes: 0 all well; 1 errors found (check) or a clause violated or unknown (run); 2 the command could not do its
-work; 130 interrupted.
+work; 128 + n ended by signal n (130 Ctrl-C, 143 SIGTERM, 129 SIGHUP).
 """
 
 from __future__ import annotations
@@ -17,16 +17,38 @@ from robbdd_tools import __version__
 from robbdd_tools.base.isolation import NO_USER_CODE
 from robbdd_tools.base.memory import collect_rarely
 from robbdd_tools.base.printable import printable
-from robbdd_tools.commands import FAILED, INTERRUPTED, OK
+from robbdd_tools.base.processes import end_requests
+from robbdd_tools.commands import FAILED, OK, signal_code
 from robbdd_tools.commands.arguments import allow_selection, wanted
-from robbdd_tools.commands.output import print_note
-from robbdd_tools.commands.run_arguments import allow_policy, allow_run, allow_store, policy, run_options
+from robbdd_tools.commands.lost_output import output_may_be_lost
+from robbdd_tools.commands.output import fail, print_note
+from robbdd_tools.commands.run_arguments import (
+    allow_policy,
+    allow_run,
+    allow_store,
+    misused,
+    policy,
+    resume_options,
+    run_options,
+)
 
 FORMATS = ("ttl", "json-ld", "json-ld-expanded", "nt", "xml")
 
 
+class _Ended(BaseException):
+    """A signal ends the command, which cleans up what it has begun; ``number`` is the signal's."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+def _end(number: int) -> None:
+    raise _Ended(number)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code; a broken pipe and Ctrl-C end it quietly."""
+    """Run the command line and return its exit code; a broken pipe and signals end it quietly."""
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
@@ -37,9 +59,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.environ[NO_USER_CODE] = "1"
     command: Callable[[argparse.Namespace], int] = options.command
     try:
-        return _fetch_contexts(options) or command(options)
-    except KeyboardInterrupt:
-        return INTERRUPTED
+        with end_requests(_end):
+            return _fetch_contexts(options) or command(options)
+    except _Ended as error:
+        return signal_code(error.number)
     except BrokenPipeError:
         sys.stderr.close()
         return FAILED
@@ -91,7 +114,8 @@ def _parser() -> argparse.ArgumentParser:
     steps.set_defaults(command=_steps)
 
     run = commands.add_parser("run", help="execute the scenarios of models in simulation and judge every clause")
-    run.add_argument("path", metavar="FILE|DIR", type=Path, help="a model, or a folder of which all models are run")
+    text = "a model, or a folder of which all models are run"
+    run.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", help=text)
     allow_run(run)
     run.set_defaults(command=_run)
 
@@ -174,7 +198,7 @@ def _fetch_contexts(options: argparse.Namespace) -> int:
         return OK
     from robbdd_tools.commands.models import fetch_contexts
 
-    failure = fetch_contexts(getattr(options, "paths", None) or [options.path], options.allow_host or ())
+    failure = fetch_contexts(getattr(options, "paths", None) or [options.path or Path()], options.allow_host or ())
     if failure is None:
         return OK
     print_note(failure)
@@ -212,9 +236,16 @@ def _steps(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    from robbdd_tools.commands.resume import resume
     from robbdd_tools.commands.run import run
 
-    return run(run_options(options))
+    problem = misused(options)
+    if problem:
+        return fail(problem)
+    with output_may_be_lost():
+        if options.resume is not None:
+            return resume(resume_options(options))
+        return run(run_options(options))
 
 
 def _runs(options: argparse.Namespace) -> int:
@@ -238,13 +269,15 @@ def _doctor(options: argparse.Namespace) -> int:
 def _replay(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.replay import ReplayOptions, replay
 
-    return replay(ReplayOptions(options.run, policy(options), options.scenario or (), options.store, options.force))
+    with output_may_be_lost():
+        return replay(ReplayOptions(options.run, policy(options), options.scenario or (), options.store, options.force))
 
 
 def _judge(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.judge import JudgeOptions, judge
 
-    return judge(JudgeOptions(options.run, options.path, options.store, options.json))
+    with output_may_be_lost():
+        return judge(JudgeOptions(options.run, options.path, options.store, options.json))
 
 
 def _import(options: argparse.Namespace) -> int:

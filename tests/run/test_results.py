@@ -68,7 +68,7 @@ def test_a_run_tells_how_many_places_were_drawn_again(
     found = results("holds", "holds")
     found.apply(ScenarioFinished(0, 9.0, 1.0, 0.5, count))
     assert found.as_json()["scenarios"][0]["resampled"] == count
-    Display(found).summary()
+    Display(found).summary(found)
     assert capsys.readouterr().out.rstrip().endswith(words)
 
 

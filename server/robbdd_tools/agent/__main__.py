@@ -28,9 +28,10 @@ def _main() -> int:
     # Executing needs no graphics: a back end that does not work here must not keep the engine from loading.
     os.environ["MUJOCO_GL"] = "disable"
     # The handlers are in place before the slow imports.
+    from robbdd_tools.agent.orders import read_orders
     from robbdd_tools.agent.runner import run_folder
 
-    return run_folder(sys.argv[1], os.fdopen(orders, encoding="utf-8"), messages)
+    return run_folder(sys.argv[1], read_orders(os.fdopen(orders, encoding="utf-8")), messages)
 
 
 if __name__ == "__main__":

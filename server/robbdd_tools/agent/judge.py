@@ -1,6 +1,7 @@
 """``python -m robbdd_tools.agent.judge FOLDER RUN``: judges stored traces against other clauses, without simulating.
 
-FOLDER is a run folder whose scenarios are to be judged, RUN the stored run with the traces. Reports as the agent does.
+FOLDER is a run folder whose scenarios are to be judged, with the results of the stored run RUN, which has the traces.
+Reports as the agent does.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from robbdd_tools.monitor.time import never_occurred, occurrences
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import (
+    STORED_RESULTS,
     ClauseSpec,
     LogLine,
     Manifest,
@@ -49,13 +51,11 @@ CHANGED = "{} changed since the run: only a new run can tell"
 class StoredTraces:
     """The traces of a run, and the verdicts on its behaviours; raises ``OSError``, ``ValueError`` or ``KeyError``."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, results: Path) -> None:
         self._folder = folder
         manifest = read_manifest(folder)
         self._specs = {scenario_key(spec): (index, spec) for index, spec in enumerate(manifest.scenarios)}
-        self._results: list[Mapping[str, Any]] = json.loads(load_text(folder / "results.json", RESULT_SIZE))[
-            "scenarios"
-        ]
+        self._results: list[Mapping[str, Any]] = json.loads(load_text(results, RESULT_SIZE))["scenarios"]
 
     def judged(self, spec: ScenarioSpec) -> Iterator[tuple[ClauseSpec, Verdict]]:
         """Yield the verdicts on the clauses of a scenario."""
@@ -154,7 +154,7 @@ def _main() -> int:
     sys.stdout = Printed(channel, sys.stdout)
     folder, run = map(Path, sys.argv[1:])
     try:
-        for message in _messages(read_manifest(folder), StoredTraces(run)):
+        for message in _messages(read_manifest(folder), StoredTraces(run, folder / STORED_RESULTS)):
             channel.send(message)
     except (OSError, ValueError, KeyError, TypeError) as error:
         channel.send(LogLine("error", f"{run} cannot be judged: {error}"))

@@ -10,12 +10,15 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+import threading
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol, TypedDict
+from typing import Any, Protocol, TypedDict
 
+END_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
+"""Signals that ask a program to end, as far as a system has them."""
 NICENESS = 10
 """POSIX niceness of background work: it yields to the editor, but still makes progress."""
 WINDOWS_ERRORS = {
@@ -134,6 +137,26 @@ def on_end_request(handle: Callable[[int], None]) -> None:
         number: int | None = getattr(signal, name, None)
         if number is not None:
             signal.signal(number, lambda received, _: handle(received))
+
+
+@contextmanager
+def end_requests(handle: Callable[[int], None]) -> Generator[None]:
+    """Call ``handle`` with the signal's number when this process is asked to end while it is inside.
+
+    Ctrl-C, a closed terminal and the like. What its starter wants to be ignored (``nohup``) is ignored. Has no effect
+    outside of the main thread.
+    """
+    before: dict[int, Any] = {}
+    if threading.current_thread() is threading.main_thread():
+        for name in END_SIGNALS:
+            number: int | None = getattr(signal, name, None)
+            if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+                before[number] = signal.signal(number, lambda received, _: handle(received))
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def lower_priority() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -14,14 +15,14 @@ from robbdd_tools.commands import FAILED, FINDINGS, OK
 from robbdd_tools.commands.output import fail
 from robbdd_tools.commands.progress import Display
 from robbdd_tools.commands.requests import Choice, load_models, requests
-from robbdd_tools.commands.runs import store_at
+from robbdd_tools.commands.runs import say_unfinished, store_at
 from robbdd_tools.gherkin.select import Wanted
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.prepare import prepare_all
-from robbdd_tools.run.protocol import LogLine, RunMessage, ScenarioStarted, scenario_key
-from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.protocol import STORED_RESULTS, LogLine, RunMessage, ScenarioStarted, scenario_key
+from robbdd_tools.run.results import RunResults, finished_in
 from robbdd_tools.run.store import NoSuchRun
 from robbdd_tools.run.user_code import refusal
 
@@ -44,34 +45,38 @@ def judge(options: JudgeOptions) -> int:
     """Print the verdicts of a model's clauses on stored traces; returns the exit code as ``robbdd run``."""
     try:
         stored = store_at(options.path, options.store).find(options.run)
-        manifest = stored.manifest()
-        stored.results()
+        manifest, results, status = stored.manifest(), stored.results(), stored.status()
     except NoSuchRun as error:
         return fail(str(error))
     models = load_models(options.path)
     if models is None:
         return FAILED
-    known = {scenario_key(spec) for spec in manifest.scenarios}
+    say_unfinished(stored, status)
+    finished = finished_in(results)
+    if not finished:
+        return fail(f"run {options.run} has finished no execution yet")
+    known = {scenario_key(manifest.scenarios[index]) for index in finished}
     repeat = max(spec.repetition for spec in manifest.scenarios)
     choice = Choice(
         Wanted(seed=manifest.seed), repeat=repeat if repeat > 1 else None, only=lambda spec: scenario_key(spec) in known
     )
-    found = requests(models, choice)
-    if isinstance(found, str):
-        return fail(found)
+    wanted = requests(models, choice)
+    if isinstance(wanted, str):
+        return fail(wanted)
     with tempfile.TemporaryDirectory(prefix="robbdd-") as name:
-        judged = prepare_all(found, str(options.path), manifest.seed, Path(name))
+        judged = prepare_all(wanted, str(options.path), manifest.seed, Path(name))
         if not judged.scenarios:
             return fail(f"no scenario of {options.path} has the values of one in run {options.run}")
         problem = refusal(judged, Path(name), simulates=False)
         if problem:
             return fail(problem)
-        results = _judged(Path(name), judged, stored)
+        replace_file(Path(name) / STORED_RESULTS, json.dumps(results))
+        found = _judged(Path(name), judged, stored)
     if options.report is not None:
-        replace_file(options.report, printable_json(results.as_json(), indent=1) + "\n")
-    if not results.complete:
+        replace_file(options.report, printable_json(found.as_json(), indent=1) + "\n")
+    if not found.complete:
         return FAILED
-    return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS
+    return OK if found.count(Outcome.HOLDS) == len(found.scenarios) else FINDINGS
 
 
 def _fitting(messages: Iterable[RunMessage], manifest: Manifest) -> Iterator[RunMessage]:
@@ -99,5 +104,5 @@ def _judged(folder: Path, manifest: Manifest, stored: StoredRun) -> RunResults:
         if not results.complete:
             results.close(ending or agent.ending())
             display.broken(ending or agent.ending())
-        display.summary()
+        display.summary(results)
     return results

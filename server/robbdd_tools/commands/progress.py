@@ -76,11 +76,14 @@ class Display:
             transient=True,
             disable=not self._drawn,
         )
-        self._held = self._failed = 0
+        # A run that goes on has some already.
+        finished = [scenario for scenario in results.scenarios if scenario.finished is not None]
+        self._held = sum(scenario.verdict is Outcome.HOLDS for scenario in finished)
+        self._failed = len(finished) - self._held
         self._fails: set[int] = set()
         self._faults: dict[str, int] = {}
         self._printed: dict[int, list[str]] = {}
-        self._task = self._progress.add_task("", total=self._total, counts=Text("starting"))
+        self._task = self._progress.add_task("", total=self._total, completed=len(finished), counts=Text("starting"))
 
     def __enter__(self) -> Display:
         self._progress.start()
@@ -144,9 +147,10 @@ class Display:
         self._progress.stop()
         self._console.print(plain(f"the run is incomplete: {reason}", STYLES[Outcome.VIOLATED]))
 
-    def summary(self) -> None:
-        """Print how many scenarios have which verdict."""
+    def summary(self, results: RunResults) -> None:
+        """Print how many scenarios have which verdict in the end."""
         self._progress.stop()
+        self._results = results
         for name, reason in self._vacuous():
             self._console.print(plain(f"{name} proves little: {reason}", STYLES[Outcome.UNKNOWN]))
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]

@@ -15,15 +15,16 @@ from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.interpreter import run
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.commands import FINDINGS, INTERRUPTED, OK
+from robbdd_tools.commands import FINDINGS, OK, signal_code
 from robbdd_tools.commands.execute import execute
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.requests import digest, load_models
-from robbdd_tools.commands.runs import store_at
+from robbdd_tools.commands.runs import say_unfinished, store_at
 from robbdd_tools.run import user_code
 from robbdd_tools.run.manifest import MANIFEST
 from robbdd_tools.run.prepare import FEATURES
 from robbdd_tools.run.protocol import trace_file
+from robbdd_tools.run.results import finished_in
 from robbdd_tools.run.store import NoSuchRun
 from robbdd_tools.run.used_files import changed
 
@@ -51,7 +52,8 @@ def replay(options: ReplayOptions) -> int:
     """Print for each scenario whether its trace is the same; returns 0 when all are, 1 when one is not."""
     try:
         stored = store_at(Path(), options.store).find(options.run)
-        record, manifest = stored.record(), stored.manifest()
+        record, manifest, status = stored.record(), stored.manifest(), stored.status()
+        finished = finished_in(stored.results())
     except NoSuchRun as error:
         return fail(str(error))
     refusal = "" if options.force else _refusal(stored, record)
@@ -65,6 +67,8 @@ def replay(options: ReplayOptions) -> int:
         for index, spec in enumerate(manifest.scenarios)
         if not options.names or {spec.name, _local(spec.name), _local(spec.variant)} & set(options.names)
     ]
+    say_unfinished(stored, status)
+    wanted = [index for index in wanted if index in finished]
     indices = [index for index in wanted if trace_file(stored.folder, index).is_file()]
     if not indices:
         return fail(f"run {options.run} keeps no trace of {' or '.join(options.names) or 'any scenario'}")
@@ -72,11 +76,12 @@ def replay(options: ReplayOptions) -> int:
         folder = Path(name)
         _copy(stored.folder / MANIFEST, folder / MANIFEST)
         shutil.copytree(stored.folder / FEATURES, folder / FEATURES, ignore=_links, copy_function=_copy)
-        _, simulator, interrupted = execute(folder, manifest, options.policy, indices)
-        if interrupted:
-            return INTERRUPTED
-        if record.simulator != simulator:
-            print_note(f"robbdd: the run was made with {record.simulator}, this is {simulator}")
+        executed = execute(folder, manifest, options.policy, indices)
+        if executed.signal:
+            return signal_code(executed.signal)
+        simulator = status.simulator or record.simulator
+        if simulator != executed.simulator:
+            print_note(f"robbdd: the run was made with {simulator}, this is {executed.simulator}")
         for index in sorted({*wanted}.difference(indices)):
             print_line(f"{manifest.scenarios[index].name}: the run kept no trace of it")
         return _compare(stored, folder, manifest, indices)

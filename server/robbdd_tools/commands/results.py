@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import Unreadable, path_to_uri, read_text
 from robbdd_tools.commands.output import print_note
-from robbdd_tools.run.store import LATEST, RESULTS, NoSuchRun, store_beside
+from robbdd_tools.commands.runs import say_unfinished
+from robbdd_tools.run.store import LATEST, NoSuchRun, store_beside
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.built import BuiltGraph
@@ -28,8 +30,11 @@ def graph_with_results(snapshot: Snapshot, path: Path, results: str | None) -> B
     file = Path(results)
     try:
         if results == LATEST or not file.exists():
-            file = store_beside(path).find(results).folder / RESULTS
-        text = read_text(file)
+            run = store_beside(path).find(results)
+            file, text = run.folder, json.dumps(run.results())
+            say_unfinished(run, run.status())
+        else:
+            text = read_text(file)
         if isinstance(text, Unreadable):
             raise NoSuchRun(text.reason)
         add_results(built.graph, read_results(text))

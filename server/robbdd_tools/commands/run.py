@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable, Generator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,22 +14,36 @@ from robbdd_tools import __version__
 from robbdd_tools.base.isolation import NO_USER_CODE
 from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.commands import FAILED, FINDINGS, INTERRUPTED, OK
-from robbdd_tools.commands.execute import execute
+from robbdd_tools.commands import FAILED, FINDINGS, OK, signal_code
+from robbdd_tools.commands.execute import record as record_run
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.requests import Choice, digest, load_models, requests
+from robbdd_tools.commands.runs import say_unfinished
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.pictures import NoPictures, no_display, render_moments, render_videos
 from robbdd_tools.run.prepare import prepare_all
 from robbdd_tools.run.protocol import VIEWER
-from robbdd_tools.run.store import NoSuchRun, RunRecord, RunStore, StoredRun, origin, shown_path, store_beside
-from robbdd_tools.run.used_files import digests
+from robbdd_tools.run.recording import Recording
+from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.scheduler import STOPPED
+from robbdd_tools.run.store import (
+    NoSuchRun,
+    RunRecord,
+    RunStore,
+    StoredRun,
+    begin_in,
+    origin,
+    shown_path,
+    store_beside,
+)
+from robbdd_tools.run.stored_results import RUNNING
+from robbdd_tools.run.used_files import digests, prepared_digest
 from robbdd_tools.run.user_code import refusal
 
 if TYPE_CHECKING:
+    from robbdd_tools.commands.execute import Executed
     from robbdd_tools.run.prepare import RunRequest
     from robbdd_tools.run.protocol import ScenarioSpec
-    from robbdd_tools.run.results import RunResults
     from robbdd_tools.run.scheduler import Policy
 
 
@@ -66,15 +80,10 @@ class RunOptions:
 def run(options: RunOptions) -> int:
     """Run models; returns the exit code."""
     outputs = options.outputs
-    for report in (outputs.report, outputs.junit):
-        if report is not None and not report.absolute().parent.is_dir():
-            return fail(f"cannot write {report}: there is no folder {report.parent}")
-    if options.viewer:
-        problem = no_display()
-        if problem:
-            return fail(problem)
-        os.environ[VIEWER] = "1"
-        options = replace(options, policy=replace(options.policy, jobs=1))
+    problem = unusable(outputs) or (no_display() if options.viewer else "")
+    if problem:
+        return fail(problem)
+    options = replace(options, policy=seen(options.policy, viewer=options.viewer))
     models = load_models(options.path)
     if models is None:
         return FAILED
@@ -113,23 +122,49 @@ def _user_code(found: list[RunRequest], options: RunOptions) -> str:
         return refusal(prepare_all(found, str(options.path), options.choice.wanted.seed, Path(name)), Path(name))
 
 
+def unusable(outputs: Outputs) -> str:
+    """Return why reports cannot be written where they are wanted; nothing when they can."""
+    for report in (outputs.report, outputs.junit):
+        if report is not None and not report.absolute().parent.is_dir():
+            return f"cannot write {report}: there is no folder {report.parent}"
+    return ""
+
+
+def seen(policy: Policy, *, viewer: bool) -> Policy:
+    """Return the policy of a run that is followed in windows, one scenario after another, if ``viewer``."""
+    if not viewer:
+        return policy
+    os.environ[VIEWER] = "1"
+    return replace(policy, jobs=1)
+
+
 def _run(options: RunOptions, found: list[RunRequest], record: RunRecord, place: StoredRun) -> int:
-    outputs = options.outputs
     manifest = prepare_all(found, str(options.path), record.seed, place.folder, place.kept)
     if not manifest.scenarios:
         return fail("no scenario fits the selection")
     record = replace(record, files=digests(manifest, place.folder))
-    place.write_record(record)
-    results, simulator, interrupted = execute(place.folder, manifest, options.policy)
-    place.write_record(replace(record, simulator=simulator))
-    place.write_results(results.as_json())
+    with closing(Recording(place, manifest)) as recording:
+        recording.begin(record, options.policy, prepared_digest(place.folder))
+        place.write_record(record)
+        executed = record_run(place.folder, manifest, options.policy, recording, RunResults(manifest))
+    return conclude(executed, options.outputs, place)
+
+
+def conclude(executed: Executed, outputs: Outputs, place: StoredRun) -> int:
+    """Write the reports of a run, say where it is kept, and return the exit code. Raises ``OSError``."""
+    results = executed.results
     if outputs.record is not None:
         _record(place.folder, outputs.record)
     _report(results, outputs)
-    if place.number:
-        print_note(f"kept as run {place.number}")
-    if interrupted:
-        return INTERRUPTED
+    if place.kept:
+        name = f"run {place.number}" if place.number else str(place.folder)
+        print_note(f"kept as {name}")
+        if not results.complete and results.ending != STOPPED:
+            print_note(f"go on with it by: robbdd run --resume {place.number or place.folder}")
+    if executed.problem:
+        return fail(executed.problem)
+    if executed.signal:
+        return signal_code(executed.signal)
     return OK if results.count(Outcome.HOLDS) == len(results.scenarios) else FINDINGS
 
 
@@ -160,8 +195,9 @@ def _record(folder: Path, target: Path) -> None:
 def _place(store: RunStore, outputs: Outputs) -> Generator[StoredRun]:
     """Yield the folder of a run: the wanted one, a new one in the store, else one that is gone afterwards."""
     if outputs.folder is not None:
-        outputs.folder.mkdir(parents=True, exist_ok=True)
-        yield StoredRun(0, outputs.folder)
+        place = begin_in(outputs.folder)
+        _remark(place)
+        yield place
         return
     if outputs.keep:
         try:
@@ -170,18 +206,30 @@ def _place(store: RunStore, outputs: Outputs) -> Generator[StoredRun]:
             reason = error.strerror or str(error)
             print_note(f"robbdd: this run is not kept: {store.folder} cannot be written: {reason}")
         else:
-            yield place
+            _remark(place)
+            try:
+                yield place
+            finally:
+                if not place.began:
+                    place.discard()
             return
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
-        yield StoredRun(0, Path(folder), kept=False)
+        yield begin_in(Path(folder), kept=False)
+
+
+def _remark(place: StoredRun) -> None:
+    if place.remark:
+        print_note(f"robbdd: {place.remark}")
 
 
 def _last_results(store: RunStore, path: Path) -> Mapping[str, Any]:
-    """Return the results of the last run of a model; raises ``NoSuchRun``."""
-    last = next((run for run in reversed(store.runs()) if _is_of(run, path)), None)
-    if last is None:
-        raise NoSuchRun(f"there is no stored run of {path} in {store.folder}")
-    return last.results()
+    """Return the results of the last run of a model that has ended; raises ``NoSuchRun``."""
+    for run in reversed(store.runs()):
+        if _is_of(run, path):
+            results = run.results()
+            say_unfinished(run, run.status())
+            return results
+    raise NoSuchRun(f"there is no stored run of {path} in {store.folder}")
 
 
 def _failed_ones(choice: Choice, last: Mapping[str, Any], failed: set[tuple[object, ...]]) -> Choice:
@@ -198,7 +246,7 @@ def _failed_ones(choice: Choice, last: Mapping[str, Any], failed: set[tuple[obje
 
 def _is_of(run: StoredRun, path: Path) -> bool:
     try:
-        return run.record().path == shown_path(path) and bool(run.results())
+        return run.record().path == shown_path(path) and run.status().state != RUNNING
     except NoSuchRun:
         return False
 

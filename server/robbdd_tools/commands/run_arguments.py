@@ -10,8 +10,15 @@ from typing import TYPE_CHECKING, Any, Protocol
 from robbdd_tools.commands.arguments import allow_selection, positive, wanted
 
 if TYPE_CHECKING:
+    from robbdd_tools.commands.resume import ResumeOptions
     from robbdd_tools.commands.run import RunOptions
     from robbdd_tools.run.scheduler import Policy
+
+
+CHOOSING = (
+    "scenario", "seed", "repeat", "rerun_failed", "where", "first", "sample", "pairwise", "no_store",
+)  # fmt: skip
+"""Arguments that say what a new run executes and whether it is kept."""
 
 
 def allow_run(parser: argparse.ArgumentParser) -> None:
@@ -21,6 +28,8 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     text = "execute each scenario N times, with other random numbers each time"
     parser.add_argument("--repeat", metavar="N", type=positive, help=text)
     parser.add_argument("--rerun-failed", action="store_true", help="only what did not hold in the last stored run")
+    text = "go on with a run that was interrupted: its number or folder (default: the latest such run)"
+    parser.add_argument("--resume", metavar="RUN", nargs="?", const="latest", help=text)
     allow_policy(parser)
     allow_selection(parser)
     outputs = parser.add_argument_group("outputs")
@@ -33,6 +42,17 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     outputs.add_argument("-o", "--output", metavar="DIR", type=Path, help=text)
     outputs.add_argument("--no-store", action="store_true", help="keep nothing of the run")
     allow_store(outputs)
+
+
+def misused(options: argparse.Namespace) -> str:
+    """Return what is wrong with the arguments of a run together; nothing when they go together."""
+    if options.resume is None:
+        return "" if options.path is not None else "name a model or a folder to run, or --resume a run"
+    given = [f"--{name.replace('_', '-')}" for name in CHOOSING if getattr(options, name) not in (None, False)]
+    given += [] if options.output is None else ["--output"]
+    if given:
+        return f"--resume executes what the run has left open, with its own seed: leave out {', '.join(given)}"
+    return ""
 
 
 class TakesArguments(Protocol):
@@ -73,6 +93,21 @@ def run_options(options: argparse.Namespace) -> RunOptions:
         options.json, options.junit, options.output, options.record, options.store, keep=not options.no_store
     )
     return RunOptions(options.path, choice, policy(options), outputs, options.rerun_failed, options.viewer)
+
+
+def resume_options(options: argparse.Namespace) -> ResumeOptions:
+    """Return what the parsed arguments ask to be resumed."""
+    from robbdd_tools.commands.resume import ResumeOptions
+    from robbdd_tools.commands.run import Outputs
+
+    outputs = Outputs(options.json, options.junit, None, options.record, options.store)
+    run, path = options.resume, options.path
+    if path is None and Path(run).suffix and Path(run).is_file():
+        # A model right behind --resume is taken for its value.
+        run, path = "latest", Path(run)
+    return ResumeOptions(
+        run, path, outputs, options.jobs, options.timeout, options.stop_on_failure, viewer=options.viewer
+    )
 
 
 def policy(options: argparse.Namespace) -> Policy:

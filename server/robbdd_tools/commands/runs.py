@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robbdd_tools.commands import OK
 from robbdd_tools.commands.output import print_line, print_note
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.missing import missing_parts
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, store_beside
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.stored_results import RunStatus
 
 
 def store_at(path: Path, store: Path | None) -> RunStore:
@@ -21,19 +25,27 @@ def list_runs(path: Path, store: Path | None) -> int:
     found = store_at(path, store)
     runs = found.runs()
     for run in runs:
-        print_line(_line(run))
+        for line in _lines(run):
+            print_line(line)
     if not runs:
         print_note(f"no runs in {found.folder}")
     return OK
 
 
-def _line(run: StoredRun) -> str:
+def say_unfinished(run: StoredRun, status: RunStatus) -> None:
+    """Say on standard error how far a run is that has not finished everything."""
+    if status.words():
+        print_note(f"robbdd: run {run.number or run.folder}: {status.words()}")
+
+
+def _lines(run: StoredRun) -> list[str]:
     try:
-        record, results = run.record(), run.results()
-        verdicts = Counter(scenario["verdict"] for scenario in results["scenarios"])
+        record, status = run.record(), run.status()
+        missing = missing_parts(run)
     except NoSuchRun as error:
-        return f"{run.number:>4}  {error}"
+        return [f"{run.number:>4}  {error}"]
     words = {Outcome.HOLDS: "hold", Outcome.VIOLATED: "violated", Outcome.UNKNOWN: "unknown"}
-    counts = ", ".join(f"{verdicts[outcome]} {word}" for outcome, word in words.items())
-    ending = "" if results["complete"] else ", incomplete"
-    return f"{run.number:>4}  {record.path}  {counts}{ending}  (seed {record.seed})"
+    counts = ", ".join(f"{status.counts.get(outcome, 0)} {word}" for outcome, word in words.items())
+    ending = f", {status.words()}" if status.words() else ""
+    described = f"{run.number:>4}  {record.path}  {counts}{ending}  (seed {record.seed})"
+    return [described, *(f"      {part}" for part in missing)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools import __version__
@@ -25,22 +25,21 @@ from robbdd_tools.run.protocol import (
     ClauseJudged,
     RunFinished,
     RunMessage,
-    RunStarted,
     ScenarioFinished,
     ScenarioStarted,
     UserCodeFailed,
 )
+from robbdd_tools.run.recording import Recording, why
 from robbdd_tools.run.report import margin, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import CANCELLED, Scheduler
+from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
 from robbdd_tools.run.store import RunRecord, origin, shown_path
-from robbdd_tools.run.used_files import digests
+from robbdd_tools.run.used_files import digests, prepared_digest
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.monitor.fault import Fault
+    from robbdd_tools.run.protocol import Manifest
     from robbdd_tools.run.store import StoredRun
 
 PICTURES = "pictures"
@@ -90,13 +89,16 @@ async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) 
         place, excuse = await asyncio.to_thread(ls.stores.begin, options.uri)
         if excuse:
             ls.tell(excuse)
-        request = plan.request
-        manifest = await asyncio.to_thread(prepare_all, [request], request.name, request.seed, place.folder, True)
-        follower = _Follower(ls, run, plan, RunResults(manifest), place)
-        run.scheduler = Scheduler(place.folder, manifest, watch=follower.hear)
-        if run.cancelled:
-            run.scheduler.cancel()
-        await follower.follow()
+        policy = Policy()
+        recording, manifest = await asyncio.to_thread(_begin_recording, place, plan, policy)
+        try:
+            follower = _Follower(ls, run, plan, RunResults(manifest), place, recording)
+            run.scheduler = Scheduler(place.folder, manifest, policy, follower.hear)
+            if run.cancelled:
+                run.scheduler.cancel()
+            await follower.follow()
+        finally:
+            recording.close()
         pictures = await _record(ls, place) if options.record else []
         if ls.shows_pictures:
             await asyncio.to_thread(picture_violations, place, list(run.judged.values()))
@@ -123,10 +125,19 @@ def cancel_run(ls: RobbddServer) -> None:
 class _Follower:
     """Takes what the agents of one run say, at once and in the event loop, whichever of them says it."""
 
-    def __init__(self, ls: RobbddServer, run: ActiveRun, plan: RunPlan, results: RunResults, place: StoredRun) -> None:
+    def __init__(
+        self,
+        ls: RobbddServer,
+        run: ActiveRun,
+        plan: RunPlan,
+        results: RunResults,
+        place: StoredRun,
+        recording: Recording,
+    ) -> None:
         self._ls = ls
         self._place = place
-        self._simulator = ""
+        self._recording = recording
+        self._ending = ""
         self._run = run
         self._progress = RunProgress(ls, run.progress)
         self._plan = plan
@@ -136,7 +147,8 @@ class _Follower:
         self._begun: dict[str, set[tuple[int, str]]] = {}
 
     def hear(self, message: RunMessage) -> None:
-        """Take a message from a thread of the scheduler."""
+        """Take a message from a thread of the scheduler; it is kept before anybody sees it. Raises ``OSError``."""
+        self._recording.take(message)
         self._loop.call_soon_threadsafe(self._take, message)
 
     async def follow(self) -> None:
@@ -156,16 +168,20 @@ class _Follower:
         scheduler = self._run.scheduler
         assert scheduler is not None
 
-        def listen() -> None:
-            for message in scheduler.messages():
-                # All others have been heard when they came.
-                if isinstance(message, RunStarted):
-                    self.hear(message)
+        def listen() -> str:
+            try:
+                for _ in scheduler.messages():
+                    # Each has been heard when it came.
+                    pass
+            except OSError as error:
+                self._ls.tell(problem := why(error))
+                return problem
+            return scheduler.ending
 
-        await asyncio.to_thread(listen)
-        for judged in self._results.close(scheduler.ending):
+        self._ending = ending = await asyncio.to_thread(listen)
+        for judged in self._results.close(ending):
             self._take(judged)
-        if self._run.options.is_whole and not scheduler.ending:
+        if self._run.options.is_whole and not ending:
             for variant, begun in self._begun.items():
                 self._ls.results.drop_others(variant, {number for number, _ in begun})
         self._drop_unjudged()
@@ -174,15 +190,14 @@ class _Follower:
         self._ls.results.drop_deleted(request.name, known, {one.iri for one in request.model.executions})
         for scenario in self._run.judged.values():
             scenario.mark_vacuous(self._results.vacuous())
-        self._take(RunFinished(not scheduler.ending))
+        self._take(RunFinished(not ending))
 
     def _keep(self, results: list[JudgedScenario]) -> None:
         """Keep the run, and what is known of all scenarios now."""
-        files = digests(self._results.manifest, self._place.folder)
-        record = _record_of(self._plan, self._place.folder, self._simulator)
-        self._place.write_record(replace(record, files=files))
-        self._place.write_results(self._results.as_json())
-        save_results(self._ls.folders(), results)
+        try:
+            self._recording.end(self._ending, interrupted=self._run.cancelled)
+        finally:
+            save_results(self._ls.folders(), results)
 
     def summary(self) -> dict[str, Any]:
         """Return how the run went, for the client that asked for it."""
@@ -193,8 +208,6 @@ class _Follower:
     def _take(self, message: RunMessage) -> None:
         self._results.apply(message)
         match message:
-            case RunStarted():
-                self._simulator = message.simulator
             case ScenarioStarted(index):
                 self._scenario(index)
             case ClauseJudged():
@@ -289,8 +302,23 @@ async def _record(ls: RobbddServer, place: StoredRun) -> list[str]:
     return [path_to_uri(path) for path in sorted(pictures.glob("*.png"))]
 
 
-def _record_of(plan: RunPlan, folder: Path, simulator: str) -> RunRecord:
-    uri = plan.request.name
-    path = uri_to_path(uri)
-    shown, start = (uri, uri) if path is None else (shown_path(path), origin(path, folder))
-    return RunRecord(shown, start, plan.digest, plan.request.seed, __version__, simulator)
+def _begin_recording(place: StoredRun, plan: RunPlan, policy: Policy) -> tuple[Recording, Manifest]:
+    """Prepare the folder of a run and write down what is run; raises ``OSError``."""
+    request = plan.request
+    try:
+        manifest = prepare_all([request], request.name, request.seed, place.folder, True)
+        recording = Recording(place, manifest)
+    except BaseException:
+        place.discard()
+        raise
+    path = uri_to_path(request.name)
+    shown, start = (request.name,) * 2 if path is None else (shown_path(path), origin(path, place.folder))
+    files = digests(manifest, place.folder)
+    record = RunRecord(shown, start, plan.digest, request.seed, __version__, files=files)
+    try:
+        recording.begin(record, policy, prepared_digest(place.folder))
+        place.write_record(record)
+    except BaseException:
+        recording.close()
+        raise
+    return recording, manifest

@@ -9,7 +9,7 @@ from threading import Lock
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.run.shown import traced_variants
-from robbdd_tools.run.store import RESULTS, RunStore, StoredRun, project_root, store_beside
+from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, project_root, store_beside
 
 
 class Stores:
@@ -19,7 +19,7 @@ class Stores:
         self._own: dict[Path | None, RunStore] = {}
         self._folder: Path | None = None
         self._lock = Lock()
-        self._traced: dict[Path, tuple[int, frozenset[str]]] = {}
+        self._traced: dict[Path, tuple[tuple[str, int], frozenset[str]]] = {}
 
     def of(self, uri: str) -> RunStore:
         """Return the store of a document's project."""
@@ -38,25 +38,27 @@ class Stores:
 
     def _traced_in(self, run: StoredRun) -> frozenset[str]:
         try:
-            time = (run.folder / RESULTS).stat().st_mtime_ns
-        except OSError:
+            status = run.status()
+        except NoSuchRun:
             return frozenset()
+        now = (status.state, status.finished)
         known = self._traced.get(run.folder)
-        if known is None or known[0] != time:
-            known = self._traced[run.folder] = (time, traced_variants(run))
+        if known is None or known[0] != now:
+            known = self._traced[run.folder] = (now, traced_variants(run))
         return known[1]
 
     def begin(self, uri: str) -> tuple[StoredRun, str]:
-        """Make the folder of a new run; returns it, and why it goes with the server where it does.
+        """Make the folder of a new run; returns it, and what the user should know: why it goes with the server, if so.
 
         Raises ``OSError`` where not even that can be written.
         """
         path = uri_to_path(uri)
-        if path is None:
-            return self.of(uri).begin(), ""
         store = self.of(uri)
-        try:
+        if path is None:
             return store.begin(), ""
+        try:
+            run = store.begin()
+            return run, run.remark
         except OSError as error:
             own = self._made(project_root(path))
             why = f"{store.folder} cannot be written ({error.strerror or error})"

@@ -40,11 +40,15 @@ class ScenarioResult:
 
 @dataclass(slots=True)
 class RunResults:
-    """Everything known of a run; ``apply`` takes the messages in the order in which they come."""
+    """Everything known of a run; ``apply`` takes the messages in the order in which they come.
+
+    ``ending`` says why scenarios were left open.
+    """
 
     manifest: Manifest
     scenarios: list[ScenarioResult] = field(init=False)
     complete: bool = False
+    ending: str = ""
     _vacuity: Vacuity = field(default_factory=Vacuity)
 
     def __post_init__(self) -> None:
@@ -68,6 +72,7 @@ class RunResults:
 
     def close(self, reason: str) -> list[ClauseJudged]:
         """Judge every clause that is still open *unknown* for ``reason``; returns these judgements."""
+        self.ending = reason
         closing = [
             ClauseJudged(index, clause.line, Outcome.UNKNOWN, None, "", None, reason)
             for index, scenario in enumerate(self.scenarios)
@@ -95,6 +100,8 @@ class RunResults:
             "seed": self.manifest.seed,
             "model": self.manifest.model,
             "complete": self.complete,
+            "finished": sum(scenario.finished is not None for scenario in self.scenarios),
+            "ending": self.ending,
             "scenarios": list(self._scenarios()),
         }
 
@@ -121,6 +128,11 @@ class RunResults:
                     for clause in spec.clauses
                 ],
             }
+
+
+def finished_in(document: Mapping[str, Any]) -> frozenset[int]:
+    """Return the numbers of the scenarios that a document of results has finished."""
+    return frozenset(i for i, entry in enumerate(document["scenarios"]) if entry.get("duration") is not None)
 
 
 def _shared(tree: TreeSpec, node: str) -> dict[str, Any]:

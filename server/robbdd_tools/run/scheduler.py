@@ -239,6 +239,7 @@ class Scheduler:
             case RunStarted():
                 if not self._greeted:
                     self._greeted = True
+                    self._watch(message)
                     yield message
             case RunFinished():
                 self.ending = worker.complaint

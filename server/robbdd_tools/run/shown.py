@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -13,7 +12,9 @@ from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.protocol import ScenarioSpec, curves_file, trace_file
 from robbdd_tools.run.report import plain_sentence, values_words
+from robbdd_tools.run.results import finished_in
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun
+from robbdd_tools.run.stored_results import FAILED, FINISHED
 
 
 class NoTrace(Exception):
@@ -24,20 +25,21 @@ def summary(run: StoredRun) -> dict[str, Any]:
     """Return what a list of runs tells of one."""
     found: dict[str, Any] = {"run": run.number, "folder": path_to_uri(run.folder.absolute())}
     try:
-        record, results = run.record(), run.results()
-        verdicts = Counter(scenario["verdict"] for scenario in results["scenarios"])
+        record, status = run.record(), run.status()
         found |= {"path": record.path, "model": path_to_uri(run.model()), "seed": record.seed}
-        return {**found, **_counts(verdicts), "complete": results["complete"], "problem": None}
+        extent = {"state": status.state, "finished": status.finished, "total": status.total}
+        return {**found, **_counts(status.counts), "complete": status.state == FINISHED, **extent, "problem": None}
     except (NoSuchRun, KeyError, TypeError) as error:
-        nothing = {"path": "", "model": "", "seed": 0, "complete": False}
+        nothing = {"path": "", "model": "", "seed": 0, "complete": False, "state": FAILED, "finished": 0, "total": 0}
         return {**found, **nothing, **_counts({}), "problem": str(error)}
 
 
 def scenarios(run: StoredRun) -> Iterator[dict[str, Any]]:
     """Yield what is told of each scenario of a run; raises ``NoSuchRun``."""
-    verdicts = [scenario["verdict"] for scenario in run.results()["scenarios"]]
-    for index, (spec, verdict) in enumerate(zip(run.manifest().scenarios, verdicts, strict=False)):
-        yield _scenario(run, index, spec, verdict)
+    results = run.results()
+    finished = finished_in(results)
+    for index, (spec, entry) in enumerate(zip(run.manifest().scenarios, results["scenarios"], strict=False)):
+        yield _scenario(run, index, spec, entry["verdict"], finished=index in finished)
 
 
 def traced_variants(run: StoredRun) -> frozenset[str]:
@@ -74,11 +76,12 @@ def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
     Of the text as it is now it knows nothing: clauses have no ``source`` and no ``stale``, but the sentence of their
     step as ``written``.
     """
-    specs, results = run.manifest().scenarios, run.results()["scenarios"]
+    specs, document = run.manifest().scenarios, run.results()
+    results = document["scenarios"]
     if not 0 <= index < min(len(specs), len(results)):
         raise NoTrace(f"run {run.number} has no scenario number {index}")
     spec, result = specs[index], results[index]
-    if not trace_file(run.folder, index).is_file():
+    if index not in finished_in(document) or not trace_file(run.folder, index).is_file():
         raise NoTrace(f"run {run.number} keeps no trace of {spec.name}")
     seen = _seen(run, index)
     kept = kept_curves(run, index)
@@ -86,7 +89,7 @@ def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
     return {
         "run": run.number,
         "folder": path_to_uri(run.folder.absolute()),
-        "scenario": _scenario(run, index, spec, result["verdict"]),
+        "scenario": _scenario(run, index, spec, result["verdict"], finished=True),
         "duration": kept["duration"],
         "remark": kept["remark"],
         "events": kept["events"],
@@ -120,7 +123,7 @@ def _seen(run: StoredRun, index: int) -> dict[str, Any]:
     return json.loads(done.stdout)
 
 
-def _scenario(run: StoredRun, index: int, spec: ScenarioSpec, verdict: str) -> dict[str, Any]:
+def _scenario(run: StoredRun, index: int, spec: ScenarioSpec, verdict: str, *, finished: bool) -> dict[str, Any]:
     return {
         "index": index,
         "name": spec.name,
@@ -132,7 +135,8 @@ def _scenario(run: StoredRun, index: int, spec: ScenarioSpec, verdict: str) -> d
         "repetition": spec.repetition,
         "seed": spec.seed,
         "verdict": verdict,
-        "trace": trace_file(run.folder, index).is_file(),
+        # That of an execution that was broken off is no evidence.
+        "trace": finished and trace_file(run.folder, index).is_file(),
     }
 
 

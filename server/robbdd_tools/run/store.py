@@ -1,34 +1,54 @@
-"""Keeps runs in numbered folders beside the models: ``.robbdd/runs/<n>/``.
+"""Keeps runs in numbered folders beside the models, ``.robbdd/runs/<n>/``, and their results in one database.
 
-A stored run is the run's own folder (features, manifest, logs, moments, traces) with the results and ``run.json``,
-which says what was run. Nothing in it depends on the wall clock.
+A stored run is the run's own folder (features, manifest, logs, moments, traces) with ``run.json``, which says what was
+run, and rows in ``results.sqlite`` beside the folder ``runs``. A run in a folder of its own has its database in there.
+``results.json`` is made from the database when a run ends; earlier versions kept nothing else, and are read as well.
 """
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import shutil
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, cast
 
 from robbdd_tools.base.files import full_path, load_text
 from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.locks import Lock, hold, is_held
 from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.run.database import LOG, NAME, DatabaseProblem
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import Manifest
+from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.stored_results import (
+    FINISHED,
+    INTERRUPTED,
+    RunStatus,
+    numbers,
+    read_results,
+    read_status,
+)
+from robbdd_tools.run.upkeep import make_ready, remove_runs
 
 MARKS = ("pyproject.toml", "robbdd.toml", ".git")
 """What the root of a project has one of."""
 FOLDER = Path(".robbdd") / "runs"
 RESULTS = "results.json"
 RECORD = "run.json"
+LOCK = "lock"
+"""File in a run's folder, and in that of all runs, which is locked while a run goes on, or begins."""
 KEPT = 20
-"""Runs that a store holds; a new one replaces the oldest."""
+"""Runs that a store holds of those that came to their end, and of the others; the oldest ones make room."""
 LATEST = "latest"
+PATIENCE = 30.0
+"""Seconds that a run waits for another one that is just beginning."""
 
 
 class NoSuchRun(Exception):
@@ -55,11 +75,28 @@ class RunRecord:
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A run's folder; ``number`` is its place in its store, 0 for a folder elsewhere; ``kept`` when it stays."""
+    """A run's folder; ``number`` is its place in its ``database``, 0 for a folder elsewhere.
+
+    It stays when it is ``kept``. ``lock`` is there while this process executes it; ``remark`` is what the user should
+    know of its store.
+    """
 
     number: int
     folder: Path
+    database: Path
     kept: bool = True
+    lock: Lock | None = field(default=None, compare=False, repr=False)
+    remark: str = field(default="", compare=False, repr=False)
+
+    @property
+    def is_live(self) -> bool:
+        """Whether a process is executing it."""
+        return is_held(self.folder / LOCK)
+
+    @property
+    def began(self) -> bool:
+        """Whether it was written down what is run."""
+        return (self.folder / RECORD).is_file()
 
     def record(self) -> RunRecord:
         """Return what was run; raises ``NoSuchRun``."""
@@ -69,9 +106,30 @@ class StoredRun:
         except TypeError:
             raise NoSuchRun(f"{self.folder / RECORD} is not the record of a run") from None
 
+    def status(self) -> RunStatus:
+        """Return how far it is; raises ``NoSuchRun``."""
+        # The lock is looked at first: a run that ends meanwhile has its last state in the database.
+        live = self.is_live
+        try:
+            found = read_status(self.database, self.number, live=live)
+        except DatabaseProblem as error:
+            return self._kept_status(str(error))
+        return self._kept_status() if found is None else found
+
     def results(self) -> Mapping[str, Any]:
         """Return the document of ``docs/schemas/run.schema.json``; raises ``NoSuchRun``."""
-        return self._json(RESULTS)
+        try:
+            found = self.read_results()
+        except DatabaseProblem as error:
+            return self._kept_results(str(error))
+        return self._kept_results() if found is None else found.as_json()
+
+    def read_results(self) -> RunResults | None:
+        """Return its results, ``None`` where the database has none; raises ``NoSuchRun`` and ``DatabaseProblem``."""
+        live = self.is_live
+        if read_status(self.database, self.number, live=live) is None:
+            return None
+        return read_results(self.database, self.number, self.manifest(), live=live)
 
     def manifest(self) -> Manifest:
         """Return what the agent was told; raises ``NoSuchRun``."""
@@ -92,11 +150,39 @@ class StoredRun:
         """Write what came out; raises ``OSError``."""
         _write(self.folder / RESULTS, results)
 
+    def discard(self) -> None:
+        """Remove the folder of a run that never began."""
+        if self.lock is not None:
+            self.lock.release()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _kept_status(self, problem: str = "") -> RunStatus:
+        """Return the status by the file of results alone."""
+        results = self._kept_results(problem)
+        scenarios: list[Mapping[str, Any]] = results.get("scenarios", [])
+        counts = Counter(entry["verdict"] for entry in scenarios if entry.get("duration") is not None)
+        state = FINISHED if results.get("complete") else INTERRUPTED
+        return RunStatus(state, results.get("ending", ""), len(scenarios), counts)
+
+    def _kept_results(self, problem: str = "") -> Mapping[str, Any]:
+        """Return the file of results; where there is none, the reason is ``problem`` or what is missing."""
+        try:
+            return self._json(RESULTS)
+        except NoSuchRun as error:
+            if problem:
+                raise NoSuchRun(problem) from error
+            if self.database.exists() and (self.folder / RECORD).exists():
+                lacks = f"{self.database} has no record of run {self.number}, and its folder no {RESULTS}"
+                raise NoSuchRun(f"{lacks}: was the store copied without its log {NAME}{LOG}?") from error
+            raise
+
     def _json(self, name: str) -> dict[str, Any]:
         path = self.folder / name
         try:
             found: object = json.loads(load_text(path, RESULT_SIZE))
         except FileNotFoundError:
+            if not self.folder.exists():
+                raise NoSuchRun(f"the folder of the run, {self.folder}, is gone") from None
             raise NoSuchRun(f"{self.folder} holds no finished run: there is no {name}") from None
         except (OSError, ValueError) as error:
             raise NoSuchRun(f"{path} cannot be read: {error}") from error
@@ -105,38 +191,58 @@ class StoredRun:
         return cast(dict[str, Any], found)
 
 
+def run_in(folder: Path, *, kept: bool = True) -> StoredRun:
+    """Return the run in a folder of its own."""
+    return StoredRun(0, folder, folder / NAME, kept)
+
+
+def begin_in(folder: Path, *, kept: bool = True) -> StoredRun:
+    """Make a folder for a run of its own, and remove what an earlier one left there; raises ``OSError``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    run = run_in(folder, kept=kept)
+    lock = hold(folder / LOCK)
+    if lock is None:
+        raise OSError(errno.EBUSY, "another run is going on there", str(folder))
+    for name in ("traces", "margins", "moments", "features"):
+        shutil.rmtree(folder / name, ignore_errors=True)
+    (folder / RESULTS).unlink(missing_ok=True)
+    return replace(run, lock=lock, remark=make_ready(run.database, ()))
+
+
 class RunStore:
     """The numbered runs in one folder, which need not exist."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.database = _database_of(full_path(folder))
 
     def runs(self) -> list[StoredRun]:
         """Return the runs, the oldest first."""
-        try:
-            found = [entry for entry in self.folder.iterdir() if entry.name.isdecimal() and entry.is_dir()]
-        except OSError:
-            return []
-        return sorted((StoredRun(int(entry.name), entry) for entry in found), key=lambda run: run.number)
+        found = self._folders()
+        # Where the database cannot be read, each run says so.
+        with suppress(DatabaseProblem):
+            found |= dict.fromkeys(numbers(self.database))
+        return [self._run(number) for number in sorted(found)]
 
     def begin(self) -> StoredRun:
         """Make the folder of a new run and remove the oldest ones beyond ``KEPT``; raises ``OSError``."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        ignore = self.folder / ".gitignore"
+        ignore = self.database.parent / ".gitignore"
         if not ignore.exists():
             replace_file(ignore, "*\n")
-        runs = self.runs()
-        number = runs[-1].number if runs else 0
-        while True:
-            number += 1
-            run = StoredRun(number, self.folder / str(number))
-            try:
-                run.folder.mkdir()
-            except FileExistsError:
-                continue
-            for old in self.runs()[:-KEPT]:
-                shutil.rmtree(old.folder, ignore_errors=True)
+        guard = hold(self.folder / LOCK, PATIENCE)
+        if guard is None:
+            raise OSError(errno.EBUSY, "another run is beginning", str(self.folder))
+        try:
+            remark = make_ready(self.database, {run.number for run in self.runs() if run.is_live})
+            runs = self.runs()
+            run = self._run(runs[-1].number + 1 if runs else 1)
+            run.folder.mkdir()
+            run = replace(run, lock=hold(run.folder / LOCK), remark=remark)
+            self._prune(runs)
             return run
+        finally:
+            guard.release()
 
     def find(self, word: str) -> StoredRun:
         """Return a run by its number, ``latest``, or its folder; raises ``NoSuchRun``."""
@@ -146,10 +252,50 @@ class RunStore:
         found = [run for run in runs if str(run.number) == word]
         if found:
             return found[0]
-        if (Path(word) / RECORD).is_file():
-            return StoredRun(0, Path(word))
+        folder = Path(word)
+        if (folder / RECORD).is_file():
+            own = run_in(folder)
+            numbered = folder.name.isdecimal() and not own.database.is_file()
+            return RunStore(folder.parent)._run(int(folder.name)) if numbered else own
         known = f"it has {', '.join(str(run.number) for run in runs)}" if runs else "it has none"
         raise NoSuchRun(f"there is no run '{word}' in {self.folder}; {known}")
+
+    def _run(self, number: int) -> StoredRun:
+        return StoredRun(number, self.folder / str(number), self.database)
+
+    def _folders(self) -> dict[int, None]:
+        try:
+            entries = list(self.folder.iterdir())
+        except OSError:
+            return {}
+        return {int(entry.name): None for entry in entries if entry.name.isdecimal() and entry.is_dir()}
+
+    def _prune(self, runs: Iterable[StoredRun]) -> None:
+        """Remove the oldest runs: those that did what they were to do make room for each other only, others as well."""
+        whole: list[StoredRun] = []
+        others: list[StoredRun] = []
+        for run in runs:
+            if not run.is_live:
+                (whole if _is_whole(run) else others).append(run)
+        old = [*whole[:-KEPT], *others[:-KEPT]]
+        if old:
+            for run in old:
+                shutil.rmtree(run.folder, ignore_errors=True)
+            remove_runs(self.database, (run.number for run in old))
+
+
+def _database_of(folder: Path) -> Path:
+    """Return the database beside the folder of a project's runs, also of a copy of it, else in the folder."""
+    beside = folder.with_name(NAME)
+    in_project = folder.parts[-len(FOLDER.parts) :] == FOLDER.parts
+    return beside if in_project or (folder.name == FOLDER.name and beside.is_file()) else folder / NAME
+
+
+def _is_whole(run: StoredRun) -> bool:
+    try:
+        return run.status().is_whole
+    except NoSuchRun:
+        return False
 
 
 def project_root(path: Path) -> Path:

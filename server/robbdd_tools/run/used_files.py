@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -15,6 +16,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import load_bytes, uri_to_path
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.model_includes import model_files
+from robbdd_tools.run.manifest import MANIFEST
+from robbdd_tools.run.prepare import FEATURES
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource, Origin
@@ -31,6 +34,13 @@ def changed(known: Mapping[str, str], folder: Path) -> list[Path]:
     """Return the files of ``digests`` that are not any more what they were."""
     paths = ((folder / name).resolve() for name in known)
     return [path for path, digest in zip(paths, known.values(), strict=True) if _digest(path) != digest]
+
+
+def prepared_digest(folder: Path) -> str:
+    """Return the SHA-256 of what was prepared in a run's folder: the manifest, the features and their steps."""
+    every = (path for path in (folder / FEATURES).rglob("*") if path.is_file() and path.suffix != ".pyc")
+    found = {path.relative_to(folder).as_posix(): _digest(path) for path in (folder / MANIFEST, *every)}
+    return hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()
 
 
 def _digest(path: Path) -> str:

@@ -1,0 +1,263 @@
+"""The database of results: connections, schema and migrations.
+
+Journal mode WAL with full synchronisation: what is committed survives the end of the process and of the machine.
+"""
+
+from __future__ import annotations
+
+import errno
+import sqlite3
+import tempfile
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+from robbdd_tools.base.files import load_bytes
+from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.writing import replace_file
+
+NAME = "results.sqlite"
+LOG = "-wal"
+"""What SQLite adds to a database's name for its log, which holds the latest transactions."""
+BUSY = 30.0
+"""Seconds that a connection waits while another one writes."""
+_DAMAGE = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
+_UNWRITABLE = {sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY}
+
+MIGRATIONS: tuple[tuple[str, ...], ...] = (
+    (
+        # state: running, finished, stopped (at the first failure), interrupted, failed. A run that died is 'running'
+        # while nobody holds its lock. Host, start, end and jobs may differ between equal runs; nothing else does.
+        """CREATE TABLE run (
+            number INTEGER PRIMARY KEY,
+            state TEXT NOT NULL,
+            ending TEXT NOT NULL,
+            total INTEGER NOT NULL,
+            path TEXT NOT NULL,
+            digest TEXT NOT NULL,
+            prepared TEXT NOT NULL,
+            seed INTEGER NOT NULL,
+            version TEXT NOT NULL,
+            simulator TEXT NOT NULL,
+            timeout REAL NOT NULL,
+            stop_on_failure INTEGER NOT NULL,
+            jobs INTEGER NOT NULL,
+            host TEXT NOT NULL,
+            began TEXT NOT NULL,
+            ended TEXT
+        )""",
+        # idx is the number in the run's manifest; wall, stepping, host and ended may differ between equal runs.
+        """CREATE TABLE execution (
+            id INTEGER PRIMARY KEY,
+            run INTEGER NOT NULL REFERENCES run (number) ON DELETE CASCADE,
+            idx INTEGER NOT NULL,
+            key TEXT NOT NULL,
+            story TEXT NOT NULL,
+            variant TEXT NOT NULL,
+            variation INTEGER NOT NULL,
+            repetition INTEGER NOT NULL,
+            seed INTEGER NOT NULL,
+            verdict TEXT NOT NULL,
+            simulated REAL NOT NULL,
+            resampled INTEGER NOT NULL,
+            wall REAL NOT NULL,
+            stepping REAL NOT NULL,
+            host TEXT NOT NULL,
+            ended TEXT NOT NULL,
+            UNIQUE (run, idx)
+        )""",
+        # position is the order of judgement; ranges is a JSON list of the fluents' least and largest margins.
+        """CREATE TABLE clause (
+            execution INTEGER NOT NULL REFERENCES execution (id) ON DELETE CASCADE,
+            position INTEGER NOT NULL,
+            line INTEGER NOT NULL,
+            iri TEXT NOT NULL,
+            verdict TEXT NOT NULL,
+            robustness REAL,
+            unit TEXT NOT NULL,
+            at REAL,
+            worst_at REAL,
+            reason TEXT NOT NULL,
+            vacuous TEXT NOT NULL,
+            fault TEXT NOT NULL,
+            ranges TEXT,
+            PRIMARY KEY (execution, position)
+        ) WITHOUT ROWID""",
+    ),
+)
+"""Statements that lead from each version of the schema to the next; ``PRAGMA user_version`` counts them."""
+
+
+class DatabaseProblem(OSError):
+    """The database cannot be used; ``filename`` is its path and ``strerror`` says why, for the user."""
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(errno.EIO, reason, str(path))
+
+    def __str__(self) -> str:
+        return f"{self.filename}: {self.strerror}"
+
+
+class DamagedDatabase(DatabaseProblem):
+    """The file is no database any more, or one that contradicts itself."""
+
+
+@contextmanager
+def explained(path: Path) -> Generator[None]:
+    """Turn what SQLite complains of into ``DatabaseProblem``."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise _problem(path, error) from error
+
+
+@contextmanager
+def transaction(connection: sqlite3.Connection) -> Generator[None]:
+    """Commit what is done inside, or nothing of it."""
+    connection.execute("BEGIN IMMEDIATE")
+    try:
+        yield
+        connection.execute("COMMIT")
+    except BaseException:
+        # A full disk ends the transaction by itself.
+        if connection.in_transaction:
+            connection.execute("ROLLBACK")
+        raise
+
+
+def open_database(path: Path, *, durable: bool = True) -> sqlite3.Connection:
+    """Open a database for writing, made and migrated as needed; raises ``DatabaseProblem``.
+
+    Transactions are the caller's (``transaction``). Without ``durable`` nothing waits for the disk.
+    """
+    if path.exists() and not path.is_file():
+        raise DatabaseProblem(path, "is not a regular file")
+    with explained(path):
+        connection = sqlite3.connect(path, BUSY, isolation_level=None, check_same_thread=False)
+        try:
+            connection.execute("PRAGMA trusted_schema = OFF")
+            connection.execute("PRAGMA foreign_keys = ON")
+            version = _version(connection, path)
+            connection.execute("PRAGMA journal_mode = WAL")
+            connection.execute(f"PRAGMA synchronous = {'FULL' if durable else 'OFF'}")
+            if version < len(MIGRATIONS):
+                _migrate(connection, path)
+        except BaseException:
+            connection.close()
+            raise
+        return connection
+
+
+def read_database(path: Path) -> sqlite3.Connection | None:
+    """Open a database for reading; ``None`` where there is none, or an empty one. Raises ``DatabaseProblem``.
+
+    One that cannot be opened where it lies (read-only, with a log) is copied into memory.
+    """
+    if not path.is_file():
+        return None
+    with explained(path):
+        try:
+            return _read(path)
+        except sqlite3.OperationalError as error:
+            if _code(error) not in _UNWRITABLE:
+                raise
+        return _copy_in_memory(path)
+
+
+def move_aside(path: Path) -> Path:
+    """Rename a damaged database and its log, so that nothing of them is lost; returns the new name."""
+    for number in range(1, 10_000):
+        target = path.with_name(f"{path.name}.damaged-{number}")
+        if not target.exists():
+            break
+    else:
+        raise DatabaseProblem(path, "is damaged, and so are too many older ones beside it: remove these")
+    for end in (LOG, "-shm", ""):
+        part = path.with_name(path.name + end)
+        if part.exists():
+            part.rename(target.with_name(target.name + end))
+    return target
+
+
+def check(connection: sqlite3.Connection, path: Path) -> None:
+    """Read the whole database; raises ``DamagedDatabase`` where it contradicts itself."""
+    with explained(path):
+        (found,) = connection.execute("PRAGMA quick_check(1)").fetchone()
+    if found != "ok":
+        raise DamagedDatabase(path, f"is damaged: {found}")
+
+
+def _read(path: Path) -> sqlite3.Connection | None:
+    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", BUSY, isolation_level=None, uri=True)
+    try:
+        connection.execute("PRAGMA trusted_schema = OFF")
+        version = _version(connection, path)
+        if version == 0:
+            connection.close()
+            return None
+        if version < len(MIGRATIONS):
+            # Whoever reads an older schema reads it as the latest one; the file is migrated by the next run.
+            memory = _in_memory(connection)
+            _migrate(memory, path)
+            return memory
+        return connection
+    except BaseException:
+        connection.close()
+        raise
+
+
+def _copy_in_memory(path: Path) -> sqlite3.Connection | None:
+    with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
+        copy = Path(folder) / NAME
+        try:
+            replace_file(copy, load_bytes(path, RESULT_SIZE))
+            log = path.with_name(path.name + LOG)
+            if log.is_file():
+                replace_file(copy.with_name(copy.name + LOG), load_bytes(log, RESULT_SIZE))
+        except OSError as error:
+            raise DatabaseProblem(path, f"cannot be read: {error.strerror or error}") from error
+        connection = _read(copy)
+        return None if connection is None else _in_memory(connection)
+
+
+def _in_memory(connection: sqlite3.Connection) -> sqlite3.Connection:
+    memory = sqlite3.connect(":memory:", isolation_level=None)
+    try:
+        connection.backup(memory)
+    finally:
+        connection.close()
+    return memory
+
+
+def _version(connection: sqlite3.Connection, path: Path) -> int:
+    """Return the version of the schema, 0 for an empty database; refuses what this version cannot use."""
+    (version,) = connection.execute("PRAGMA user_version").fetchone()
+    kinds = {kind for (kind,) in connection.execute("SELECT DISTINCT type FROM sqlite_master")}
+    # A view or a trigger would run code of the file's author whenever we read or write.
+    if not kinds <= {"table", "index"} or (kinds and not version):
+        raise DatabaseProblem(path, "is a database of something else: move it away")
+    if version > len(MIGRATIONS):
+        known = len(MIGRATIONS)
+        raise DatabaseProblem(
+            path, f"was written by a newer version of RobBDD (schema {version}; this one knows {known}): update RobBDD"
+        )
+    return int(version)
+
+
+def _migrate(connection: sqlite3.Connection, path: Path) -> None:
+    with transaction(connection):
+        # Another process may have migrated it meanwhile.
+        for statements in MIGRATIONS[_version(connection, path) :]:
+            for statement in statements:
+                connection.execute(statement)
+        connection.execute(f"PRAGMA user_version = {len(MIGRATIONS)}")
+
+
+def _problem(path: Path, error: sqlite3.Error) -> DatabaseProblem:
+    if _code(error) in _DAMAGE or type(error) is sqlite3.DatabaseError:
+        return DamagedDatabase(path, f"is damaged: {error}")
+    return DatabaseProblem(path, str(error))
+
+
+def _code(error: sqlite3.Error) -> int:
+    return getattr(error, "sqlite_errorcode", 0) & 0xFF

@@ -1,0 +1,46 @@
+"""What a stored run lacks of what it had, as after a copy of a part of its store."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from robbdd_tools.run.database import LOG, DatabaseProblem
+from robbdd_tools.run.manifest import MANIFEST
+from robbdd_tools.run.protocol import trace_file
+from robbdd_tools.run.store import RESULTS, StoredRun
+from robbdd_tools.run.stored_results import finished_executions
+
+NAMED = 3
+"""Files that a message names."""
+
+
+def missing_parts(run: StoredRun) -> list[str]:
+    """Return what a run lacks, as sentences; nothing of one that goes on. Raises ``NoSuchRun``."""
+    try:
+        finished = finished_executions(run.database, run.number)
+    except DatabaseProblem as error:
+        return [f"only its {RESULTS} can be read: {error}"]
+    if finished is None or run.is_live:
+        return []
+    status = run.status()
+    traces = {int(path.stem) for path in trace_file(run.folder, 0).parent.glob("*.mcap") if path.stem.isdecimal()}
+    found: list[str] = []
+    # Each process may have written the trace of what it was at when the run ended.
+    unknown = traces.difference(finished)
+    if len(unknown) > status.jobs:
+        found.append(
+            f"{run.database} lacks the results of {_named(unknown)}, whose traces are there: "
+            f"was it copied without its log {run.database.name}{LOG}?"
+        )
+    lost = {index for index, simulated in finished.items() if simulated}.difference(traces)
+    if lost:
+        found.append(f"the folder of the run lacks the traces of {_named(lost)}")
+    if not (run.folder / MANIFEST).is_file():
+        found.append(f"the folder of the run lacks {MANIFEST}, without which its results cannot be read")
+    return found
+
+
+def _named(indices: Iterable[int]) -> str:
+    names = [f"{index:06}" for index in sorted(indices)]
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return f"{len(names)} execution{'' if len(names) == 1 else 's'} ({', '.join(names[:NAMED])}{more})"

@@ -1,0 +1,256 @@
+"""Writes the results of a run into its database while it goes on: each finished execution in a transaction of its own.
+
+``Recording.take`` stands between the scheduler and everybody who shows results: what it has taken is committed.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+import sqlite3
+from collections.abc import Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.database import DatabaseProblem, explained, open_database, transaction
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    MarginRanges,
+    RunFinished,
+    RunStarted,
+    ScenarioFinished,
+    ScenarioStarted,
+    scenario_key,
+)
+from robbdd_tools.run.results import RunResults, ScenarioResult
+from robbdd_tools.run.stored_results import FAILED, FINISHED, INTERRUPTED, RUNNING, STOPPED, restored
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from robbdd_tools.run.protocol import Manifest, RunMessage
+    from robbdd_tools.run.scheduler import Policy
+    from robbdd_tools.run.store import RunRecord, StoredRun
+
+
+class OtherSimulator(Exception):
+    """A run cannot be resumed with this simulator; the message says why."""
+
+
+class Recording:
+    """The rows of one run that is going on. Every method raises ``DatabaseProblem`` when the database cannot be used.
+
+    ``begin`` it or ``resume`` it, let it ``take`` every message when it comes, and ``end`` it; ``close`` it in any
+    case. One thread at a time may use it.
+    """
+
+    def __init__(self, place: StoredRun, manifest: Manifest) -> None:
+        self._place = place
+        self._manifest = manifest
+        self._open: dict[int, list[ClauseJudged | MarginRanges]] = {}
+        self._done: set[int] = set()
+        self._simulator = ""
+        self._stops = False
+        self._connection = open_database(place.database, durable=place.kept)
+
+    def begin(self, record: RunRecord, policy: Policy, prepared: str = "") -> None:
+        """Write down what is run; ``prepared`` is a digest of the run's folder."""
+        self._stops = policy.stop_on_failure
+        row = {
+            "number": self._place.number,
+            "state": RUNNING,
+            "ending": "",
+            "total": len(self._manifest.scenarios),
+            "path": record.path,
+            "digest": record.digest,
+            "prepared": prepared,
+            "seed": record.seed,
+            "version": record.version,
+            "simulator": "",
+            "timeout": policy.timeout,
+            "stop_on_failure": policy.stop_on_failure,
+            "jobs": policy.jobs,
+            "host": platform.node(),
+            "began": _now(),
+        }
+        with self._writing() as connection:
+            connection.execute("DELETE FROM run WHERE number = ?", (self._place.number,))
+            _insert(connection, "run", row)
+
+    def resume(self, policy: Policy) -> RunResults:
+        """Go on with an unfinished run as ``policy`` says; returns what is finished of it."""
+        self._stops = policy.stop_on_failure
+        number = self._place.number
+        with self._writing() as connection:
+            connection.execute(
+                "UPDATE run SET state = ?, ending = '', timeout = ?, stop_on_failure = ?, jobs = ? WHERE number = ?",
+                (RUNNING, policy.timeout, policy.stop_on_failure, policy.jobs, number),
+            )
+            (self._simulator,) = connection.execute("SELECT simulator FROM run WHERE number = ?", (number,)).fetchone()
+            results = restored(connection, number, self._manifest)
+        self._done = {index for index, one in enumerate(results.scenarios) if one.finished is not None}
+        return results
+
+    def take(self, message: RunMessage) -> bool:
+        """Keep a message; an execution is in the database when this returns for its end.
+
+        Returns whether the message is news (``is_news``). Raises ``OtherSimulator`` when a run is resumed with another
+        one.
+        """
+        match message:
+            case RunStarted():
+                self._use_simulator(message.simulator)
+            case ScenarioStarted(index):
+                self._open[index] = []
+            case ClauseJudged(index) | MarginRanges(index):
+                self._open.setdefault(index, []).append(message)
+            case ScenarioFinished(index):
+                judged = self._open.pop(index, [])
+                if index not in self._done:
+                    self._write(message, judged)
+            case _:
+                pass
+        return self.is_news(message)
+
+    def is_news(self, message: RunMessage) -> bool:
+        """Return whether a message is about an execution that was not finished before the run was resumed."""
+        return getattr(message, "index", None) not in self._done
+
+    def end(self, ending: str, *, interrupted: bool = False) -> RunResults:
+        """Write down how the run ended (``ending``: why executions were left open) and return its results.
+
+        ``run.json`` and ``results.json`` are written, too. Raises ``OSError``.
+        """
+        number = self._place.number
+        with self._writing() as connection:
+            results = restored(connection, number, self._manifest)
+            first = first_failure(results) if self._stops else None
+            if first is not None:
+                # What was finished beyond it depends on the number of processes.
+                connection.execute("DELETE FROM execution WHERE run = ? AND idx > ?", (number, first))
+                results = restored(connection, number, self._manifest)
+            count = sum(one.finished is not None for one in results.scenarios)
+            if count == len(results.scenarios):
+                state, ending = FINISHED, ""
+            elif first is not None and count == first + 1:
+                state = STOPPED
+            else:
+                state = INTERRUPTED if interrupted else FAILED
+            connection.execute(
+                "UPDATE run SET state = ?, ending = ?, ended = ? WHERE number = ?", (state, ending, _now(), number)
+            )
+        if state == FINISHED:
+            results.apply(RunFinished(True))
+        else:
+            results.close(ending)
+        self._place.write_record(replace(self._place.record(), simulator=self._simulator))
+        self._place.write_results(results.as_json())
+        return results
+
+    def close(self) -> None:
+        """Let the database and the run's lock go."""
+        self._connection.close()
+        if self._place.lock is not None:
+            self._place.lock.release()
+
+    def _use_simulator(self, simulator: str) -> None:
+        if self._simulator and self._simulator != simulator:
+            raise OtherSimulator(f"the run was made with {self._simulator}, and this is {simulator}")
+        self._simulator = simulator
+        with self._writing() as connection:
+            connection.execute("UPDATE run SET simulator = ? WHERE number = ?", (simulator, self._place.number))
+
+    def _write(self, finished: ScenarioFinished, messages: Sequence[ClauseJudged | MarginRanges]) -> None:
+        spec = self._manifest.scenarios[finished.index]
+        judged = {message.line: message for message in messages if isinstance(message, ClauseJudged)}
+        ranges = {message.line: json.dumps(message.ranges) for message in messages if isinstance(message, MarginRanges)}
+        names = {clause.line: clause.iri for clause in spec.clauses}
+        row = {
+            "run": self._place.number,
+            "idx": finished.index,
+            "key": scenario_key(spec),
+            "story": spec.story,
+            "variant": spec.variant,
+            "variation": spec.variation,
+            "repetition": spec.repetition,
+            "seed": spec.seed,
+            "verdict": str(ScenarioResult(spec, judged).verdict),
+            "simulated": finished.simulated,
+            "resampled": finished.resampled,
+            "wall": finished.wall,
+            "stepping": finished.stepping,
+            "host": platform.node(),
+            "ended": _now(),
+        }
+        with self._writing() as connection:
+            execution = _insert(connection, "execution", row)
+            for position, (line, one) in enumerate(judged.items()):
+                clause = {
+                    "execution": execution,
+                    "position": position,
+                    "line": line,
+                    "iri": names.get(line, ""),
+                    "verdict": one.verdict,
+                    "robustness": one.robustness,
+                    "unit": one.unit,
+                    "at": one.at,
+                    "worst_at": one.worst_at,
+                    "reason": one.reason,
+                    "vacuous": one.vacuous,
+                    "fault": one.fault,
+                    "ranges": ranges.get(line),
+                }
+                _insert(connection, "clause", clause)
+
+    @contextmanager
+    def _writing(self) -> Generator[sqlite3.Connection]:
+        with explained(self._place.database), transaction(self._connection):
+            yield self._connection
+
+
+def pending(results: RunResults, *, stops: bool) -> list[int]:
+    """Return the numbers of the scenarios that are to be executed so that a run has all results.
+
+    Scenarios that share an execution are executed together again, as far as one of them is open. When the run
+    ``stops`` at its first failure, those beyond one that is known are left out.
+    """
+    first = first_failure(results) if stops else None
+    wanted = [
+        index
+        for index, scenario in enumerate(results.scenarios)
+        if scenario.finished is None and (first is None or index < first)
+    ]
+    trees = {tree.name for index in wanted if (tree := results.scenarios[index].spec.tree) is not None}
+    open_ones = frozenset(wanted)
+    return [
+        index
+        for index, scenario in enumerate(results.scenarios)
+        if index in open_ones or (scenario.spec.tree is not None and scenario.spec.tree.name in trees)
+    ]
+
+
+def first_failure(results: RunResults) -> int | None:
+    """Return the number of the first finished scenario with a clause that does not hold."""
+    for index, scenario in enumerate(results.scenarios):
+        if scenario.finished is not None and any(one.verdict != Outcome.HOLDS for one in scenario.judged.values()):
+            return index
+    return None
+
+
+def why(error: OSError) -> str:
+    """Say why a run cannot be kept any further."""
+    reason = str(error) if isinstance(error, DatabaseProblem) else f"{error.filename}: {error.strerror or error}"
+    return f"results cannot be kept any more: {reason}"
+
+
+def _insert(connection: sqlite3.Connection, table: str, row: Mapping[str, object]) -> int | None:
+    """Insert a row whose names are ours and return its identifier."""
+    names, places = ", ".join(row), ", ".join("?" * len(row))
+    return connection.execute(f"INSERT INTO {table} ({names}) VALUES ({places})", tuple(row.values())).lastrowid
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="milliseconds")

@@ -1,0 +1,156 @@
+"""Reads what the database holds of one run: how far it is, and its results."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Mapping
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+from robbdd_tools.run.database import explained, read_database
+from robbdd_tools.run.protocol import ClauseJudged, Manifest, MarginRanges, RunFinished, ScenarioFinished
+from robbdd_tools.run.results import RunResults
+
+RUNNING, FINISHED, STOPPED, INTERRUPTED, FAILED = "running", "finished", "stopped", "interrupted", "failed"
+"""States of a run in the database."""
+DIED = "died"
+"""State of a run that is ``RUNNING`` by the database but not by its lock."""
+_ENDINGS = {
+    RUNNING: "not executed yet: the run is going on",
+    DIED: "the run ended without notice",
+    INTERRUPTED: "the run was interrupted",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RunStatus:
+    """How far a run is.
+
+    ``ending`` says why executions are open; ``counts`` are verdicts of finished executions. ``timeout`` (s of wall
+    time) and ``stop_on_failure`` are how it was run; ``prepared`` is a digest of its manifest and features.
+    """
+
+    state: str
+    ending: str
+    total: int
+    counts: Mapping[str, int]
+    simulator: str = ""
+    version: str = ""
+    prepared: str = ""
+    timeout: float = 0.0
+    stop_on_failure: bool = False
+    jobs: int = 1
+
+    @property
+    def finished(self) -> int:
+        """Number of finished executions."""
+        return sum(self.counts.values())
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the run did all that it was asked to."""
+        return self.state in (FINISHED, STOPPED)
+
+    def words(self) -> str:
+        """Return what is to be said of a run that has not finished everything: ``interrupted: 12 of 40 finished``."""
+        if self.state == FINISHED:
+            return ""
+        name = "stopped at the first failure" if self.state == STOPPED else self.state
+        return f"{name}: {self.finished} of {self.total} finished"
+
+
+def read_status(database: Path, number: int, *, live: bool = False) -> RunStatus | None:
+    """Return the status of a run, ``None`` where the database knows none; ``live`` when its process is there.
+
+    Raises ``DatabaseProblem``.
+    """
+    with explained(database):
+        connection = read_database(database)
+        if connection is None:
+            return None
+        with closing(connection):
+            return _status(connection, number, live=live)
+
+
+def numbers(database: Path) -> list[int]:
+    """Return the numbers of the runs that a database knows; raises ``DatabaseProblem``."""
+    with explained(database):
+        connection = read_database(database)
+        if connection is None:
+            return []
+        with closing(connection):
+            return [number for (number,) in connection.execute("SELECT number FROM run ORDER BY number")]
+
+
+def finished_executions(database: Path, number: int) -> Mapping[int, float] | None:
+    """Return simulated time (s) by number of each finished execution of a run, ``None`` where there is no such run.
+
+    Raises ``DatabaseProblem``.
+    """
+    with explained(database):
+        connection = read_database(database)
+        if connection is None:
+            return None
+        with closing(connection):
+            if connection.execute("SELECT 1 FROM run WHERE number = ?", (number,)).fetchone() is None:
+                return None
+            query = "SELECT idx, simulated FROM execution WHERE run = ?"
+            return dict(connection.execute(query, (number,)).fetchall())
+
+
+def read_results(database: Path, number: int, manifest: Manifest, *, live: bool = False) -> RunResults | None:
+    """Return the results of a run; ``None`` where the database knows none. Raises ``DatabaseProblem``.
+
+    Clauses of executions that are not finished are unknown, for the reason that they are not.
+    """
+    with explained(database):
+        connection = read_database(database)
+        if connection is None:
+            return None
+        with closing(connection):
+            status = _status(connection, number, live=live)
+            if status is None:
+                return None
+            results = restored(connection, number, manifest)
+    if status.state == FINISHED:
+        results.apply(RunFinished(True))
+    else:
+        results.close(status.ending)
+    return results
+
+
+def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) -> RunResults:
+    """Return the finished executions of a run as results that are open for more; raises ``sqlite3.Error``."""
+    results = RunResults(manifest)
+    query = "SELECT id, idx, simulated, wall, stepping, resampled FROM execution WHERE run = ? ORDER BY idx"
+    for identifier, position, simulated, wall, stepping, resampled in connection.execute(query, (number,)):
+        index = int(position)
+        if index >= len(manifest.scenarios):
+            continue
+        spec = manifest.scenarios[index]
+        query = """SELECT line, verdict, robustness, unit, at, reason, worst_at, vacuous, fault, ranges
+            FROM clause WHERE execution = ? ORDER BY position"""
+        known = {clause.line for clause in spec.clauses}
+        for line, *judged, ranges in connection.execute(query, (identifier,)):
+            if line in known:
+                results.apply(ClauseJudged(index, line, *judged))
+                if ranges is not None:
+                    results.apply(MarginRanges(index, line, json.loads(ranges)))
+        results.apply(ScenarioFinished(index, simulated, wall, stepping, resampled))
+    return results
+
+
+def _status(connection: sqlite3.Connection, number: int, *, live: bool) -> RunStatus | None:
+    query = """SELECT state, ending, total, simulator, version, prepared, timeout, stop_on_failure, jobs
+        FROM run WHERE number = ?"""
+    row = connection.execute(query, (number,)).fetchone()
+    if row is None:
+        return None
+    state, ending, total, simulator, version, prepared, timeout, stops, jobs = row
+    state = DIED if state == RUNNING and not live else state
+    counted = connection.execute("SELECT verdict, count(*) FROM execution WHERE run = ? GROUP BY verdict", (number,))
+    counts = dict(counted.fetchall())
+    ending = ending or _ENDINGS.get(state, "")
+    return RunStatus(state, ending, total, counts, simulator, version, prepared, timeout, bool(stops), jobs)

@@ -1,0 +1,46 @@
+"""Looks after a database between runs: makes or migrates it, marks runs that died, removes old ones."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from contextlib import closing
+from pathlib import Path
+
+from robbdd_tools.run.database import DamagedDatabase, check, explained, move_aside, open_database, transaction
+from robbdd_tools.run.stored_results import DIED, RUNNING
+
+
+def make_ready(database: Path, live: Collection[int]) -> str:
+    """Prepare a database for a new run while the runs ``live`` go on; returns what the user should know of it.
+
+    A damaged one is moved aside, unless a run is writing to it. It is read as a whole when a run died on it. Raises
+    ``DatabaseProblem``.
+    """
+    try:
+        _settle(database, live)
+    except DamagedDatabase as error:
+        if live:
+            raise
+        target = move_aside(database)
+        open_database(database).close()
+        return f"{error}; it is kept as {target.name}, and a new one was begun"
+    return ""
+
+
+def remove_runs(database: Path, numbers: Iterable[int]) -> None:
+    """Remove all that a database holds of some runs; raises ``DatabaseProblem``."""
+    with explained(database), closing(open_database(database)) as connection, transaction(connection):
+        for number in numbers:
+            connection.execute("DELETE FROM run WHERE number = ?", (number,))
+
+
+def _settle(database: Path, live: Collection[int]) -> None:
+    with explained(database), closing(open_database(database)) as connection:
+        running = {number for (number,) in connection.execute("SELECT number FROM run WHERE state = ?", (RUNNING,))}
+        died = running.difference(live)
+        if not died:
+            return
+        check(connection, database)
+        with transaction(connection):
+            for number in died:
+                connection.execute("UPDATE run SET state = ? WHERE number = ?", (DIED, number))

@@ -1,0 +1,61 @@
+"""Executions as messages, without a simulator, and the rows that are stored of them."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+from robbdd_tools.catalog.coordination import TreeSpec
+from robbdd_tools.run.protocol import (
+    ClauseJudged,
+    ClauseSpec,
+    ClauseStarted,
+    MarginRanges,
+    RunMessage,
+    ScenarioFinished,
+    ScenarioSpec,
+    ScenarioStarted,
+    SceneSpec,
+)
+from robbdd_tools.run.store import RunRecord
+
+RECORD = RunRecord("m.bdd", "../../../m.bdd", "abc", 1, "0.1.0")
+CLAUSES = tuple(ClauseSpec(line, f"https://x/c{line}", f"c{line}", "then", f'"e:a" {line}') for line in (5, 6))
+FREE = {"id", "run", "number", "execution", "wall", "stepping", "host", "began", "ended", "jobs"}
+"""Columns that differ between equal runs: wall times, host, number of processes, identifiers of rows."""
+
+
+def spec(index: int, tree: TreeSpec | None = None) -> ScenarioSpec:
+    number, values = index + 1, {"e:var-x": index}
+    name, events = f"e:v -- {number}", dict[str, str]()
+    feature, story, variant = "features/s.feature", "https://x/s", "https://x/v"
+    scene = SceneSpec()
+    return ScenarioSpec(feature, 3, name, story, variant, number, values, index, scene, events, CLAUSES, tree=tree)
+
+
+def execution(index: int, verdict: str = "holds") -> Iterator[RunMessage]:
+    """Yield the messages of one execution, with numbers that no shorter type than a double holds."""
+    margin = None if verdict == "unknown" else -1.0 / 3
+    yield ScenarioStarted(index)
+    yield ClauseStarted(index, 5)
+    yield ClauseJudged(index, 5, "holds", 0.1 + index / 3, "m", 1.25, "", 2.5)
+    yield ClauseJudged(index, 6, verdict, margin, "", None, "why", None, "vacuous", "fault")
+    yield MarginRanges(index, 5, ((0.1, 0.1 + index / 7),))
+    yield ScenarioFinished(index, 4.25, 1.5, 0.5, index)
+
+
+def rows(database: Path, number: int) -> list[object]:
+    """Return all that is stored of a run but what ``FREE`` names."""
+    with closing(sqlite3.connect(database)) as connection:
+        connection.row_factory = sqlite3.Row
+        found: list[object] = []
+        for query in (
+            "SELECT * FROM run WHERE number = ?",
+            "SELECT * FROM execution WHERE run = ? ORDER BY idx",
+            "SELECT clause.* FROM clause JOIN execution ON id = execution WHERE run = ? ORDER BY idx, position",
+        ):
+            for row in connection.execute(query, (number,)):
+                found.append({name: value for name, value in dict(row).items() if name not in FREE})
+        return found

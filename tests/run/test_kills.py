@@ -1,0 +1,99 @@
+"""Runs that are killed at random instants, again and again. ``ROBBDD_KILLS`` says how often (30)."""
+
+from __future__ import annotations
+
+import os
+import random
+import re
+import shutil
+import sqlite3
+import subprocess
+import sys
+from contextlib import closing
+from pathlib import Path
+from time import monotonic
+
+from robbdd_tools.run.store import FOLDER, NoSuchRun, RunStore, StoredRun
+from run.killed import BEGUN, COUNT, JOBS
+from run.recorded import rows
+
+KILLS = int(os.environ.get("ROBBDD_KILLS", "30"))
+DRIVER = Path(__file__).with_name("killed.py")
+SHOWN = re.compile(r"^e:v -- (\d+)  .*\n", re.MULTILINE)
+
+
+def start(folder: Path) -> subprocess.Popen[str]:
+    environment = {**os.environ, "PYTHONPATH": str(DRIVER.parents[1])}
+    command = [sys.executable, str(DRIVER), str(folder)]
+    # A file and no pipe: what was printed can be read when the process is gone, however much it is.
+    with (folder / "printed").open("w", encoding="utf-8") as printed:
+        return subprocess.Popen(command, stdout=printed, stderr=subprocess.STDOUT, env=environment, text=True)
+
+
+def ends_within(process: subprocess.Popen[str], seconds: float) -> bool:
+    """Return whether a process comes to its end in time; else it is killed."""
+    try:
+        assert process.wait(seconds) == 0
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        return False
+    return True
+
+
+def printed(folder: Path) -> set[int]:
+    return {int(number) - 1 for number in SHOWN.findall((folder / "printed").read_text(encoding="utf-8"))}
+
+
+def begun(folder: Path) -> set[int]:
+    path = folder / BEGUN
+    found = set(map(int, path.read_text(encoding="utf-8").split())) if path.exists() else set[int]()
+    path.unlink(missing_ok=True)
+    return found
+
+
+def stored(run: StoredRun) -> set[int]:
+    try:
+        document = run.results()
+    except NoSuchRun:
+        return set()
+    return {index for index, entry in enumerate(document["scenarios"]) if entry["duration"] is not None}
+
+
+def check_integrity(database: Path) -> None:
+    with closing(sqlite3.connect(database)) as connection:
+        assert connection.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+        assert connection.execute("PRAGMA foreign_key_check").fetchall() == []
+
+
+def test_killed_runs_lose_nothing_and_end_as_if_they_had_not_been(tmp_path: Path) -> None:
+    chance = random.Random(4)
+    whole = tmp_path / "whole"
+    whole.mkdir()
+    began = monotonic()
+    assert start(whole).wait() == 0
+    longest = monotonic() - began
+    assert printed(whole) == set(range(COUNT))
+    (run,) = RunStore(whole / FOLDER).runs()
+    expected = rows(run.database, run.number)
+    kills = in_the_middle = 0
+    while kills < KILLS:
+        folder = tmp_path / "killed"
+        folder.mkdir()
+        before: set[int] = set()
+        while not ends_within(start(folder), chance.uniform(0.0, longest)):
+            kills += 1
+            runs = [run for run in RunStore(folder / FOLDER).runs() if run.began]
+            now = set[int]().union(*map(stored, runs))
+            assert before | printed(folder) <= now, "a result was lost"
+            assert len(begun(folder) - now) <= JOBS, "that many are executed again"
+            in_the_middle += before < now < set(range(COUNT))
+            before = now
+            if runs:
+                check_integrity(runs[0].database)
+                if runs[0].status().is_whole:
+                    break
+        (run,) = (run for run in RunStore(folder / FOLDER).runs() if run.began)
+        assert rows(run.database, run.number) == expected
+        shutil.rmtree(folder)
+    assert in_the_middle, "no run was killed while it went on"

@@ -1,0 +1,445 @@
+"""Results in the database: each finished execution at once, and nothing of it is lost or overwritten in silence."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sqlite3
+import subprocess
+from contextlib import closing, suppress
+from dataclasses import replace
+from itertools import chain
+from pathlib import Path
+
+import pytest
+
+from kit import schema_errors, write_manifest
+from robbdd_tools.catalog.coordination import TreeSpec
+from robbdd_tools.run import database as databases
+from robbdd_tools.run.database import DatabaseProblem, open_database, read_database
+from robbdd_tools.run.missing import missing_parts
+from robbdd_tools.run.protocol import (
+    Manifest,
+    RunFinished,
+    RunStarted,
+    ScenarioFinished,
+    trace_file,
+)
+from robbdd_tools.run.recording import OtherSimulator, Recording, pending
+from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.scheduler import STOPPED as STOPPED_ENDING
+from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.run.store import KEPT, NoSuchRun, RunStore, StoredRun, begin_in, run_in
+from robbdd_tools.run.stored_results import read_status
+from run.recorded import RECORD, execution, rows, spec
+
+COUNT = 4
+MANIFEST = Manifest("m.bdd", 1, tuple(map(spec, range(COUNT))), True)
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> RunStore:
+    return RunStore(tmp_path / ".robbdd" / "runs")
+
+
+def begun(place: StoredRun, policy: Policy | None = None) -> Recording:
+    write_manifest(place.folder, MANIFEST)
+    place.write_record(RECORD)
+    recording = Recording(place, MANIFEST)
+    recording.begin(RECORD, policy or Policy(), "prepared")
+    recording.take(RunStarted(COUNT, "MuJoCo 4"))
+    return recording
+
+
+def leave(recording: Recording, place: StoredRun) -> None:
+    """Let a run go as its process does when it is killed."""
+    recording.close()
+    assert not place.is_live
+
+
+def run_whole(store: RunStore) -> StoredRun:
+    place = store.begin()
+    with closing(begun(place)) as recording:
+        for index in range(COUNT):
+            for message in execution(index):
+                recording.take(message)
+        recording.end("")
+    return place
+
+
+def test_results_made_from_the_database_are_those_that_were_heard(store: RunStore) -> None:
+    place, heard = store.begin(), RunResults(MANIFEST)
+    with closing(begun(place)) as recording:
+        for index in (2, 0, 3, 1):
+            for message in execution(index, ("holds", "violated", "unknown", "holds")[index]):
+                recording.take(message)
+                heard.apply(message)
+        assert place.status().words() == "running: 4 of 4 finished"
+        ended = recording.end("")
+    heard.apply(RunFinished(True))
+    assert ended.as_json() == heard.as_json() == place.results()
+    assert json.loads((place.folder / "results.json").read_text(encoding="utf-8")) == place.results()
+    assert schema_errors("run.schema.json", place.results()) == []
+    assert ended.vacuous() == heard.vacuous() != {}
+    assert place.record().simulator == "MuJoCo 4"
+    assert (place.status().counts, place.status().words()) == ({"holds": 2, "violated": 1, "unknown": 1}, "")
+
+
+def test_an_execution_is_committed_when_its_end_has_been_taken(store: RunStore) -> None:
+    place = store.begin()
+    with closing(begun(place)) as recording:
+        *before, end = execution(2)
+        for message in before:
+            recording.take(message)
+        assert place.status().finished == 0
+        recording.take(end)
+        # Another process sees it, before anybody is told of it.
+        assert place.status().finished == 1
+
+
+def test_a_run_that_died_keeps_what_was_finished_and_says_so(store: RunStore) -> None:
+    place = store.begin()
+    recording = begun(place)
+    for message in (*execution(0), *execution(2), *list(execution(1))[:4]):
+        recording.take(message)
+    assert place.status().state == "running"
+    leave(recording, place)
+    status = place.status()
+    assert (status.state, status.words()) == ("died", "died: 2 of 4 finished")
+    document = place.results()
+    assert schema_errors("run.schema.json", document) == []
+    assert [entry["duration"] is not None for entry in document["scenarios"]] == [True, False, True, False]
+    assert {one["reason"] for one in document["scenarios"][1]["clauses"]} == {"the run ended without notice"}
+    assert (document["complete"], document["finished"]) == (False, 2)
+
+
+def test_a_resumed_run_has_the_rows_of_one_that_was_not_interrupted(store: RunStore) -> None:
+    whole, place = run_whole(store), store.begin()
+    recording = begun(place)
+    for message in (*execution(0), *execution(2)):
+        recording.take(message)
+    leave(recording, place)
+    with closing(Recording(place, MANIFEST)) as recording:
+        results = recording.resume(Policy(jobs=7))
+        indices = pending(results, stops=False)
+        assert indices == [1, 3]
+        recording.take(RunStarted(COUNT, "MuJoCo 4"))
+        for index in indices:
+            for message in execution(index):
+                assert recording.take(message)
+        recording.end("")
+    assert rows(store.database, whole.number) == rows(store.database, place.number)
+    assert place.results() == whole.results()
+
+
+def test_what_was_finished_is_neither_written_nor_shown_again(store: RunStore) -> None:
+    place = store.begin()
+    recording = begun(place)
+    for message in execution(0, "violated"):
+        recording.take(message)
+    leave(recording, place)
+    with closing(Recording(place, MANIFEST)) as recording:
+        recording.resume(Policy())
+        assert not any(recording.take(message) for message in execution(0))
+        assert recording.is_news(RunStarted(COUNT, "MuJoCo 4"))
+        recording.end("cancelled", interrupted=True)
+    assert place.results()["scenarios"][0]["verdict"] == "violated"
+
+
+def test_another_simulator_does_not_go_on_with_a_run(store: RunStore) -> None:
+    place = store.begin()
+    leave(begun(place), place)
+    with closing(Recording(place, MANIFEST)) as recording:
+        recording.resume(Policy())
+        with pytest.raises(OtherSimulator, match="was made with MuJoCo 4, and this is MuJoCo 5"):
+            recording.take(RunStarted(COUNT, "MuJoCo 5"))
+
+
+def test_scenarios_of_one_execution_are_executed_together_again() -> None:
+    tree = TreeSpec("t 1", "https://x/t", (), 0.5, 0.0)
+    manifest = replace(MANIFEST, scenarios=(spec(0, tree), spec(1), spec(2, tree), spec(3)))
+    results = RunResults(manifest)
+    for message in (*execution(0), *execution(1)):
+        results.apply(message)
+    assert pending(results, stops=False) == [0, 2, 3]
+    for message in execution(2):
+        results.apply(message)
+    assert pending(results, stops=False) == [3]
+
+
+def test_nothing_beyond_the_first_failure_is_kept_of_a_run_that_stops_there(store: RunStore) -> None:
+    place, policy = store.begin(), Policy(stop_on_failure=True)
+    with closing(begun(place, policy)) as recording:
+        for message in (*execution(3), *execution(0), *execution(1, "violated")):
+            recording.take(message)
+        recording.end(STOPPED_ENDING)
+    status = place.status()
+    assert (status.state, status.is_whole, status.finished) == ("stopped", True, 2)
+    assert status.words() == "stopped at the first failure: 2 of 4 finished"
+
+
+def test_a_run_that_stops_at_a_failure_goes_on_before_it_only(store: RunStore) -> None:
+    place, policy = store.begin(), Policy(stop_on_failure=True)
+    recording = begun(place, policy)
+    for message in (*execution(3), *execution(2, "violated")):
+        recording.take(message)
+    leave(recording, place)
+    with closing(Recording(place, MANIFEST)) as recording:
+        assert pending(recording.resume(policy), stops=True) == [0, 1]
+        assert pending(recording.resume(policy), stops=False) == [0, 1]
+        for message in (*execution(0), *execution(1)):
+            recording.take(message)
+        recording.end(STOPPED_ENDING)
+    assert (place.status().state, place.status().finished) == ("stopped", 3)
+
+
+def test_a_full_disk_in_mid_run_loses_nothing_that_was_finished(store: RunStore) -> None:
+    mount = store.folder.parent
+    mount.mkdir(parents=True)
+    done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=192k", "tmpfs", str(mount)], check=False)
+    if done.returncode:
+        pytest.skip("a small file system can be mounted by root only")
+    try:
+        place = store.begin()
+        recording, finished = begun(place), 0
+
+        def take_all() -> None:
+            nonlocal finished
+            for message in chain.from_iterable(map(execution, range(COUNT))):
+                recording.take(message)
+                finished += isinstance(message, ScenarioFinished)
+
+        filler = mount / "filler"
+        fill(filler)
+        with pytest.raises(DatabaseProblem, match="full"):
+            take_all()
+        filler.unlink()
+        recording.close()
+        assert place.status().finished == finished < COUNT
+        # With room again, the run goes on.
+        with closing(Recording(place, MANIFEST)) as recording:
+            for index in pending(recording.resume(Policy()), stops=False):
+                for message in execution(index):
+                    recording.take(message)
+            recording.end("")
+        assert place.results() == run_whole(RunStore(store.folder.parent.parent / "other")).results()
+    finally:
+        subprocess.run(["umount", str(mount)], check=True)
+
+
+def fill(path: Path) -> None:
+    """Write a file until its file system is full."""
+    with path.open("wb", buffering=0) as file, suppress(OSError):
+        while True:
+            file.write(b"x" * 512)
+
+
+def test_a_store_that_can_only_be_read_is_read(store: RunStore) -> None:
+    place = store.begin()
+    recording = begun(place)
+    for message in execution(0):
+        recording.take(message)
+    # A killed process leaves its log behind, and the file system becomes read-only.
+    copy = store.folder.parent.with_name("copy")
+    mount = store.folder.parent.with_name("readonly") / ".robbdd"
+    shutil.copytree(store.folder.parent, copy)
+    (copy / "results.sqlite-shm").unlink()
+    recording.close()
+    mount.mkdir(parents=True)
+    done = subprocess.run(["mount", "--bind", str(copy), str(mount)], check=False)
+    if done.returncode:
+        pytest.skip("a file system can be mounted by root only")
+    try:
+        subprocess.run(["mount", "-o", "remount,bind,ro", str(mount)], check=True)
+        (run,) = RunStore(mount / "runs").runs()
+        assert run.status().words() == "died: 1 of 4 finished"
+        assert run.results()["finished"] == 1
+        with pytest.raises(OSError, match="Read-only"):
+            RunStore(mount / "runs").begin()
+    finally:
+        subprocess.run(["umount", str(mount)], check=True)
+
+
+def test_a_store_copied_without_its_log_says_what_it_lacks(store: RunStore, tmp_path: Path) -> None:
+    place = store.begin()
+    recording = begun(place, Policy(jobs=1))
+    (place.folder / "traces").mkdir()
+    for index in range(COUNT):
+        for message in execution(index):
+            recording.take(message)
+        trace_file(place.folder, index).touch()
+    copied = tmp_path / "copied"
+    shutil.copytree(store.folder.parent, copied / ".robbdd", ignore=shutil.ignore_patterns("*-wal", "*-shm", "lock"))
+    recording.close()
+    (run,) = RunStore(copied / ".robbdd" / "runs").runs()
+    with pytest.raises(NoSuchRun, match=r"has no record of run 1.*copied without its log results\.sqlite-wal"):
+        run.status()
+
+    # Now a log that had been written to the database in between.
+    with closing(sqlite3.connect(store.database)) as connection:
+        connection.execute("DELETE FROM execution WHERE idx > 1")
+        connection.commit()
+    assert missing_parts(place) == [
+        f"{store.database} lacks the results of 2 executions (000002, 000003), whose traces are there: "
+        "was it copied without its log results.sqlite-wal?"
+    ]
+
+
+def test_a_run_folder_that_was_not_copied_is_missed(store: RunStore) -> None:
+    place = run_whole(store)
+    named = "000000, 000001, 000002 and 1 more"
+    assert missing_parts(place) == [f"the folder of the run lacks the traces of 4 executions ({named})"]
+    (place.folder / "manifest.json").unlink()
+    assert "lacks manifest.json" in missing_parts(place)[1]
+    with pytest.raises(NoSuchRun, match=r"holds no run: .*manifest\.json"):
+        place.results()
+    shutil.rmtree(place.folder)
+    (run,) = store.runs()
+    with pytest.raises(NoSuchRun, match="is gone"):
+        run.record()
+
+
+@pytest.mark.parametrize("damage", ["header", "middle"])
+def test_a_damaged_database_is_moved_aside_and_older_results_are_read(store: RunStore, damage: str) -> None:
+    whole, died = run_whole(store), store.begin()
+    leave(begun(died), died)
+    document = whole.results()
+    data = bytearray(store.database.read_bytes())
+    start = 0 if damage == "header" else 4096
+    data[start : start + 3 * 4096] = b"\xa5" * (3 * 4096)
+    store.database.write_bytes(data)
+    with pytest.raises(NoSuchRun, match=r"results\.sqlite: is damaged"):
+        died.results()
+    assert whole.results() == document, "its results.json is there"
+    again = store.begin()
+    assert "is damaged" in again.remark
+    assert "it is kept as results.sqlite.damaged-1, and a new one was begun" in again.remark
+    assert store.database.with_name("results.sqlite.damaged-1").read_bytes() == data
+    with closing(begun(again)) as recording:
+        for message in execution(0):
+            recording.take(message)
+    assert again.status().finished == 1
+    assert whole.results() == document
+
+
+def test_a_damaged_database_is_left_alone_while_a_run_writes_to_it(store: RunStore) -> None:
+    live = store.begin()
+    recording = begun(live)
+    store.database.write_bytes(b"\xa5" * 8192)
+    Path(f"{store.database}-wal").unlink()
+    with pytest.raises(DatabaseProblem, match="is damaged"):
+        store.begin()
+    recording.close()
+
+
+def test_what_a_newer_version_wrote_is_refused(store: RunStore) -> None:
+    run_whole(store)
+    with closing(sqlite3.connect(store.database)) as connection:
+        connection.execute("PRAGMA user_version = 999")
+    with pytest.raises(DatabaseProblem, match=r"written by a newer version of RobBDD \(schema 999; .*update RobBDD"):
+        store.begin()
+    with pytest.raises(DatabaseProblem, match="newer version"):
+        read_database(store.database)
+
+
+def test_a_database_of_something_else_is_refused_and_left_as_it_is(store: RunStore) -> None:
+    store.folder.mkdir(parents=True)
+    with closing(sqlite3.connect(store.database)) as connection:
+        connection.execute("CREATE TABLE stamps (country TEXT)")
+    before = store.database.read_bytes()
+    with pytest.raises(DatabaseProblem, match="is a database of something else"):
+        store.begin()
+    assert store.database.read_bytes() == before
+
+
+def test_an_older_schema_is_migrated_by_writers_and_read_by_readers(
+    store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = run_whole(store)
+    document = place.results()
+    more = (*databases.MIGRATIONS, ("ALTER TABLE run ADD COLUMN study TEXT", "CREATE TABLE factor (name TEXT)"))
+    monkeypatch.setattr(databases, "MIGRATIONS", more)
+    old = store.database.read_bytes()
+    assert place.results() == document
+    reader = read_database(store.database)
+    assert reader is not None
+    with closing(reader):
+        assert reader.execute("SELECT study FROM run").fetchall() == [(None,)]
+    assert store.database.read_bytes() == old, "reading does not change it"
+    open_database(store.database).close()
+    with closing(sqlite3.connect(store.database)) as connection:
+        assert connection.execute("PRAGMA user_version").fetchone() == (len(more),)
+        assert connection.execute("SELECT count(*) FROM factor").fetchone() == (0,)
+    assert place.results() == document
+
+
+def test_a_migration_that_fails_changes_nothing(store: RunStore, monkeypatch: pytest.MonkeyPatch) -> None:
+    run_whole(store)
+    broken = (*databases.MIGRATIONS, ("CREATE TABLE factor (name TEXT)", "CREATE TABLE run (number INTEGER)"))
+    monkeypatch.setattr(databases, "MIGRATIONS", broken)
+    with pytest.raises(DatabaseProblem, match="table run already exists"):
+        open_database(store.database)
+    monkeypatch.undo()
+    with closing(sqlite3.connect(store.database)) as connection:
+        assert connection.execute("SELECT count(*) FROM sqlite_master WHERE name = 'factor'").fetchone() == (0,)
+        assert connection.execute("PRAGMA user_version").fetchone() == (len(databases.MIGRATIONS),)
+
+
+def test_two_runs_at_once_keep_their_results_apart(store: RunStore) -> None:
+    first, second = store.begin(), store.begin()
+    one, other = begun(first), begun(second)
+    for index in range(COUNT):
+        for message in execution(index):
+            one.take(message)
+        for message in execution(index, "violated"):
+            other.take(message)
+    assert (first.status().counts, second.status().counts) == ({"holds": 4}, {"violated": 4})
+    one.end("")
+    other.end("")
+    one.close()
+    other.close()
+    assert first.results()["complete"]
+    assert second.results()["complete"]
+
+
+def test_unfinished_runs_do_not_push_out_finished_ones_and_live_ones_stay(store: RunStore) -> None:
+    whole, live = run_whole(store), store.begin()
+    recording = begun(live)
+    for _ in range(KEPT + 3):
+        place = store.begin()
+        leave(begun(place), place)
+    numbers = [run.number for run in store.runs()]
+    assert numbers[:2] == [whole.number, live.number]
+    assert len(numbers) == KEPT + 1 + 2, "the newest is not counted"
+    assert store.find("1").results()["complete"]
+    recording.close()
+    with closing(sqlite3.connect(store.database)) as connection:
+        assert [number for (number,) in connection.execute("SELECT number FROM run ORDER BY number")] == numbers
+
+
+def test_a_run_in_a_folder_of_its_own_has_its_database_there(tmp_path: Path) -> None:
+    place = begin_in(tmp_path / "own")
+    with closing(begun(place)) as recording:
+        for index in range(COUNT):
+            for message in execution(index):
+                recording.take(message)
+        with pytest.raises(OSError, match="another run is going on there"):
+            begin_in(tmp_path / "own")
+        recording.end("")
+    document = place.results()
+    (tmp_path / "own").rename(tmp_path / "moved")
+    assert run_in(tmp_path / "moved").results() == document
+    assert RunStore(tmp_path).find(str(tmp_path / "moved")).results() == document
+    trace_file(tmp_path / "moved", 3).parent.mkdir()
+    trace_file(tmp_path / "moved", 3).touch()
+    again = begin_in(tmp_path / "moved")
+    assert not trace_file(again.folder, 3).exists(), "it is no evidence for what is run now"
+
+
+def test_status_is_that_of_results_json_where_the_database_knows_nothing(store: RunStore) -> None:
+    place = store.begin()
+    place.write_record(RECORD)
+    entries = [{"verdict": "holds", "duration": 1.0}, {"verdict": "unknown", "duration": None}]
+    place.write_results({"complete": False, "scenarios": entries})
+    assert place.status().words() == "interrupted: 1 of 2 finished"
+    assert read_status(store.database, place.number) is None
