@@ -20,6 +20,8 @@ from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.run.protocol import ClauseSpec, ConfigSpec, ExecutionSpec, Manifest, ScenarioSpec, SceneSpec
 
 MANIFEST = "manifest.json"
+STORED_RESULTS = "stored-results.json"
+"""File beside a manifest with the results of the stored run that is judged again."""
 
 
 def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioSpec]) -> Iterator[ScenarioSpec]:

@@ -24,8 +24,6 @@ VIEWER = "ROBBDD_VIEWER"
 """Environment variable of the agent: when it is set, a window shows each scenario in real time."""
 OWN_STEPS = "model_*steps.py"
 """Pattern of the files in a run's folder of steps that are copies of users' own."""
-STORED_RESULTS = "stored-results.json"
-"""File in a run's folder with the results of the stored run that is judged again."""
 NO_STEP = "no step definition"
 """How the reason begins why a clause is unknown that nothing can judge."""
 
