@@ -10,12 +10,14 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
 from commands.terminals import environment, on_a_terminal, screen_lines
 from commands.test_graph_models import PICKPLACE, robbdd
 from kit import EXAMPLES
+from robbdd_tools.graph.serialize import parse
 
 SENTENCE = "the part is [/nope] fine [bold]really[/bold] :smile: ['a', 'b'] 12"
 HOSTILE = "[red]x[/] \x1b[2J\x9b2J\r\n::error::forged \u202e"
@@ -144,3 +146,27 @@ def test_answers_to_queries_are_escaped(tmp_path: Path) -> None:
     text = robbdd("query", model, ASK, "--format", "json").stdout
     assert json.loads(text)["results"]["bindings"][0]["role"]["value"] == "::error::a\x1b[2J\u202e"
     assert "\x1b" not in text
+
+
+def test_graphs_with_control_characters_are_valid_or_refused(tmp_path: Path) -> None:
+    model = model_with_role(tmp_path, "a\x01\x85\u202eb")
+    refused = robbdd("graph", model, "--format", "xml")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert r"xml cannot hold \x01 of 'a\x01\x85\u202eb'; ttl, nt and json-ld can" in refused.stderr
+    picture = robbdd("graph", model, "--format", "svg").stdout
+    assert ElementTree.fromstring(picture).tag.endswith("svg")
+    for form in ("ttl", "nt", "json-ld"):
+        text = robbdd("graph", model, "--format", form).stdout
+        assert not set("\x01\x85\u202e") & set(text)
+        known = parse(text, form)
+        assert any(str(term) == "a\x01\x85\u202eb" for term in known.objects())
+
+
+def test_half_characters_are_refused_where_a_format_cannot_hold_them(tmp_path: Path) -> None:
+    (tmp_path / "half.json").write_text(
+        robbdd("graph", PICKPLACE, "--format", "json-ld").stdout.replace("line operator", r"a\ud800b"), encoding="utf-8"
+    )
+    for form in ("ttl", "nt", "xml"):
+        done = robbdd("graph", "half.json", "--format", form, folder=tmp_path)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert rf"{form} cannot hold \ud800" in done.stderr

@@ -36,6 +36,13 @@ def printable_json(document: object, indent: int | None = None) -> str:
     return _CI_PREFIX.sub(r"#\\u0023", text)
 
 
+def printable_terms(text: str) -> str:
+    """Return Turtle or N-Triples with the same characters escaped as these do; only line ends stay."""
+    if text.replace("\n", "").isprintable():
+        return text
+    return "".join(f"\\U{ord(one):08X}" if one != "\n" and _is_hidden(one) else one for one in text)
+
+
 def _is_hidden(character: str) -> bool:
     is_noncharacter = ord(character) & 0xFFFE == 0xFFFE
     return is_noncharacter or (category(character) in ("Cc", "Cf", "Cs", "Zl", "Zp") and character not in _JOINERS)

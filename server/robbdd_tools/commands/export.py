@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
-from robbdd_tools.commands.output import print_document
+from robbdd_tools.commands.output import fail, print_document
 from robbdd_tools.commands.results import graph_with_results
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ PICTURE = "svg"
 
 def print_graph(path: Path, form: str, results: str | None) -> int:
     """Print the graph of a model and its imports, with the results of a run if any; returns the exit code."""
-    from robbdd_tools.graph.serialize import serialize
+    from robbdd_tools.graph.serialize import UnwritableGraph, serialize
 
     snapshot = sound_model(path)
     if snapshot is None:
@@ -31,7 +31,10 @@ def print_graph(path: Path, form: str, results: str | None) -> int:
     built = graph_with_results(snapshot, path, results)
     if built is None:
         return FAILED
-    print_document(_picture(snapshot, built, path) if form == PICTURE else serialize(built.graph, form))
+    try:
+        print_document(_picture(snapshot, built, path) if form == PICTURE else serialize(built.graph, form))
+    except UnwritableGraph as error:
+        return fail(f"{path}: {error}")
     return OK
 
 

@@ -11,7 +11,7 @@ from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.features.clause_results import clause_hints, pass_rate
-from robbdd_tools.features.markdown import code_block, literal
+from robbdd_tools.features.markdown import code, code_block, literal
 from robbdd_tools.features.references import uses
 from robbdd_tools.features.results import NOTHING
 from robbdd_tools.features.sentences import clause_sentence, time_meaning, word_meaning, word_of
@@ -81,7 +81,7 @@ def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NO
         parts += _contents(site, definition)
     parts += _results(snapshot, definition, findings)
     if definition.iri is not None and definition.kind is not SymbolKind.NAMESPACE:
-        parts.append(f"`<{definition.iri}>`")
+        parts.append(code(f"<{definition.iri}>"))
     parts += _used(snapshot, definition)
     return "\n\n".join(parts)
 
@@ -99,8 +99,8 @@ def describe_import(snapshot: Snapshot, uri: str) -> str:
     first = (
         [placed.declaration.symbols[0] for placed in file.declarations if placed.declaration.symbols] if file else []
     )
-    names = [f"{symbol.kind} `{symbol.path}`" for symbol in first if symbol.kind is not SymbolKind.NAMESPACE]
-    return "\n\n".join((f"**file** `{_name(uri)}`", *[f"declares {_listed(names)}"] * bool(names)))
+    names = [f"{symbol.kind} {code(symbol.path)}" for symbol in first if symbol.kind is not SymbolKind.NAMESPACE]
+    return "\n\n".join((f"**file** {code(_name(uri))}", *[f"declares {_listed(names)}"] * bool(names)))
 
 
 def describe_words(words: str) -> str | None:
@@ -123,7 +123,7 @@ def variants_of(snapshot: Snapshot, template: Definition) -> Iterator[Scenario]:
 
 
 def _title(snapshot: Snapshot, definition: Definition) -> str:
-    title = f"**{definition.kind}** `{definition.symbol.path}`"
+    title = f"**{definition.kind}** {code(definition.symbol.path)}"
     if definition.kind in ROLE_KINDS["Variable"]:
         found = variable_type(snapshot, definition)
         title += f": {found}" if found.is_known else ""
@@ -210,7 +210,7 @@ def _count(scenario: Scenario) -> str:
 
 def _members(members: tuple[Element, ...] | None) -> Iterator[str]:
     if members:
-        names = _listed([f"`{member.name}`" for member in members])
+        names = _listed([code(member.name) for member in members])
         yield f"{len(members)} element{'' if len(members) == 1 else 's'}: {names}"
 
 
@@ -237,7 +237,7 @@ def result_words(hint: ResultHint) -> str:
     """Return the last results of a clause as a list in Markdown."""
     age = "Last results, of the text before it was edited" if hint.stale else "Last results"
     lines = [f"- {literal(line)}" for line in hint.lines[:MOST_LISTED]]
-    vacuous = [f"- it proves little: {hint.vacuous}"] if hint.vacuous else []
+    vacuous = [f"- it proves little: {literal(hint.vacuous)}"] if hint.vacuous else []
     return f"{age}:\n\n" + "\n".join((*lines, *vacuous))
 
 
@@ -246,7 +246,7 @@ def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Ite
     rate = pass_rate(snapshot, variant, findings)
     if rate is None:
         return
-    yield f"- `{variant.definition.symbol.name}`: {rate.label}"
+    yield f"- {code(variant.definition.symbol.name)}: {rate.label}"
     failed = [scenario for scenario in findings.variants[variant.iri] if scenario.outcome != "holds"]
     for scenario in failed[:MOST_LISTED]:
         judged = sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)
@@ -263,7 +263,9 @@ def _used(snapshot: Snapshot, definition: Definition) -> Iterator[str]:
         return
     times = "once" if len(places) == 1 else f"{len(places)} times"
     documents = {uri: snapshot.document(uri) for uri, _ in places}
-    lines = dict.fromkeys(f"{_name(uri)}:{documents[uri].position(span.start).line + 1}" for uri, span in places)
+    lines = dict.fromkeys(
+        literal(f"{_name(uri)}:{documents[uri].position(span.start).line + 1}") for uri, span in places
+    )
     yield f"used {times}: {_listed(list(lines))}"
 
 

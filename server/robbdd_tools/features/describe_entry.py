@@ -9,7 +9,7 @@ from robbdd_tools.base.files import file_state
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.features.describe import describe_import, describe_path, describe_words
-from robbdd_tools.features.markdown import code_block
+from robbdd_tools.features.markdown import code, code_block
 from robbdd_tools.features.sentences import word_meaning
 from robbdd_tools.features.snippets import declaration_snippets, keyword_form
 from robbdd_tools.names.index import language_of
@@ -35,7 +35,7 @@ def describe_entry(snapshot: Snapshot, kind: str, uri: str, path: str) -> str | 
         case "catalog":
             return _word(path)
         case "folder":
-            return f"**folder** `{unquote(uri.rstrip('/').rpartition('/')[2])}`"
+            return f"**folder** {code(unquote(uri.rstrip('/').rpartition('/')[2]))}"
         case "file":
             return _file(snapshot, uri)
         case _:

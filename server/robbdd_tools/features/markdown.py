@@ -5,14 +5,45 @@ from __future__ import annotations
 import re
 import textwrap
 
-_CODE_OR_TAG = re.compile(r"`[^`]*`|<(?!\w+://)[\w!?/][^<>]*>")
+_CODE_OR_TAG = re.compile(r"(?<!`)`[^`\n]+`(?!`)|<[\w!?/][^<>`\n]*>")
+_WEB_LINK = re.compile(r"<https?://[^\s<>`]*>")
+"""A link that shows where it leads, and that nothing follows by itself."""
+_MARKUP = re.compile(r"[\\`*\[\]<>&~|]|!(?=\[)|^\s*[#=+-](?=\s|[=-])", re.MULTILINE)
+"""What begins a link, a picture, HTML, an entity, emphasis, a table, a fence, a heading or a list."""
 MOST_LINES = 10
 """Lines of a text that are shown."""
 
 
 def literal(text: str) -> str:
-    """Return a text whose ``<names>`` stay to be seen: clients leave out what looks like a tag, but not in code."""
-    return _CODE_OR_TAG.sub(lambda match: match[0] if match[0].startswith("`") else f"`{match[0]}`", text)
+    """Return a text that is shown as it is written, so that nothing in it loads a picture, is HTML or hides a link.
+
+    Its ``<names>`` become code, of which clients show every sign; what its author wrote in backticks stays code, and
+    ``<https://…>`` a link.
+    """
+    pieces: list[str] = []
+    end = 0
+    for found in _CODE_OR_TAG.finditer(text):
+        stays = found[0].startswith("`") or _WEB_LINK.fullmatch(found[0])
+        pieces += [_escaped(text[end : found.start()]), found[0] if stays else f"`{found[0]}`"]
+        end = found.end()
+    return "".join((*pieces, _escaped(text[end:])))
+
+
+def code(text: str) -> str:
+    """Return a text as code within a line, whatever backticks and line ends it has."""
+    line = " ".join(text.splitlines())
+    marks = "`" * _longer_than_runs(line, 1)
+    space = " " if "`" in line else ""
+    return f"{marks}{space}{line}{space}{marks}"
+
+
+def _escaped(text: str) -> str:
+    return _MARKUP.sub(lambda match: f"{match[0][:-1]}\\{match[0][-1]}", text)
+
+
+def _longer_than_runs(text: str, least: int) -> int:
+    """Return a number of backticks that ends no code with this text in it."""
+    return max((least, *(len(run) + 1 for run in re.findall("`+", text))))
 
 
 def code_block(text: str, language: str) -> str:
@@ -21,4 +52,5 @@ def code_block(text: str, language: str) -> str:
     lines = [first, *textwrap.dedent("\n".join(rest)).splitlines()] if rest else [first]
     shown = lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "…"]
     name = "robbdd" if language == "bdd" else f"robbdd-{language}"
-    return "\n".join((f"```{name}", *shown, "```"))
+    fence = "`" * _longer_than_runs(text, 3)
+    return "\n".join((f"{fence}{name}", *shown, fence))

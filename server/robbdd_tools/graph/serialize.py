@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import urljoin
 
+from robbdd_tools.base.printable import printable, printable_json, printable_terms
 from robbdd_tools.graph.canonical import canonical
 from robbdd_tools.graph.contexts import ContextLoader, Json, UnknownContext
 from robbdd_tools.graph.jsonld import context_for, expanded
@@ -21,6 +23,9 @@ if TYPE_CHECKING:
 
 FORMATS = {"ttl": "turtle", "json-ld": "json-ld", "json-ld-expanded": "json-ld", "nt": "nt", "xml": "xml"}
 """Our name of a format → rdflib's."""
+_SURROGATE = re.compile("[\ud800-\udfff]")
+_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What XML 1.0 has no way to write."""
 
 
 class UnreadableGraph(Exception):
@@ -31,24 +36,43 @@ class UnreadableGraph(Exception):
         self.offset = offset
 
 
+class UnwritableGraph(Exception):
+    """A text of the graph cannot be said in a format; the message names the character and the formats that can."""
+
+
 def serialize(graph: Graph, format: str) -> str:
     """Return a graph as text (a key of ``FORMATS``, else ``ValueError``) with all its prefixes.
 
-    Equal graphs give equal texts: blank nodes are numbered anew and everything is written in order.
+    Equal graphs give equal texts: blank nodes are numbered anew and everything is written in order. Raises
+    ``UnwritableGraph`` for characters that the format cannot say.
     """
     _check_format(format)
+    if not format.startswith("json"):
+        _check_characters(graph, _NOT_XML if format == "xml" else _SURROGATE, format)
     ordered = canonical(graph)
     prefixes = bind_prefixes(ordered, user_prefixes(graph))
     if format == "json-ld":
         context = context_for(prefixes)
         document = {"@context": context, "@graph": _by_story(expanded(ordered), context)}
-        return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+        return printable_json(document, indent=2) + "\n"
     if format == "json-ld-expanded":
-        return json.dumps(expanded(ordered), indent=2, ensure_ascii=False) + "\n"
+        return printable_json(expanded(ordered), indent=2) + "\n"
     if format == "nt":
-        return "".join(sorted(ordered.serialize(format="nt").splitlines(keepends=True)))
-    text = _turtle(ordered) if format == "ttl" else ordered.serialize(format=FORMATS[format])
+        # Not by splitlines, which takes control characters within a text for line ends.
+        lines = ordered.serialize(format="nt").rstrip("\n").split("\n")
+        return printable_terms("".join(sorted(f"{line}\n" for line in lines if line)))
+    text = printable_terms(_turtle(ordered)) if format == "ttl" else ordered.serialize(format=FORMATS[format])
     return text.strip("\n") + "\n"
+
+
+def _check_characters(graph: Graph, refused: re.Pattern[str], format: str) -> None:
+    for triple in graph:
+        for term in triple:
+            found = refused.search(str(term))
+            if found is not None:
+                others = "ttl, nt and json-ld" if refused is _NOT_XML and not _SURROGATE.search(found[0]) else "json-ld"
+                text = printable(str(term)[:80])
+                raise UnwritableGraph(f"{format} cannot hold {printable(found[0])} of '{text}'; {others} can")
 
 
 def _turtle(graph: Graph) -> str:

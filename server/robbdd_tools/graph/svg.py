@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
+from robbdd_tools.base.printable import printable
 from robbdd_tools.graph.source_map import Location
 from robbdd_tools.graph.structure import Node, Structure
 
@@ -191,15 +192,15 @@ def _shape(box: _Box, source: Callable[[Location], str]) -> str:
     place = "" if node.location is None else source(node.location)
     said = WORDS.get(node.concept, node.concept.capitalize())
     title = f"{said} {node.name or ' '.join(node.lines)}" + (f" ({place})" if place else "")
-    attributes = f"data-concept={quoteattr(node.concept)} data-iri={quoteattr(node.iri)}"
+    attributes = f"data-concept={_attribute(node.concept)} data-iri={_attribute(node.iri)}"
     if place:
-        attributes += f" data-source={quoteattr(place)}"
+        attributes += f" data-source={_attribute(place)}"
     x = box.x + PADDING * (2 if node.concept in ("event", "variant") else 1.5)
     text = "".join(
-        f'<text class="{kind}" x="{x:g}" y="{box.y + PADDING + LINE * number + 12:g}">{escape(line)}</text>'
+        f'<text class="{kind}" x="{x:g}" y="{box.y + PADDING + LINE * number + 12:g}">{_text(line)}</text>'
         for number, (kind, line) in enumerate(box.lines)
     )
-    return f"<g {attributes}><title>{escape(title)}</title>{_outline(box)}{text}</g>"
+    return f"<g {attributes}><title>{_text(title)}</title>{_outline(box)}{text}</g>"
 
 
 def _outline(box: _Box) -> str:
@@ -245,7 +246,7 @@ def _link(start: _Box, end: _Box, kind: str) -> str:
         bend = (end.x - start.x - start.width) / 2
         x, top, bottom = start.x + start.width, start.middle, end.middle
         path = f"M{x:g} {top:g}C{x + bend:g} {top:g} {end.x - bend:g} {bottom:g} {end.x:g} {bottom:g}"
-    ends = f"data-from={quoteattr(start.node.iri)} data-to={quoteattr(end.node.iri)}"
+    ends = f"data-from={_attribute(start.node.iri)} data-to={_attribute(end.node.iri)}"
     return f'<path class="{style}" {ends} d="{path}" marker-end="url(#tip)"/>'
 
 
@@ -262,3 +263,11 @@ def _legend(y: float) -> Iterable[str]:
     for sample, word in samples:
         yield f'<g transform="translate({x:g} {y:g})">{sample}<text x="32" y="13">{word}</text></g>'
         x += 64 + len(word) * LETTER
+
+
+def _text(text: str) -> str:
+    return escape(printable(text))
+
+
+def _attribute(text: str) -> str:
+    return quoteattr(printable(text))

@@ -27,8 +27,6 @@ OWN_STEPS = "model_*steps.py"
 NO_STEP = "no step definition"
 """How the reason begins why a clause is unknown that nothing can judge."""
 
-LEVELS = ("info", "warning", "error")
-
 
 @dataclass(frozen=True, slots=True)
 class ConfigSpec:
@@ -309,7 +307,7 @@ def decode(line: str) -> RunMessage:
         message = from_plain(_TYPES[fields.pop("type")], fields)
         if isinstance(message, ClauseJudged):
             Outcome(message.verdict)
-        if isinstance(message, LogLine) and message.level not in LEVELS:
+        if isinstance(message, LogLine) and message.level not in ("info", "warning", "error"):
             raise ValueError(message.level)
         return message
     except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
