@@ -25,9 +25,8 @@ from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.monitor.time import never_occurred, occurrences
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
-from robbdd_tools.run.manifest import read_manifest
+from robbdd_tools.run.manifest import STORED_RESULTS, read_manifest
 from robbdd_tools.run.protocol import (
-    STORED_RESULTS,
     ClauseSpec,
     LogLine,
     Manifest,

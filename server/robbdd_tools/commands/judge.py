@@ -19,9 +19,10 @@ from robbdd_tools.commands.runs import say_unfinished, store_at
 from robbdd_tools.gherkin.select import Wanted
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.launch import Agent, stop
+from robbdd_tools.run.manifest import STORED_RESULTS
 from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.prepare import prepare_all
-from robbdd_tools.run.protocol import STORED_RESULTS, LogLine, RunMessage, ScenarioStarted, scenario_key
+from robbdd_tools.run.protocol import LogLine, RunMessage, ScenarioStarted, scenario_key
 from robbdd_tools.run.results import RunResults, finished_in
 from robbdd_tools.run.store import NoSuchRun
 from robbdd_tools.run.user_code import refusal
