@@ -9,7 +9,7 @@ MJCF = """<mujoco model="five">
       <joint type="slide" range="0 0.04" armature="0.1" damping="10"/>
     </default>
     <default class="pad">
-      <geom type="box" size="0.009 0.004 0.015" mass="0.01" priority="1" condim="4" friction="0.9 0.01 0.001"
+      <geom type="box" size="0.009 0.004 0.015" mass="0.01" condim="4" friction="0.9 0.01 0.001"
             solref="0.005 1" solimp="0.95 0.99 0.001"/>
     </default>
   </default>

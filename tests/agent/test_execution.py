@@ -132,8 +132,7 @@ def test_only_friction_holds_the_thing() -> None:
     for friction in (0.02, 0.005):
         run = execution([Call("pick", {"agent": PANDA, "object": CUBE})])
         simulation = run.simulation
-        for pad in simulation.robots[PANDA].pads:
-            simulation.model.geom_friction[pad] = (friction, 1e-5, 1e-5)
+        simulation.model.pair_friction[:] = friction, friction, 1e-5, 1e-5, 1e-5
         to_the_end(run)
         completed[friction] = run.completed
     assert completed == {0.02: 1, 0.005: 0}
@@ -142,8 +141,7 @@ def test_only_friction_holds_the_thing() -> None:
 def test_a_gripper_without_friction_loses_the_thing_and_says_so() -> None:
     run = execution([pick_place(CUBE)])
     simulation = run.simulation
-    for pad in simulation.robots[PANDA].pads:
-        simulation.model.geom_friction[pad] = (0.005, 1e-5, 1e-5)
+    simulation.model.pair_friction[:] = 0.005, 0.005, 1e-5, 1e-5, 1e-5
     trace = to_the_end(run)
     assert run.completed == 0
     assert trace.remark.startswith("gripper lost env:cube1 at ")

@@ -45,8 +45,7 @@ def test_a_thing_that_slips_out_on_the_way_is_dropped() -> None:
     run = execution([pick_place()])
     trace = run.advance_until(lambda trace: trace.event_time("t:place-start") is not None)
     lost = trace.end
-    for pad in run.simulation.robots[PANDA].pads:
-        run.simulation.model.geom_friction[pad] = (1e-4, 1e-5, 1e-5)
+    run.simulation.model.pair_friction[:] = 1e-4
     found = judged(run, f'"{PANDA}" does not drop "{CUBE}" {WHOLE}')
     assert found.outcome is Outcome.VIOLATED
     assert found.robustness is not None

@@ -115,7 +115,7 @@ def _pad(spec: Any, source: ModelSource, name: str) -> str:
     face = touching[0]
     face.name = name
     # URDF says nothing of contacts: that of a gripping face is stiff and rough like rubber, or light things slip out.
-    face.priority, face.condim, face.friction = 1, 4, [0.9, 0.01, 0.001]
+    face.condim, face.friction = 4, [0.9, 0.01, 0.001]
     face.solref, face.solimp = [0.005, 1.0], [0.95, 0.99, 0.001, 0.5, 2.0]
     return name
 

@@ -15,6 +15,7 @@ import numpy as np
 from robbdd_tools.agent.belts import add_belt
 from robbdd_tools.agent.engine import TIMESTEP, mujoco
 from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.friction import pair_pads, rank_by_friction
 from robbdd_tools.agent.placement import TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.agent.robot_files import prepared_robot
 from robbdd_tools.agent.scene import Cast, cast_scene
@@ -112,6 +113,12 @@ def _compile(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -
         _add_object(spec, name, model, poses[name], len(bases))
     for index, (name, robot) in enumerate(cast.agents.items()):
         _add_robot(spec, name, robot, bases[name], index, len(bases))
+    pads = [f"{name}/{pad}" for name, robot in cast.agents.items() for pad in robot.pads]
+    loose = [
+        _geom_name(name, i) for name, model in cast.objects.items() if model.free for i in range(len(model.shapes))
+    ]
+    pair_pads(spec, pads, loose)
+    rank_by_friction(spec, pads)
     try:
         with warnings.catch_warnings():
             # The options of the world are kept, whatever a robot's file says of its own.
@@ -151,7 +158,8 @@ def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: in
     volumes = [_volume(shape) for shape in model.shapes]
     for index, (shape, volume) in enumerate(zip(model.shapes, volumes, strict=True)):
         carrier = body if shape.surface is None else add_belt(spec, body, f"{name}/belt{index}", shape.surface)
-        geom = carrier.add_geom(type=_geom_type(shape.kind), size=list(shape.size), pos=list(shape.position))
+        geom = carrier.add_geom(name=_geom_name(name, index), type=_geom_type(shape.kind), size=list(shape.size))
+        geom.pos = list(shape.position)
         geom.mass = model.mass * volume / sum(volumes)
         geom.friction = [model.friction, TORSION, ROLLING]
         geom.condim = 4 if shape.kind is ShapeKind.BOX else 6
@@ -190,6 +198,10 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
     column = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[0.1, half, 0.0], pos=[x, y, z - half])
     column.contype, column.conaffinity = 0, THINGS
     column.rgba = [0.45, 0.47, 0.50, 1.0]
+
+
+def _geom_name(thing: str, index: int) -> str:
+    return f"{thing}/shape{index}"
 
 
 def _geom_type(kind: ShapeKind) -> Any:

@@ -86,7 +86,14 @@ _EVERY = (
     Setting("grip_time", "s", "an agent", 0.016, 5.0, "how long a grip is watched before the arm moves"),
     Setting("release_time", "s", "an agent", 0.0, 5.0, "how long the open gripper waits before it leaves"),
     Setting("mass", "kg", "a loose object", 0.001, 50.0, "mass of the whole object"),
-    Setting("friction", "", "an object", 0.01, 2.0, "coefficient of sliding friction"),
+    Setting(
+        "friction",
+        "",
+        "an object",
+        0.01,
+        2.0,
+        "coefficient of sliding friction; of two surfaces the smaller one counts",
+    ),
     Setting(
         "max_speed",
         "m/s",
