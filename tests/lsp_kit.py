@@ -63,9 +63,9 @@ def plain(value: Any) -> Any:
 class Editor:
     """A document open in a client."""
 
-    def __init__(self, client: LanguageClient, folder: Path) -> None:
+    def __init__(self, client: LanguageClient, folder: Path, model: str = "pickplace/pickplace.bdd") -> None:
         self.client = client
-        self.path = folder / "pickplace" / "pickplace.bdd"
+        self.path = folder / model
         self.uri = path_to_uri(self.path)
         self.text = self.path.read_text(encoding="utf-8")
         self.version = 0

@@ -28,10 +28,7 @@ class Cell:
         self.client = client
         self.folder = shutil.copytree(EXAMPLES / "ownrobot", folder / "ownrobot")
         self.code = self.folder / "carrying.py"
-        self.model = Editor(client, folder)
-        self.model.path = self.folder / "tidy.bddx"
-        self.model.uri = path_to_uri(self.model.path)
-        self.model.text = self.model.path.read_text(encoding="utf-8")
+        self.model = Editor(client, self.folder, "tidy.bddx")
         self.write('print("begin") or arguments["goal"]')
 
     def write(self, argument: str) -> None:
@@ -39,22 +36,8 @@ class Cell:
         assert text.count('arguments["workspace"]') == 1
         self.code.write_text(text.replace('arguments["workspace"]', argument), encoding="utf-8")
 
-    def line(self, name: str, words: str) -> int:
-        lines = (self.folder / name).read_text(encoding="utf-8").splitlines()
-        return next(number for number, line in enumerate(lines) if words in line)
-
-    def shown(self) -> dict[str, list[int]]:
-        """The lines of the errors by file."""
-        found = {
-            uri.rpartition("/")[2]: [entry.range.start.line for entry in entries if entry.code == CODE]
-            for uri, entries in self.client.diagnostics.items()
-        }
-        return {name: lines for name, lines in found.items() if lines}
-
     async def until(self, expected: dict[str, list[int]]) -> None:
-        async with asyncio.timeout(PATIENCE):
-            while self.shown() != expected:
-                await asyncio.sleep(0.02)
+        await until_shown(self.client, expected)
 
     def changed_on_disk(self, path: Path) -> None:
         event = types.FileEvent(uri=path_to_uri(path), type=types.FileChangeType.Changed)
@@ -63,10 +46,31 @@ class Cell:
     @property
     def three_places(self) -> dict[str, list[int]]:
         return {
-            "carrying.py": [self.line("carrying.py", 'arguments["goal"]')],
-            "tidy.bddx": [self.line("tidy.bddx", "bhv: <ours>")],
-            "tidy.bdd": [self.line("tidy.bdd", "Scenario cube-to-bin")],
+            "carrying.py": [line_of(self.code, 'arguments["goal"]')],
+            "tidy.bddx": [line_of(self.model.path, "bhv: <ours>")],
+            "tidy.bdd": [line_of(self.folder / "tidy.bdd", "Scenario cube-to-bin")],
         }
+
+
+def line_of(path: Path, words: str) -> int:
+    """The first line, from 0, that has these words."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return next(number for number, line in enumerate(lines) if words in line)
+
+
+def shown(client: LanguageClient) -> dict[str, list[int]]:
+    """The lines of the errors by file."""
+    found = {
+        uri.rpartition("/")[2]: [entry.range.start.line for entry in entries if entry.code == CODE]
+        for uri, entries in client.diagnostics.items()
+    }
+    return {name: lines for name, lines in found.items() if lines}
+
+
+async def until_shown(client: LanguageClient, expected: dict[str, list[int]]) -> None:
+    async with asyncio.timeout(PATIENCE):
+        while shown(client) != expected:
+            await asyncio.sleep(0.02)
 
 
 @pytest.fixture
@@ -139,3 +143,24 @@ async def test_steps_that_cannot_be_loaded_are_an_error_at_their_line_and_at_eve
             await asyncio.sleep(0.02)
     (in_code,) = editor.client.diagnostics[path_to_uri(steps)]
     assert in_code.range.start.line == 1
+
+
+async def test_an_error_of_a_policy_is_shown_at_its_line_at_the_policy_and_at_the_scenario(
+    client: LanguageClient, tmp_path: Path
+) -> None:
+    folder = tmp_path / "pickplace"
+    code = folder / "policies.py"
+    text = code.read_text(encoding="utf-8").replace('arguments["goal"]', 'arguments["aim"]')
+    code.write_text(text, encoding="utf-8")
+    model = Editor(client, folder, "pickplace.bddx")
+    model.open()
+    await execute(model, "run")
+    expected = {
+        "policies.py": [line_of(code, 'arguments["aim"]')],
+        "pickplace.bddx": [line_of(model.path, "obs policy (ns=exec) starts-outside")],
+        "pickplace.bdd": [line_of(folder / "pickplace.bdd", "Scenario part-to-bin")],
+    }
+    await until_shown(client, expected)
+    (at_policy,) = (one for one in client.diagnostics[model.uri] if one.code == CODE)
+    assert at_policy.message.startswith("policies:apart failed: KeyError: 'aim' (policies.py:")
+    assert at_policy.range.start == model.position("starts-outside")
