@@ -33,12 +33,13 @@ SMOKE = (
 
 def edits() -> str:
     """Edit models at random and compare with a fresh analysis."""
-    return _pytest("tests/names/test_incremental.py", {"ROBBDD_FUZZ": str(SEQUENCES)})
+    return _pytest("tests/names/test_incremental.py", {"ROBBDD_FUZZ": str(SEQUENCES)})[-1]
 
 
 def kills() -> str:
     """Kill runs at random instants: no finished result is lost."""
-    return _pytest("tests/run/test_kills.py", {"ROBBDD_KILLS": str(KILLS)})
+    # With -s the test's own sentence is the first line.
+    return _pytest("tests/run/test_kills.py", {"ROBBDD_KILLS": os.environ.get("ROBBDD_KILLS", str(KILLS))}, "-s")[0]
 
 
 def versions() -> str:
@@ -63,8 +64,8 @@ def _with_versions(resolution: str) -> str:
         return f"{resolution}: {_call(str(python), '-m', 'pytest', '-q', '-x', '-n', '0', *SMOKE).splitlines()[-1]}"
 
 
-def _pytest(path: str, environment: Mapping[str, str], *options: str) -> str:
-    return _call(sys.executable, "-m", "pytest", "-q", path, *options, environment=environment).splitlines()[-1]
+def _pytest(path: str, environment: Mapping[str, str], *options: str) -> list[str]:
+    return _call(sys.executable, "-m", "pytest", "-q", path, *options, environment=environment).splitlines()
 
 
 def _call(*command: str, environment: Mapping[str, str] | None = None) -> str:

@@ -34,7 +34,8 @@ BEGUN = "begun"
 class QuickAgent:
     """Behaves as ``run.launch.Agent``."""
 
-    def __init__(self, folder: Path, number: int) -> None:
+    def __init__(self, folder: Path, number: int, *, log_limit: int) -> None:
+        del log_limit
         self.pid = number
         self._begun = folder.parents[2] / BEGUN
         self._orders: SimpleQueue[int | None] = SimpleQueue()
@@ -57,6 +58,9 @@ class QuickAgent:
 
     def kill(self) -> None:
         """Threads end by themselves."""
+
+    def finish(self) -> None:
+        """A thread leaves no process behind."""
 
 
 def main(folder: Path) -> None:

@@ -97,3 +97,4 @@ def test_killed_runs_lose_nothing_and_end_as_if_they_had_not_been(tmp_path: Path
         assert rows(run.database, run.number) == expected
         shutil.rmtree(folder)
     assert in_the_middle, "no run was killed while it went on"
+    print(f"{kills} kills, {in_the_middle} of them after the first and before the last result of a run")
