@@ -170,7 +170,7 @@ def test_commands_print_only_through_what_escapes() -> None:
 
 SYSTEM_MODULES = {"signal", "fcntl", "msvcrt", "resource", "select", "termios", "pty", "ctypes", "winreg"}
 SYSTEM_CALLS = {f"os.{name}" for name in ("kill", "killpg", "fork", "nice", "setsid", "waitpid", "mkfifo", "getuid")}
-SYSTEM_HOMES = {"base.processes", "base.descendants", "base.locks", "commands.execute"}
+SYSTEM_HOMES = {"base.processes", "base.descendants", "base.locks"}
 
 
 def system_specifics(path: Path) -> Iterator[str]:

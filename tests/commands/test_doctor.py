@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import closing
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -19,6 +21,7 @@ from robbdd_tools.base.processes import Ending
 from robbdd_tools.cli import main
 from robbdd_tools.commands import doctor, installation, selftest
 from robbdd_tools.commands.doctor import Part, State, examine
+from robbdd_tools.run.store import FOLDER, RunStore
 
 DOCTOR = [sys.executable, "-m", "robbdd_tools.cli", "doctor"]
 CAREFUL = ["package", "python", "system", "libraries", "models", "shapes", "features", "simulation", "server", "store"]
@@ -174,6 +177,71 @@ def test_a_store_with_a_run_that_cannot_be_read_is_found(tmp_path: Path) -> None
     (tmp_path / ".robbdd" / "runs" / "3").mkdir(parents=True)
     part = examine("store", lambda: selftest.store(tmp_path))
     assert (part.state, f"runs{os.sep}3" in part.detail) == (State.FAILED, True)
+
+
+@pytest.fixture
+def database(tmp_path: Path) -> Path:
+    """The database of a project that has no runs, with some executions."""
+    store = RunStore(tmp_path / FOLDER)
+    store.begin().discard()
+    with closing(sqlite3.connect(store.database)) as connection:
+        connection.executemany(
+            "INSERT INTO execution VALUES (?, 2, ?, '', '', '', 0, 1, 1, 'holds', 1, 0, 1, 1, '', '')",
+            [(number, number) for number in range(1, 10)],
+        )
+        connection.commit()
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    return store.database
+
+
+def stored(folder: Path) -> Part:
+    return examine("store", lambda: selftest.store(folder))
+
+
+def test_the_database_of_results_is_checked_and_left_as_it_is(database: Path, tmp_path: Path) -> None:
+    before = database.read_bytes()
+    part = stored(tmp_path)
+    assert (part.state, part.fix) == (State.WORKS, "")
+    assert part.detail.endswith("0 runs, writable; results.sqlite: schema 1, integrity checked, writable")
+    assert database.read_bytes() == before
+
+
+def test_an_index_that_lacks_rows_of_its_table_is_found(database: Path, tmp_path: Path) -> None:
+    query = "SELECT rootpage FROM sqlite_master WHERE name LIKE 'sqlite_autoindex_execution%'"
+    with closing(sqlite3.connect(database)) as connection:
+        (page,) = connection.execute(query).fetchone()
+        (size,) = connection.execute("PRAGMA page_size").fetchone()
+    data = bytearray(database.read_bytes())
+    cells = (page - 1) * size + 3
+    assert data[cells : cells + 2] == bytes([0, 9])
+    data[cells : cells + 2] = bytes([0, 8])
+    database.write_bytes(data)
+    part = stored(tmp_path)
+    assert (part.state, "results.sqlite: is damaged: " in part.detail) == (State.FAILED, True)
+    assert part.fix.startswith("move it away: the next run begins a new one")
+
+
+def test_a_database_of_a_newer_version_or_of_something_else_is_reported(database: Path, tmp_path: Path) -> None:
+    with closing(sqlite3.connect(database)) as connection:
+        connection.execute("PRAGMA user_version = 999")
+    part = stored(tmp_path)
+    assert (part.state, "(schema 999; this one knows 1): update RobBDD" in part.detail) == (State.FAILED, True)
+    database.unlink()
+    database.mkdir()
+    assert stored(tmp_path).state is State.FAILED
+
+
+@pytest.mark.usefixtures("database")
+def test_a_database_that_cannot_be_written_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    connect = sqlite3.connect
+
+    def read_only(name: str, *arguments: Any, **options: Any) -> sqlite3.Connection:
+        return connect(name.replace("mode=rw", "mode=ro"), *arguments, **options)
+
+    monkeypatch.setattr(sqlite3, "connect", read_only)
+    part = stored(tmp_path)
+    assert (part.state, "attempt to write a readonly database" in part.detail) == (State.FAILED, True)
+    assert part.fix == "name another store by `--store DIR`"
 
 
 def test_an_installation_without_its_data_is_no_traceback(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -14,8 +14,9 @@ from robbdd_tools.base.processes import Ending, describe_exit
 from robbdd_tools.base.scaffold import begin_project
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands.installation import REINSTALL, SECONDS, Unavailable
+from robbdd_tools.run.database import DamagedDatabase, DatabaseProblem, inspect
 from robbdd_tools.run.pictures import advice, back_ends
-from robbdd_tools.run.store import NoSuchRun, StoredRun, store_beside
+from robbdd_tools.run.store import RESULTS, NoSuchRun, StoredRun, store_beside
 
 EXAMPLE = "pickplace"
 MODEL = f"{EXAMPLE}.bdd"
@@ -101,7 +102,7 @@ def server(_: Path) -> str:
 
 
 def store(path: Path) -> str:
-    """Read all runs of a project's store, and try whether another one could be kept."""
+    """Read all runs of a project's store, check its database, and try whether another run could be kept."""
     found = store_beside(path)
     folder = found.folder
     unreadable = [str(reason) for run in found.runs() if (reason := _unreadable(run)) is not None]
@@ -112,9 +113,21 @@ def store(path: Path) -> str:
     except OSError as error:
         reason = f"{folder} cannot be written: {error.strerror or error}"
         raise Unavailable(reason, "change its permissions, or name another one by `--store DIR`") from None
+    # A run may be unreadable because of the database, which is then the thing to report.
+    database = f"; {found.database.name}: {_checked(found.database)}" if found.database.exists() else ""
     if unreadable:
         raise Unavailable("\n".join(unreadable), "delete these runs, or copy them again, whole")
-    return f"{folder}: {len(found.runs())} runs, writable"
+    return f"{folder}: {len(found.runs())} runs, writable{database}"
+
+
+def _checked(database: Path) -> str:
+    try:
+        return f"schema {inspect(database)}, integrity checked, writable"
+    except DamagedDatabase as problem:
+        fix = f"move it away: the next run begins a new one, and runs with a {RESULTS} can still be read"
+        raise Unavailable(str(problem), fix) from None
+    except DatabaseProblem as problem:
+        raise Unavailable(str(problem), "name another store by `--store DIR`") from None
 
 
 def _unreadable(run: StoredRun) -> NoSuchRun | None:

@@ -9,7 +9,7 @@ import errno
 import sqlite3
 import tempfile
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 from robbdd_tools.base.files import load_bytes
@@ -179,18 +179,42 @@ def move_aside(path: Path) -> Path:
     return target
 
 
-def check(connection: sqlite3.Connection, path: Path) -> None:
-    """Read the whole database; raises ``DamagedDatabase`` where it contradicts itself."""
+def check(connection: sqlite3.Connection, path: Path, pragma: str = "quick_check") -> None:
+    """Read the whole database; raises ``DamagedDatabase`` where it contradicts itself.
+
+    The pragma ``integrity_check`` compares the indexes with their tables, too.
+    """
     with explained(path):
-        (found,) = connection.execute("PRAGMA quick_check(1)").fetchone()
+        (found,) = connection.execute(f"PRAGMA {pragma}(1)").fetchone()
     if found != "ok":
         raise DamagedDatabase(path, f"is damaged: {found}")
 
 
+def inspect(path: Path) -> int:
+    """Check a database and whether it can be written, and leave it as it is; returns the version of its schema.
+
+    Raises ``DatabaseProblem``.
+    """
+    with explained(path), closing(_connect(path, "rw")) as connection:
+        version = _version(connection, path)
+        check(connection, path, "integrity_check")
+        connection.execute("BEGIN IMMEDIATE")
+        # Of a read-only database SQLite refuses no earlier statement.
+        connection.execute(f"PRAGMA user_version = {version}")
+        connection.execute("ROLLBACK")
+        return version
+
+
+def _connect(path: Path, mode: str) -> sqlite3.Connection:
+    """Connect to an existing database, ``mode`` is ``ro`` or ``rw``."""
+    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode={mode}", BUSY, isolation_level=None, uri=True)
+    connection.execute("PRAGMA trusted_schema = OFF")
+    return connection
+
+
 def _read(path: Path) -> sqlite3.Connection | None:
-    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", BUSY, isolation_level=None, uri=True)
+    connection = _connect(path, "ro")
     try:
-        connection.execute("PRAGMA trusted_schema = OFF")
         version = _version(connection, path)
         if version == 0:
             connection.close()
