@@ -17,4 +17,17 @@ export default defineConfig(
       "@typescript-eslint/switch-exhaustiveness-check": "error",
     },
   },
+  {
+    // Names of users are text in a page, never markup.
+    files: ["webviews/**/*.ts"],
+    rules: {
+      "no-restricted-properties": [
+        "error",
+        ...["innerHTML", "outerHTML", "insertAdjacentHTML", "createContextualFragment", "srcdoc"].map((property) => ({
+          property,
+          message: "Make elements with shared/elements.",
+        })),
+      ],
+    },
+  },
 );

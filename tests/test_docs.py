@@ -11,7 +11,7 @@ from kit import DOCS, ROOT
 
 PAGES = sorted(DOCS.rglob("*.md"))
 LINK = re.compile(r"\]\((?!\w+:)([^)#\s]+)(?:#[^)]*)?\)")
-PROMISE = re.compile(r"`(tests/[\w/.]+)(?:::(\w+))?`")
+PROMISE = re.compile(r"`((?:client-vscode/test|tests)/[\w/.]+)(?:::(\w+))?`")
 A_TEST = re.compile(r"^(?:async )?def test_", re.MULTILINE)
 TEST = re.compile(r"\]\((\.\./tests/[^)]+\.py)\)")
 

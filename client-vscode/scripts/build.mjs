@@ -33,6 +33,9 @@ async function buildTests() {
     ...shared,
     entryPoints: files.map((name) => join(folder, name)),
     outdir: join(out, "test"),
+    // The editor and the server are played by the tests.
+    alias: { vscode: "./test/vscode.kit.ts", "vscode-languageclient/node": "./test/languageclient.kit.ts" },
+    logOverride: { "import-is-undefined": "error" },
     // These load files that lie beside them.
     external: ["vscode-oniguruma", "vscode-textmate"],
   });

@@ -223,20 +223,21 @@ export class Server implements vscode.Disposable {
 
   private async start(command: string, origin: string): Promise<void> {
     this.log.info(`Starting ${command} (from ${origin})`);
-    const client = await this.createClient(command);
-    this.client = client;
+    let client: LanguageClient | undefined;
     try {
+      client = await this.createClient(command);
+      this.client = client;
       await client.start();
     } catch (error) {
-      // The reason is in the log already, written by the client or by the server on its way out.
-      this.log.debug(String(error));
+      // A client writes its reason to the log itself, or the server does on its way out.
+      this.log[client === undefined ? "error" : "debug"](String(error));
       this.fail(client, `The RobBDD language server (${command}) could not be started. See the log.`);
     }
   }
 
   private async createClient(command: string): Promise<LanguageClient> {
     const { createClient } = await import("./connection");
-    const client = createClient(command, LANGUAGES, this.log, {
+    const client = createClient(command, this.setup.workingFolder(), LANGUAGES, this.log, {
       starting: () => {
         this.publish({ kind: "starting" });
       },
@@ -297,7 +298,7 @@ export class Server implements vscode.Disposable {
   }
 
   /** Say once, for the client in use, that it is gone. */
-  private fail(client: LanguageClient, problem: string): void {
+  private fail(client: LanguageClient | undefined, problem: string): void {
     if (this.client !== client) {
       return;
     }

@@ -28,9 +28,10 @@ class DiscreetClient extends LanguageClient {
   }
 }
 
-/** A client, not started yet, of the server that a command starts, for files of these languages. */
+/** A client, not started yet, of the server that a command starts in the folder `cwd`, for files of these languages. */
 export function createClient(
   command: string,
+  cwd: string,
   languages: readonly string[],
   log: vscode.LogOutputChannel,
   owner: Owner,
@@ -42,7 +43,7 @@ export function createClient(
   const client = new DiscreetClient(
     "robbdd",
     "RobBDD",
-    { command, transport: TransportKind.stdio },
+    { command, transport: TransportKind.stdio, options: { cwd } },
     {
       documentSelector: languages.map((language) => ({ scheme: "file", language })),
       outputChannel: log,

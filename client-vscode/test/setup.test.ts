@@ -113,6 +113,21 @@ test("the server is installed by the first Python that is new enough, away from 
   assert.deepEqual(installedServer(join(folder, "storage"), "another"), server);
 });
 
+test("no program of an installation is told where else Python modules are", async () => {
+  program("python3", PYTHON.replace("pwd >", `env > "${join(folder, "environment")}"; pwd >`));
+  const leading = ["PYTHONPATH", "PYTHONHOME", "PYTHONSTARTUP", "PYTHONUSERBASE"];
+  try {
+    Object.assign(process.env, Object.fromEntries(leading.map((name) => [name, "/cell:"])));
+    await install();
+  } finally {
+    for (const name of leading) {
+      Reflect.deleteProperty(process.env, name);
+    }
+  }
+  const python = readFileSync(join(folder, "environment"), "utf8").split("\n").filter((line) => line.startsWith("PYTHON"));
+  assert.deepEqual(python.sort(), ["PYTHONIOENCODING=utf-8", "PYTHONUNBUFFERED=1"]);
+});
+
 test("without a Python that is new enough it is said what to install", async () => {
   program("python3", "#!/bin/sh\nexit 1\n");
   assert.match(await problem(), /Neither uv nor Python 3\.11 or newer was found on PATH, only .*python3\. Install one/);

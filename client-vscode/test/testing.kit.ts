@@ -126,7 +126,7 @@ export class World {
   readonly others: Record<string, ListedTest[]> = {};
   problem: string | null = null;
 
-  private readonly ask: Ask = async (question): Promise<Listing> => {
+  readonly ask: Ask = async (question): Promise<Listing> => {
     this.asked.push(question.variant ?? question.uri ?? "files");
     await Promise.resolve();
     if (question.uri === undefined) {

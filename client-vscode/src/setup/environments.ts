@@ -33,6 +33,16 @@ export function bundledWheel(folder: string, version: string): string | undefine
   }
 }
 
+/**
+ * Make the empty folder that the server works in. The editor's own working directory is often the folder that was
+ * opened, and Python looks there for modules.
+ */
+export function workingFolder(storage: string): string {
+  const folder = join(storage, "work");
+  mkdirSync(folder, { recursive: true });
+  return folder;
+}
+
 /** Make a new folder for an environment. */
 export function freshFolder(storage: string): string {
   mkdirSync(storage, { recursive: true });

@@ -1,5 +1,6 @@
 // Starts the programs that install the server, and ends them with all that they started.
 import { type ChildProcess, spawn } from "node:child_process";
+import { join } from "node:path";
 import { createInterface } from "node:readline";
 
 export interface Ending {
@@ -33,7 +34,7 @@ export function runProgram(
       detached: process.platform !== "win32",
       stdio: ["ignore", "pipe", "pipe"],
       windowsHide: true,
-      env: { ...process.env, PYTHONUNBUFFERED: "1", PYTHONIOENCODING: "utf-8" },
+      env: { ...withoutPython(process.env), PYTHONUNBUFFERED: "1", PYTHONIOENCODING: "utf-8" },
     });
     createInterface({ input: child.stdout }).on("line", note);
     createInterface({ input: child.stderr }).on("line", note);
@@ -58,12 +59,22 @@ export function runProgram(
   });
 }
 
+/**
+ * The environment without Python's own variables. `PYTHONPATH`, `PYTHONHOME` and others lead to modules that would run
+ * in place of the installer's; `-I` keeps them from one interpreter only, not from those that uv and pip start.
+ */
+function withoutPython(environment: NodeJS.ProcessEnv): NodeJS.ProcessEnv {
+  return Object.fromEntries(Object.entries(environment).filter(([name]) => !/^PYTHON/i.test(name)));
+}
+
 function endGroup(child: ChildProcess): void {
   if (child.pid === undefined) {
     return;
   }
   if (process.platform === "win32") {
-    spawn("taskkill", ["/pid", String(child.pid), "/t", "/f"], { windowsHide: true });
+    // By its path: Windows looks for a bare name in the working directory first.
+    const taskkill = join(process.env["SystemRoot"] ?? "C:\\Windows", "System32", "taskkill.exe");
+    spawn(taskkill, ["/pid", String(child.pid), "/t", "/f"], { windowsHide: true });
     return;
   }
   try {

@@ -3,7 +3,7 @@ import * as vscode from "vscode";
 import { searchFolders } from "../lookup";
 import type { Installed } from "../presentation";
 import { surroundings } from "../surroundings";
-import { type PrivateServer, bundledWheel, discardAbandoned, installedServer } from "./environments";
+import { type PrivateServer, bundledWheel, discardAbandoned, installedServer, workingFolder } from "./environments";
 import { InstallProblem, installServer } from "./installer";
 import { type Wanted, wantedPackage } from "./steps";
 
@@ -27,6 +27,11 @@ export class Setup {
   /** The server in a private environment, if there is one. */
   installed(): PrivateServer | undefined {
     return installedServer(this.storage, this.wanted().name);
+  }
+
+  /** The folder that the server works in; throws where it cannot be made. */
+  workingFolder(): string {
+    return workingFolder(this.storage);
   }
 
   /** Delete what earlier windows have left of installations that they did not finish. */

@@ -1,0 +1,298 @@
+// The editor without an editor: the part of its API that the extension uses. The tests' build puts it in place of the
+// module "vscode". What a test may look at or set is in `editor`.
+import { pathToFileURL, fileURLToPath } from "node:url";
+import { Node, Nodes } from "./testing.kit";
+
+type Listener = (event: unknown) => unknown;
+type Handler = (...values: unknown[]) => unknown;
+
+const ended = { dispose: () => undefined };
+const nothing = (): Promise<undefined> => Promise.resolve(undefined);
+
+export class EventEmitter {
+  private readonly listeners = new Set<Listener>();
+
+  readonly event = (listener: Listener): { dispose: () => void } => {
+    this.listeners.add(listener);
+    return { dispose: () => this.listeners.delete(listener) };
+  };
+
+  fire(event?: unknown): void {
+    for (const listener of this.listeners) {
+      listener(event);
+    }
+  }
+
+  dispose(): void {
+    this.listeners.clear();
+  }
+}
+
+export class Uri {
+  private constructor(private readonly address: URL) {}
+
+  static parse(text: string): Uri {
+    return new Uri(new URL(text || "file:///"));
+  }
+
+  static from({ scheme, path, query }: { readonly scheme: string; readonly path: string; readonly query: string }): Uri {
+    return Uri.parse(`${scheme}:${path}?${encodeURIComponent(query)}`);
+  }
+
+  static file(path: string): Uri {
+    return new Uri(pathToFileURL(path));
+  }
+
+  static joinPath({ address }: Uri, ...parts: string[]): Uri {
+    return new Uri(new URL([address.href.replace(/\/$/, ""), ...parts.map(encodeURIComponent)].join("/")));
+  }
+
+  get scheme(): string {
+    return this.address.protocol.slice(0, -1);
+  }
+
+  get path(): string {
+    return decodeURIComponent(this.address.pathname);
+  }
+
+  get query(): string {
+    return decodeURIComponent(this.address.search.slice(1));
+  }
+
+  get fsPath(): string {
+    return fileURLToPath(this.address);
+  }
+
+  toString(): string {
+    return this.address.href;
+  }
+}
+
+/** A panel with a page, as the extension leaves it. */
+export class WebviewPanel {
+  readonly webview = {
+    html: "",
+    options: {},
+    cspSource: "https://*.pages.example",
+    asWebviewUri: (uri: Uri) => `https://pages.example${uri.path}`,
+    onDidReceiveMessage: new EventEmitter().event,
+    postMessage: nothing,
+  };
+  readonly onDidDispose = new EventEmitter().event;
+  iconPath: unknown;
+  viewColumn = 1;
+  disposed = false;
+
+  constructor(public title: string) {}
+
+  reveal(): void {
+    return undefined;
+  }
+
+  dispose(): void {
+    this.disposed = true;
+  }
+}
+
+/** Something that can be cancelled and is not. */
+export class CancellationTokenSource {
+  private readonly cancelled = new EventEmitter();
+  readonly token = { isCancellationRequested: false, onCancellationRequested: this.cancelled.event };
+
+  cancel(): void {
+    this.token.isCancellationRequested = true;
+    this.cancelled.fire();
+  }
+
+  dispose(): void {
+    this.cancelled.dispose();
+  }
+}
+
+class Editor {
+  settings: Readonly<Record<string, string>> = {};
+  readonly commands = new Map<string, Handler>();
+  /** What starts runs in the Testing view, by its name. */
+  readonly profiles = new Map<string, Handler>();
+  /** What brings a panel back, by its type. */
+  readonly serializers = new Map<string, { deserializeWebviewPanel: (panel: WebviewPanel, state: unknown) => Promise<void> }>();
+  readonly panels: WebviewPanel[] = [];
+  /** Messages that say to the user what went wrong. */
+  readonly problems: string[] = [];
+  /** Tests that could not be run, each with the reason. */
+  readonly errored: string[] = [];
+  readonly files = new Map<string, string>();
+  /** What fills the Testing view. */
+  controller: { resolveHandler: (item: undefined) => Promise<void> } = { resolveHandler: nothing };
+  readonly opened = new EventEmitter();
+  readonly saved = new EventEmitter();
+  readonly trusted = new EventEmitter();
+
+  /** Begin anew, as another window. */
+  reset(isTrusted: boolean): void {
+    workspace.isTrusted = isTrusted;
+    workspace.workspaceFolders = undefined;
+    for (const part of [this.commands, this.profiles, this.serializers, this.files]) {
+      part.clear();
+    }
+    for (const event of [this.opened, this.saved, this.trusted]) {
+      event.dispose();
+    }
+    this.panels.length = 0;
+    this.problems.length = 0;
+    this.errored.length = 0;
+  }
+
+  /** Do what the user does who trusts the workspace. */
+  trust(): void {
+    workspace.isTrusted = true;
+    this.trusted.fire();
+  }
+}
+
+export const editor = new Editor();
+
+const quiet = () => new EventEmitter().event;
+const report = (problem: string): Promise<undefined> => {
+  editor.problems.push(problem);
+  return nothing();
+};
+
+export const workspace = {
+  isTrusted: true,
+  textDocuments: [],
+  workspaceFolders: undefined as readonly { readonly uri: Uri }[] | undefined,
+  fs: {
+    stat: nothing,
+    readFile: (uri: Uri) => Promise.resolve(new TextEncoder().encode(editor.files.get(uri.toString()) ?? "")),
+  },
+  asRelativePath: String,
+  getConfiguration: () => ({ get: (name: string, otherwise?: unknown) => editor.settings[name] ?? otherwise }),
+  createFileSystemWatcher: () => ({ ...ended, onDidCreate: quiet(), onDidChange: quiet(), onDidDelete: quiet() }),
+  registerTextDocumentContentProvider: () => ended,
+  openTextDocument: () => Promise.resolve({ languageId: "feature" }),
+  findFiles: () => Promise.resolve([]),
+  onDidChangeConfiguration: quiet(),
+  onDidChangeTextDocument: quiet(),
+  onDidChangeWorkspaceFolders: quiet(),
+  onDidCloseTextDocument: quiet(),
+  onDidGrantWorkspaceTrust: editor.trusted.event,
+  onDidOpenTextDocument: editor.opened.event,
+  onDidSaveTextDocument: editor.saved.event,
+};
+
+export const window = {
+  activeTextEditor: undefined,
+  visibleTextEditors: [],
+  tabGroups: { activeTabGroup: { activeTab: undefined } },
+  createOutputChannel: () => {
+    const write = (): void => undefined;
+    return { ...ended, show: write, appendLine: write, debug: write, info: write, warn: write, error: write };
+  },
+  createStatusBarItem: () => ({ ...ended, show: () => undefined }),
+  createTextEditorDecorationType: () => ended,
+  createWebviewPanel: (_: string, title: string) => {
+    const panel = new WebviewPanel(title);
+    editor.panels.push(panel);
+    return panel;
+  },
+  registerWebviewPanelSerializer: (type: string, serializer: { deserializeWebviewPanel: () => Promise<void> }) => {
+    editor.serializers.set(type, serializer);
+    return ended;
+  },
+  showErrorMessage: report,
+  showWarningMessage: report,
+  showInformationMessage: nothing,
+  showInputBox: nothing,
+  showOpenDialog: nothing,
+  showQuickPick: nothing,
+  showTextDocument: nothing,
+  onDidChangeActiveTextEditor: quiet(),
+  onDidChangeTextEditorSelection: quiet(),
+  onDidChangeVisibleTextEditors: quiet(),
+};
+
+export const commands = {
+  executeCommand: nothing,
+  registerCommand: (name: string, handler: Handler) => {
+    editor.commands.set(name, handler);
+    return ended;
+  },
+};
+
+export const languages = { getDiagnostics: () => [], getLanguages: () => Promise.resolve([]) };
+export const env = { remoteName: undefined };
+export const extensions = { getExtension: () => undefined };
+
+export const tests = {
+  createTestController: () => {
+    const controller = {
+      ...ended,
+      resolveHandler: nothing as (item: undefined) => Promise<void>,
+      items: new Nodes(),
+      createTestItem: (id: string, label: string, uri: Uri) => Object.assign(new Node(id, label), { uri }),
+      createRunProfile: (name: string, _: unknown, handler: Handler) => {
+        editor.profiles.set(name, handler);
+        return ended;
+      },
+      createTestRun: () => ({
+        token: new CancellationTokenSource().token,
+        enqueued: () => undefined,
+        errored: ({ label }: Node, { message }: TestMessage) => editor.errored.push(`${label}: ${message}`),
+        appendOutput: () => undefined,
+        end: () => undefined,
+      }),
+      invalidateTestResults: () => undefined,
+    };
+    editor.controller = controller;
+    return controller;
+  },
+};
+
+export class TestMessage {
+  constructor(readonly message: string) {}
+}
+
+export class TestRunRequest {
+  constructor(readonly include?: readonly unknown[]) {}
+}
+
+export class Range {
+  constructor(
+    readonly startLine: number,
+    readonly startCharacter: number,
+    readonly endLine: number,
+    readonly endCharacter: number,
+  ) {}
+}
+
+export class ThemeColor {
+  constructor(readonly id: string) {}
+}
+
+export class Location {
+  constructor(
+    readonly uri: Uri,
+    readonly range: Range,
+  ) {}
+}
+
+export class MarkdownString {
+  value = "";
+
+  appendText(text: string): this {
+    this.value += text;
+    return this;
+  }
+}
+
+export class TabInputWebview {
+  constructor(readonly viewType: string) {}
+}
+
+export const CompletionItemKind = { Snippet: 14 };
+export const ProgressLocation = { Notification: 15 };
+export const StatusBarAlignment = { Left: 1 };
+export const TestRunProfileKind = { Run: 1 };
+export const TextEditorRevealType = { InCenterIfOutsideViewport: 2 };
+export const ViewColumn = { Active: -1, Beside: -2, One: 1, Two: 2 };
