@@ -222,6 +222,56 @@ def test_a_file_says_where_a_workspace_is(tmp_path: Path) -> None:
     assert BENCH_WS in world(staged).cast.regions
 
 
+CRATE = """<mujoco><worldbody><body name="crate"><freejoint/>
+  <geom type="box" size=".15 .1 .004" pos="0 0 .004" mass=".4"/>
+  <geom type="cylinder" size=".01 .05" pos=".14 .09 .05" mass=".1"/>
+  <geom type="cylinder" size=".01 .05" pos="-.14 -.09 .05" mass=".1"/>
+  <site name="workspace" type="box" size=".13 .08 .05" pos="0 0 .058"/></body></worldbody></mujoco>"""
+BOARD = """<mujoco><worldbody><body name="board">
+  <geom type="box" size=".35 .75 .02" pos="0 0 .02"/></body></worldbody></mujoco>"""
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("factor", ["1", "1.5"])
+def test_a_users_bin_takes_things_and_has_a_height(tmp_path: Path, factor: str) -> None:
+    crate = file(tmp_path, BIN, CRATE, ("x:g.crate", "crate"))
+    staged = instance(link("x:g.crate.foot", (0.45, 0.4, 0.1)), elements=(crate,))
+    how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
+    taller = replace(SCENE, config=(ConfigSpec(BIN, "height_scale", factor),))
+    run = Execution(replace(scenario(taller), execution=how), [pick_place(CUBE, BIN_WS)])
+    assert float(run.course.settings[BIN, "height_scale"]) == pytest.approx(float(factor))
+    assert run.simulation.pose(BIN)[0] == pytest.approx((0.45, 0.4, 0.1), abs=0.002)
+    assert run.run_behaviour(0), run.trace.remark
+    place = run.simulation.pose(CUBE)[0] - run.simulation.pose(BIN)[0]
+    assert np.abs(place[:2]).max() < 0.13
+
+
+@pytest.mark.physics
+def test_things_stand_on_a_users_table_wherever_its_origin_is(tmp_path: Path) -> None:
+    """The top of this one is 0.04 m above its origin."""
+    board = file(tmp_path, "env:bench", BOARD, ("x:g.board", "board"))
+    staged = instance(link("x:g.board.foot", (0.5, 0.0, 0.06)), elements=(board,))
+    found = world(staged)
+    assert found.poses[CUBE].position[2] == pytest.approx(0.1 + 0.01575)
+    assert found.poses[BIN].position[2] == pytest.approx(0.1)
+    how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
+    run = Execution(replace(scenario(), execution=how), [pick_place(CUBE, BIN_WS)])
+    assert run.run_behaviour(0), run.trace.remark
+
+
+def test_a_fixed_thing_without_workspace_is_not_taken_for_the_table(tmp_path: Path) -> None:
+    post = file(tmp_path, "env:a_post", BOARD.replace(".35 .75", ".02 .02"), ("x:g.post", "board"))
+    staged = instance(link("x:g.post.foot", (0.9, 0.6, 0.1)), elements=(post,))
+    found = world(staged, scene=replace(SCENE, objects=("env:a_post", *SCENE.objects)))
+    assert found.cast.tables == ("env:bench", "env:a_post")
+    assert found.poses[BIN].position == world(instance()).poses[BIN].position
+
+
+def test_a_users_table_without_a_pose_is_reported(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"'env:bench' has no pose: place it in the \.scenex"):
+        world(instance(elements=(file(tmp_path, "env:bench", BOARD),)))
+
+
 def test_a_body_of_a_world_file_is_the_element_of_its_name(tmp_path: Path) -> None:
     text = BLOCK.replace('name="block"', 'name="cube1" pos=".4 .2 .5"')
     whole = replace(file(tmp_path, "", text).models[0], iri="x:world")

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent.belts import belt_speed, belts_of
 from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, Vector
-from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.agent.outline import bounds_of
+from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, Shape, ShapeKind, Vector
 from robbdd_tools.catalog.settings import NORMAL, SETTINGS, Numbers, SettingError, setting_of, written
 
 if TYPE_CHECKING:
@@ -75,8 +75,8 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
             settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
         for servo in belts_of(model, name)[:1]:
             settings[name, "belt_speed"] = (belt_speed(model, servo),)
-        if thing.free and thing.region is not None:
-            settings[name, "height_scale"] = (_top(model, geoms) / _height(load_catalog().objects[thing.name]),)
+        if _is_scalable(thing):
+            settings[name, "height_scale"] = (_height(model, geoms) / cast.heights[name],)
     for name, robot in simulation.robots.items():
         for setting, attribute in CONTROLLER.items():
             settings[name, setting] = (getattr(robot.model, attribute),)
@@ -110,7 +110,7 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
             found.objects[element] = replace(thing, friction=value[0])
         case "belt_speed" if thing is not None and _has_belt(thing):
             found.objects[element] = _driven(thing, value[0])
-        case "height_scale" if thing is not None and thing.free and thing.region is not None:
+        case "height_scale" if thing is not None and _is_scalable(thing):
             found.objects[element] = _scaled(thing, value[0])
         case name if thing is None and robot is None:
             raise SceneError(f"'{config.target}', which is to have {name} = {config.value}, is not in the scene")
@@ -121,6 +121,12 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
 def _loose(found: Configured) -> list[str]:
     """What is laid out at random and has no range of its own."""
     return [name for name in found.objects if found.objects[name].graspable and name not in found.ranges]
+
+
+def _is_scalable(model: ObjectModel) -> bool:
+    """Tell whether an object is a loose container. A sphere keeps its proportions."""
+    round_ones = any(shape.kind is ShapeKind.SPHERE for shape in model.shapes)
+    return model.free and model.region is not None and not round_ones
 
 
 def _has_belt(model: ObjectModel) -> bool:
@@ -142,29 +148,37 @@ def _driven(model: ObjectModel, speed: float) -> ObjectModel:
 
 
 def _scaled(model: ObjectModel, factor: float) -> ObjectModel:
-    def taller(vector: Vector) -> Vector:
-        return (vector[0], vector[1], factor * vector[2])
+    """Stretch an object upwards from its lowest point."""
+    bottom = float(bounds_of(model.shapes)[0][2])
+
+    def raised(place: Vector) -> Vector:
+        return (place[0], place[1], bottom + factor * (place[2] - bottom))
+
+    def taller(shape: Shape) -> Shape:
+        a, b, c = shape.size
+        size = (a, factor * b, c) if shape.kind is ShapeKind.CYLINDER else (a, b, factor * c)
+        return replace(shape, size=size, position=raised(shape.position))
 
     def stretched(region: Region) -> Region:
-        return replace(region, center=taller(region.center), half=taller(region.half))
+        x, y, z = region.half
+        return replace(region, center=raised(region.center), half=(x, y, factor * z))
 
-    region = model.region
     return replace(
         model,
-        shapes=tuple(
-            replace(shape, size=taller(shape.size), position=taller(shape.position)) for shape in model.shapes
-        ),
-        rest_height=factor * model.rest_height,
-        region=None if region is None else stretched(region),
+        shapes=tuple(map(taller, model.shapes)),
+        region=None if model.region is None else stretched(model.region),
         parts=tuple(map(stretched, model.parts)),
     )
 
 
-def _height(model: ObjectModel) -> float:
-    """Height (m) of the highest point of a bin above its origin."""
-    return max(shape.position[2] + shape.size[2] for shape in model.shapes)
+def height_of(model: ObjectModel) -> float:
+    """Return the height (m) of an object without its belts."""
+    low, high = bounds_of(tuple(shape for shape in model.shapes if shape.surface is None))
+    return float(high[2] - low[2])
 
 
-def _top(model: Any, geoms: range) -> float:
-    """Height (m) of the highest point of a bin's geoms in the frame of its body."""
-    return max(float(model.geom_pos[geom, 2] + model.geom_size[geom, 2]) for geom in geoms)
+def _height(model: Any, geoms: range) -> float:
+    """Return the height (m) of the box around the geoms of a body, which are in line with it."""
+    middle = model.geom_pos[geoms, 2] + model.geom_aabb[geoms, 2]
+    half = model.geom_aabb[geoms, 5]
+    return float((middle + half).max() - (middle - half).min())

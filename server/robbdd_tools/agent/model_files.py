@@ -13,6 +13,7 @@ import numpy as np
 from robbdd_tools.agent.engine import mujoco
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.frames import at
+from robbdd_tools.agent.outline import bounds_of
 from robbdd_tools.agent.user_code import UserCodeError, called, definition_of, load_attribute, refused
 from robbdd_tools.base.interpreter import started_in
 from robbdd_tools.base.model_includes import unusable
@@ -119,7 +120,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
 
     It consists of the collision shapes of the body and of what is fixed to it: boxes, spheres and cylinders in line
     with the body as they are, any other by the box around it. It can move if the file gives it a free joint or, in
-    URDF, a mass. Its workspace, if it ``carries`` one, is the box site 'workspace', else the space above it.
+    URDF, a mass. If it ``carries`` a workspace or is fixed, that is the box site 'workspace', else the space above it.
     """
     model = compiled(spec, source)
     body = _body(model, source, body_name)
@@ -134,12 +135,12 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
     if not geoms:
         raise SceneError(f"{at(source.origin)}the body '{model.body(body).name}' has no shape that can be touched")
     shapes = tuple(_shape(model, data, geom, body) for geom in geoms)
-    low, high = _bounds(shapes)
+    low, high = bounds_of(shapes)
     joint = int(model.body_jntadr[body])
     free = joint >= 0 and int(model.jnt_type[joint]) == int(mujoco.mjtJoint.mjJNT_FREE)
     if source.format == "urdf":
         free = float(model.body_mass[body]) > 0
-    region = _workspace(model, data, own, body, low, high) if carries else None
+    region = _workspace(model, data, own, body, low, high) if carries or not free else None
     chosen = ObjectModel(
         name=source.iri,
         prefixes=(),
@@ -197,23 +198,6 @@ def _shape(model: Any, data: Any, geom: int, body: int) -> Shape:
     box = model.geom_aabb[geom]
     half = np.abs(turn) @ box[3:]
     return Shape(ShapeKind.BOX, _vector(half), _vector(center + turn @ box[:3]))
-
-
-def _bounds(shapes: tuple[Shape, ...]) -> tuple[FloatArray, FloatArray]:
-    lows: list[FloatArray] = []
-    highs: list[FloatArray] = []
-    for shape in shapes:
-        a, b, _ = shape.size
-        match shape.kind:
-            case ShapeKind.SPHERE:
-                half = np.array([a, a, a])
-            case ShapeKind.CYLINDER:
-                half = np.array([a, a, b])
-            case ShapeKind.BOX:
-                half = np.array(shape.size)
-        lows.append(np.array(shape.position) - half)
-        highs.append(np.array(shape.position) + half)
-    return np.min(lows, axis=0), np.max(highs, axis=0)
 
 
 def _workspace(model: Any, data: Any, own: list[int], body: int, low: FloatArray, high: FloatArray) -> Region:

@@ -5,8 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import product
 from math import cos, pi, sin
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from robbdd_tools.catalog.api import ObjectModel, Outline, Shape, ShapeKind, Vector
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
 
 RIM = 16
 """Points on each rim of a cylinder: all between them is less than 2 % of its radius further out."""
@@ -15,6 +21,24 @@ RIM = 16
 def outline_of(model: ObjectModel) -> Outline:
     """Return the corners of boxes, the rims of cylinders, the middles of spheres with their radius."""
     return tuple(ball for shape in model.shapes for ball in _balls(shape))
+
+
+def bounds_of(shapes: tuple[Shape, ...]) -> tuple[FloatArray, FloatArray]:
+    """Return the lowest and the highest corner (m, each of shape (3,)) of the box around shapes, in their frame."""
+    half = np.array([_half(shape) for shape in shapes])
+    middle = np.array([shape.position for shape in shapes])
+    return np.min(middle - half, axis=0), np.max(middle + half, axis=0)
+
+
+def _half(shape: Shape) -> Vector:
+    a, b, _ = shape.size
+    match shape.kind:
+        case ShapeKind.SPHERE:
+            return a, a, a
+        case ShapeKind.CYLINDER:
+            return a, a, b
+        case ShapeKind.BOX:
+            return shape.size
 
 
 def _balls(shape: Shape) -> Iterator[tuple[Vector, float]]:

@@ -75,6 +75,11 @@ def footprint(model: ObjectModel) -> float:
     return max(_reach(model, index) for index in range(len(model.shapes)))
 
 
+def surface(model: ObjectModel) -> float:
+    """Return the height (m) of the surface that an object carries things on above its origin, 0 without any."""
+    return 0.0 if model.region is None else model.region.center[2] - model.region.half[2]
+
+
 def mounts(cast: Cast) -> dict[str, Pose]:
     """Return where each agent's base stands; raises ``SceneError`` when there is no room for one.
 
@@ -120,9 +125,10 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
     placed = {name: pose for name, pose in fixed.items() if pose is not None}
     poses |= {name: pose for name, pose in placed.items() if not cast.objects[name].graspable}
     for name, (x, y, _) in _at_places(cast, tuple(name for name in cast.tables if name not in placed), "the room"):
-        poses[name] = Pose((x, y, TABLE_TOP))
+        poses[name] = Pose((x, y, TABLE_TOP - surface(cast.objects[name])))
     for table, names in _stands_on(scene, cast).items():
-        left, ahead, top = poses[table].position
+        left, ahead, z = poses[table].position
+        top = z + surface(cast.objects[table])
         for name, (x, y, _) in _at_places(cast, tuple(name for name in names if name not in placed), table):
             poses[name] = Pose((left + x, ahead + y, top + cast.objects[name].rest_height))
     bins = [name for name in poses if cast.objects[name].free]
@@ -200,6 +206,8 @@ def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple
     used: list[tuple[Vector, ObjectModel]] = []
     for name in names:
         model = cast.objects[name]
+        if not model.places:
+            raise SceneError(f"'{name}' has no pose: place it in the .scenex, as its model ({model.doc}) has none")
         free = (place for place in model.places if not any(_overlapping(place, model, *one) for one in used))
         place = next(free, None)
         if place is None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from robbdd_tools.agent.configuration import Configured, configure
+from robbdd_tools.agent.configuration import Configured, configure, height_of
 from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.catalog.registry import load_catalog
 
@@ -44,6 +44,8 @@ class Cast:
     """What an executable scene says of the elements, if there is one."""
     left_out: tuple[str, ...] = ()
     """Elements that no clause speaks of and that have no model or, of agents, no place."""
+    heights: Mapping[str, float] = field(default_factory=dict[str, float])
+    """Height (m) of each object before ``height_scale``."""
 
     def pose(self, name: str, attempt: int = 0) -> Pose | None:
         """Return where an executable scene has an object; raises ``SceneError``."""
@@ -55,8 +57,13 @@ class Cast:
 
     @property
     def tables(self) -> tuple[str, ...]:
-        """The fixed objects, which everything else stands on."""
-        return tuple(name for name, model in self.objects.items() if not model.free)
+        """The fixed objects, which everything else stands on, the one with the largest top first."""
+        fixed = [name for name, model in self.objects.items() if not model.free]
+        return tuple(sorted(fixed, key=lambda name: -_top_area(self.objects[name])))
+
+
+def _top_area(model: ObjectModel) -> float:
+    return 0.0 if model.region is None else 4 * model.region.half[0] * model.region.half[1]
 
 
 def local_name(curie: str) -> str:
@@ -96,11 +103,11 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
         agents[name] = robot
     if all(model.free for model in objects.values()):
         objects[PEDESTAL] = catalog.objects["table"]
+    heights = {name: height_of(model) for name, model in objects.items()}
     found = Configured(objects, agents)
     configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
-    return Cast(
-        objects, agents, _regions(scene, objects), found.ranges, found.seed, found.judged, staging, tuple(left_out)
-    )
+    regions = _regions(scene, objects)
+    return Cast(objects, agents, regions, found.ranges, found.seed, found.judged, staging, tuple(left_out), heights)
 
 
 def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
