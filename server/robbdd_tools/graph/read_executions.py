@@ -45,7 +45,7 @@ def _complete(records: Records, node: Iri, instances: InstanceReader, places: Pl
         variant,
         implementation,
         None if scene is None else instances.instance(scene),
-        tuple(policy for iri in policies for policy in _policy(records, iri)),
+        tuple(policy for iri in policies for policy in _policy(records, iri, places)),
         1 if repeat is None else max(1, int(repeat)),
         None if seed is None else int(seed),
         number(records, node, "rbw:timeout-seconds"),
@@ -68,14 +68,15 @@ def _implementation(records: Records, node: Iri) -> Implementation:
     return Implementation(node, "catalog", name)
 
 
-def _policy(records: Records, node: Iri) -> Iterator[Policy]:
+def _policy(records: Records, node: Iri, places: Places) -> Iterator[Policy]:
     try:
         clause, rule = records.one(node, "bdd:of-clause"), _rule(records, node)
     except Incomplete:
         return
     named = records.iris(records.ordered(node, "rbw:observation", "rbw:observation-list"))
     observations = tuple(observation for iri in named for observation in _observation(records, iri))
-    yield Policy(node, clause, rule, number(records, node, "time:horizon-seconds"), observations)
+    horizon, origin = number(records, node, "time:horizon-seconds"), places(node)
+    yield Policy(node, clause, rule, horizon, observations, "" if origin is None else str(origin))
 
 
 def _rule(records: Records, node: Iri) -> Rule:

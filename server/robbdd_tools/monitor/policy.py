@@ -60,10 +60,14 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """The rule by which a clause is judged, and on what; ``horizon`` in s, ``None`` where none is written."""
+    """The rule by which a clause is judged, and on what; ``horizon`` in s, ``None`` where none is written.
+
+    ``origin`` is where the policy is written, ``file:line:column``; empty for a graph without source text.
+    """
 
     iri: str
     clause: str
     rule: Rule
     horizon: float | None = None
     observations: tuple[Observation, ...] = ()
+    origin: str = ""

@@ -52,7 +52,7 @@ def _models(execution: ExecutionSpec) -> Iterator[str]:
 def _evaluators(execution: ExecutionSpec, spec: ScenarioSpec) -> Iterator[str]:
     for policy in execution.policies:
         if policy.rule.kind == "python":
-            yield f"{spec.model}: the policy {policy.iri} judges by the Python code {policy.rule.name}"
+            yield f"{policy.origin or spec.model}: the policy {policy.iri} judges by the Python code {policy.rule.name}"
 
 
 def _behaviours(spec: ScenarioSpec) -> Iterator[str]:
