@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from robbdd_tools.base.isolation import INHERITED, NO_USER_CODE
+from robbdd_tools.base.isolation import INHERITED, NO_USER_CODE, UNTRUSTED
 
 SCRIPT = """
 import sys
@@ -62,5 +62,6 @@ def test_folders_of_the_environment_come_last_and_relative_ones_never(tmp_path: 
 
 def test_an_agent_that_must_not_run_code_of_users_imports_none(tmp_path: Path) -> None:
     write(tmp_path / "mine.py", "mine")
-    found = load(tmp_path, "mine:answer", **{NO_USER_CODE: "1"})
-    assert found == ["code of users is not run: --no-user-code was given", "True"]
+    for value, why in (("1", "--no-user-code was given"), (UNTRUSTED, "the workspace is not trusted")):
+        found = load(tmp_path, "mine:answer", **{NO_USER_CODE: value})
+        assert found == [f"code of users is not run: {why}", "True"]

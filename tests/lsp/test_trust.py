@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -16,6 +17,8 @@ from lsp_kit import Editor
 from robbdd_tools.base.files import path_to_uri
 
 MINE = '"""Tells that it was imported."""\nfrom pathlib import Path\nPath(__file__).with_name("imported").touch()\n'
+REFUSED = "nothing was run, because this workspace is not trusted"
+WITHOUT_CODE = f"{REFUSED}: scenarios run the workspace's own steps, behaviours and models"
 ATTACK = "raise SystemExit('imported')\n"
 
 
@@ -46,6 +49,14 @@ async def untrusted(folder: Path) -> Editor:
     return Editor(client, folder)
 
 
+async def refusal(editor: Editor, command: str, uri: str) -> str:
+    params = types.ExecuteCommandParams(command=f"robbdd.{command}", arguments=[{"uri": uri}])
+    answer: Any = await editor.client.workspace_execute_command_async(params)
+    problem = answer.pop("problem")
+    assert not answer
+    return problem
+
+
 @pytest.mark.parametrize("command", ["run", "rerunFailed", "record"])
 async def test_an_untrusted_workspace_is_checked_but_not_run(command: str, tmp_path: Path) -> None:
     editor = await untrusted(tmp_path)
@@ -56,11 +67,22 @@ async def test_an_untrusted_workspace_is_checked_but_not_run(command: str, tmp_p
     editor.change("until <evt-emd>", "until <evt-end>")
     await editor.diagnostics()
 
-    params = types.ExecuteCommandParams(command=f"robbdd.{command}", arguments=[{"uri": editor.uri}])
-    answer: Any = await editor.client.workspace_execute_command_async(params)
-    assert "this workspace is not trusted" in answer.pop("problem")
-    assert not answer
-    assert "this workspace is not trusted" in editor.client.messages[0].message
+    steps = tmp_path / "pickplace" / "steps" / "pickplace_steps.py"
+    problem = await refusal(editor, command, editor.uri)
+    assert problem == f"{REFUSED}: {steps} holds steps of users: trust the workspace if you trust this code"
+    assert editor.client.messages[0].message.endswith(problem)
+
+    bddx = tmp_path / "pickplace" / "pickplace.bddx"
+    problem = await refusal(editor, command, path_to_uri(bddx))
+    line = bddx.read_text(encoding="utf-8").split("starts-outside")[0].count("\n") + 1
+    policy = (
+        rf"{re.escape(f'{bddx}:{line}')}:\d+: the policy \S+starts-outside judges by the Python code policies:apart"
+    )
+    assert re.search(policy, problem), problem
+
+    steps.unlink()
+    assert await refusal(editor, command, editor.uri) == WITHOUT_CODE
+    assert await refusal(editor, command, path_to_uri(tmp_path / "nothing.bdd")) == WITHOUT_CODE
     assert not list(tmp_path.rglob("imported"))
     assert not list(tmp_path.rglob(".robbdd")), "nothing is written, either"
     await editor.client.shutdown_session()

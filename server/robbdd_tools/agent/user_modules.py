@@ -9,7 +9,7 @@ from pathlib import Path
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.interpreter import inherited_paths, started_in
-from robbdd_tools.base.isolation import NO_USER_CODE, SEARCHED
+from robbdd_tools.base.isolation import NO_USER_CODE, SEARCHED, UNTRUSTED
 from robbdd_tools.catalog.registry import load_catalog
 
 _folders: list[str] = []
@@ -36,8 +36,10 @@ def search(folder: Path | None) -> None:
 
     Raises ``NotImported`` where this process must not run code of users.
     """
-    if os.environ.get(NO_USER_CODE):
-        raise NotImported("code of users is not run: --no-user-code was given")
+    reason = os.environ.get(NO_USER_CODE)
+    if reason:
+        why = "the workspace is not trusted" if reason == UNTRUSTED else "--no-user-code was given"
+        raise NotImported(f"code of users is not run: {why}")
     # Words that packages add to the catalog are found on sys.path: only installed packages may add any.
     load_catalog()
     if not _folders:

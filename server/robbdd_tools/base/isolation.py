@@ -12,6 +12,8 @@ INHERITED = "ROBBDD_PYTHONPATH"
 """Holds ``PYTHONPATH`` for the agent, which searches its absolute folders last."""
 NO_USER_CODE = "ROBBDD_NO_USER_CODE"
 """Environment variable: when it is set, no process of ours imports code of users."""
+UNTRUSTED = "untrusted"
+"""Value of ``NO_USER_CODE`` where that is because a workspace is not trusted, and not because of ``--no-user-code``."""
 
 
 def isolate() -> None:

@@ -25,6 +25,7 @@ from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.test_results import register_test_results
 from robbdd_tools.lsp.tests import register_tests
 from robbdd_tools.lsp.tokens import register_tokens
+from robbdd_tools.lsp.trust import distrust
 from robbdd_tools.lsp.user_errors import register_user_errors
 from robbdd_tools.lsp.watching import register_watching, watch_files
 from robbdd_tools.lsp.ways import register_ways
@@ -63,6 +64,8 @@ def _register_documents(server: RobbddServer) -> None:
         ls.shows_pictures = able.get("pictures") is True
         ls.shows_replays = able.get("replay") is True
         ls.trusted = able.get("trusted") is not False
+        if not ls.trusted:
+            distrust()
         # What is registered by now is what the client will be told of.
         if can_pull(params.capabilities):
             register_pull(ls)

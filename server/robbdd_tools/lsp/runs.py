@@ -17,6 +17,7 @@ from robbdd_tools.lsp.result_hover import picture_violations
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_plan import ModelError, NothingFailed, RunOptions, RunPlan, plan_run
 from robbdd_tools.lsp.run_progress import RunProgress
+from robbdd_tools.lsp.trust import refuse_run
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.pictures import NoPictures, render_moments
 from robbdd_tools.run.prepare import prepare_all
@@ -43,9 +44,6 @@ if TYPE_CHECKING:
     from robbdd_tools.run.store import StoredRun
 
 PICTURES = "pictures"
-UNTRUSTED = (
-    "nothing was run: scenarios run the workspace's own steps, behaviours and models, and this workspace is not trusted"
-)
 _LOG = logging.getLogger(__name__)
 _BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 
@@ -78,7 +76,7 @@ class ActiveRun:
 async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) -> dict[str, Any]:
     """Run scenarios to their end, showing results as they come; returns how it went, or why nothing was run."""
     if not ls.trusted:
-        return _refused(ls, UNTRUSTED)
+        return _refused(ls, await refuse_run(ls, {**argument, **more}))
     if ls.run is not None:
         return _refused(ls, "a run is going on: cancel it first", momentary=True)
     try:

@@ -1,4 +1,4 @@
-"""Which code of users a run would execute: the one rule by which ``--no-user-code`` refuses."""
+"""Which code of users a run would execute: one rule for ``--no-user-code`` and for untrusted workspaces."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.isolation import NO_USER_CODE
+from robbdd_tools.base.isolation import NO_USER_CODE, UNTRUSTED
 from robbdd_tools.run.protocol import OWN_STEPS
 
 if TYPE_CHECKING:
     from robbdd_tools.run.protocol import ExecutionSpec, Manifest, ScenarioSpec
 
-FIX = "leave out --no-user-code if you trust this code, or run what does without it"
+_FIX = "leave out --no-user-code if you trust this code, or run what does without it"
+_FIX_TRUST = "trust the workspace if you trust this code"
 
 
 def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates: bool = True) -> str:
@@ -21,10 +22,12 @@ def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates:
 
     A run both simulates and judges; judging stored traces needs evaluators only, a picture models only.
     """
-    if not os.environ.get(NO_USER_CODE):
+    reason = os.environ.get(NO_USER_CODE)
+    if not reason:
         return ""
+    fix = _FIX_TRUST if reason == UNTRUSTED else _FIX
     found = list(dict.fromkeys(_uses(manifest, folder, judges, simulates)))
-    return f"{'; '.join(found)}: {FIX}" if found else ""
+    return f"{'; '.join(found)}: {fix}" if found else ""
 
 
 def _uses(manifest: Manifest, folder: Path, judges: bool, simulates: bool) -> Iterator[str]:
