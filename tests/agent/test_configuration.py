@@ -73,9 +73,10 @@ def test_a_taller_bin_is_taller_and_so_is_its_workspace() -> None:
         for name in (BIN, OTHER_BIN)
         for owner, body in [(model.geom_bodyid, model.body(name).id)]
     }
-    assert tops == {BIN: pytest.approx(1.5 * HEIGHT), OTHER_BIN: pytest.approx(HEIGHT)}
+    # Above the middle.
+    assert tops == {BIN: pytest.approx(1.5 * HEIGHT / 2), OTHER_BIN: pytest.approx(HEIGHT / 2)}
     ((_, region),) = run.regions[BIN_WS]
-    assert region.center[2] + region.half[2] == pytest.approx(1.5 * HEIGHT)
+    assert region.center[2] + region.half[2] == pytest.approx(1.5 * HEIGHT / 2)
 
 
 def test_things_lie_within_the_range_that_is_asked_for() -> None:

@@ -120,7 +120,7 @@ def test_a_tall_thing_is_lifted_above_a_high_board_before_it_travels(agent: str)
     assert not trace.remark
     shelf, bottle = (trace.positions[:, trace.column(name)] for name in ("env:shelf", thing))
     assert np.linalg.norm(shelf[-1] - shelf[0]) < 1e-3
-    assert bottle[-1, 2] == pytest.approx(TABLE_TOP + 0.12 + 0.04, abs=1e-3)
+    assert bottle[-1, 2] == pytest.approx(TABLE_TOP + 0.12 + 0.06, abs=1e-3)
 
 
 def test_the_order_in_which_objects_are_declared_does_not_matter() -> None:

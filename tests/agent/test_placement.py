@@ -16,6 +16,7 @@ from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.placement import TABLE_TOP, Pose, arrange, footprint, mounts
 from robbdd_tools.agent.scene import PEDESTAL, cast_scene
 from robbdd_tools.agent.world import build_world
+from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.run.protocol import SceneSpec
 
 MANY = replace(SCENE, objects=(*SCENE.objects, *(f"env:cube{number}" for number in range(2, 6)), "env:ball2"))
@@ -63,7 +64,7 @@ def test_a_thing_lies_in_the_bin_that_the_scene_names(seed: int) -> None:
 def test_without_a_table_things_stand_on_a_pedestal() -> None:
     poses = places(SceneSpec(objects=(CUBE, BIN), agents=("env:panda",), workspaces={BIN_WS: (BIN,)}))
     assert poses.keys() == {PEDESTAL, CUBE, BIN}
-    assert poses[PEDESTAL].position[2] == TABLE_TOP
+    assert poses[PEDESTAL].position[2] == pytest.approx(TABLE_TOP - HEIGHT / 2)
 
 
 def test_a_bin_stands_on_the_table_whose_workspace_holds_its_own() -> None:

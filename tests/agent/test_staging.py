@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi, sqrt
+from math import cos, pi, sin, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -172,7 +172,8 @@ def test_elements_stand_where_the_scene_says() -> None:
     )
     made = world(staged)
     assert made.poses[CUBE].position == pytest.approx((0.5, 0.1, 0.2))
-    assert made.poses[BIN].position == pytest.approx((0.4, -0.3, 0.1))
+    # Its frame is at its bottom, its middle 75 mm higher.
+    assert made.poses[BIN].position == pytest.approx((0.4, -0.3, 0.175))
     assert made.bases[PANDA].position == pytest.approx((0.0, 0.2, 0.15))
 
 
@@ -240,7 +241,8 @@ def test_a_users_bin_takes_things_and_has_a_height(tmp_path: Path, factor: str) 
     taller = replace(SCENE, config=(ConfigSpec(BIN, "height_scale", factor),))
     run = Execution(replace(scenario(taller), execution=how), [pick_place(CUBE, BIN_WS)])
     assert float(run.course.settings[BIN, "height_scale"]) == pytest.approx(float(factor))
-    assert run.simulation.pose(BIN)[0] == pytest.approx((0.45, 0.4, 0.1), abs=0.002)
+    middle = 0.1 + 0.05 * float(factor)
+    assert run.simulation.pose(BIN)[0] == pytest.approx((0.45, 0.4, middle), abs=0.002)
     assert run.run_behaviour(0), run.trace.remark
     place = run.simulation.pose(CUBE)[0] - run.simulation.pose(BIN)[0]
     assert np.abs(place[:2]).max() < 0.13
@@ -253,7 +255,7 @@ def test_things_stand_on_a_users_table_wherever_its_origin_is(tmp_path: Path) ->
     staged = instance(link("x:g.board.foot", (0.5, 0.0, 0.06)), elements=(board,))
     found = world(staged)
     assert found.poses[CUBE].position[2] == pytest.approx(0.1 + 0.01575)
-    assert found.poses[BIN].position[2] == pytest.approx(0.1)
+    assert found.poses[BIN].position[2] == pytest.approx(0.1 + 0.075)
     how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
     run = Execution(replace(scenario(), execution=how), [pick_place(CUBE, BIN_WS)])
     assert run.run_behaviour(0), run.trace.remark
@@ -270,6 +272,25 @@ def test_a_fixed_thing_without_workspace_is_not_taken_for_the_table(tmp_path: Pa
 def test_a_users_table_without_a_pose_is_reported(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r"'env:bench' has no pose: place it in the \.scenex"):
         world(instance(elements=(file(tmp_path, "env:bench", BOARD),)))
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("yaw", [0.0, 0.7])
+def test_where_a_file_has_its_origin_does_not_matter(tmp_path: Path, yaw: float) -> None:
+    found: list[Any] = []
+    for number, (x, y, z) in enumerate(((0.0, 0.0, 0.0), (0.0, 0.0, 0.03), (0.1, -0.2, 0.3))):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        block = BLOCK.replace('size=".012 .02 .03"', f'size=".012 .02 .03" pos="{x} {y} {z}"')
+        frame = (0.45 - x * cos(yaw) + y * sin(yaw), 0.1 - x * sin(yaw) - y * cos(yaw), 0.13 - z)
+        place = link("x:g.cube.foot", frame, turn=(cos(yaw / 2), 0.0, 0.0, sin(yaw / 2)))
+        staged = instance(place, elements=(file(folder, CUBE, block, ("x:g.cube", "block")),))
+        how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
+        run = Execution(replace(scenario(), execution=how), [pick_place(CUBE, BIN_WS)])
+        assert run.simulation.pose(CUBE)[0] == pytest.approx((0.45, 0.1, 0.13), abs=5e-4)
+        assert run.run_behaviour(0), run.trace.remark
+        found.append(run.simulation.pose(CUBE)[0])
+    assert all(place == pytest.approx(found[0], abs=1e-4) for place in found)
 
 
 def test_a_body_of_a_world_file_is_the_element_of_its_name(tmp_path: Path) -> None:

@@ -46,6 +46,9 @@ def world(count: int = 2, **paths: list[list[float]]) -> Trace:
         ((0.0, 0.13, 0.1), -0.03),
         ((0.23, 0.14, 0.1), -0.05),
         ((0.0, 0.0, -0.02), -0.02),
+        # A contact gives way a little.
+        ((0.0, 0.0, -0.0009), 0.0),
+        ((0.0, 0.0, -0.0011), -0.0011),
     ],
 )
 def test_located_at_is_the_distance_to_the_nearest_face(place: tuple[float, float, float], margin: float) -> None:
@@ -268,11 +271,15 @@ IN_BIN, ON_FLOOR = (0.0, 0.0, 0.05), (2.0, 0.0, -0.70)
 
 
 def located(
-    place: str, ball: list[list[float]], bin_at: list[list[float]], contents: dict[str, tuple[str, ...]]
+    place: str,
+    ball: list[list[float]],
+    bin_at: list[list[float]],
+    contents: dict[str, tuple[str, ...]],
+    name: str = "ball",
 ) -> Verdict:
     bodies = {"table": still(len(ball)), "bin": bin_at, "ball": ball}
     trace = trace_of(bodies, {"start": 0.0, "end": (len(ball) - 1) * 0.1})
-    words: Arguments = {"object": "ball", "workspace": place}
+    words: Arguments = {"object": name, "workspace": place}
     found = replace(trace, contents=contents)
     return judge(load_catalog().predicates["located-at"], words, During("start", "end"), found, TABLE)
 
@@ -286,6 +293,15 @@ def test_what_lies_in_a_bin_is_located_at_the_table_if_the_bin_is_composed_into_
     beside = still(2, (0.2, 0.0, 0.05)), still(2)
     assert located("table_ws", *beside, {}).robustness == pytest.approx(0.05)
     assert located("table_ws", still(2, (0.11, 0.0, 0.05)), still(2), {}).robustness == pytest.approx(0.01)
+
+
+def test_a_bin_is_not_located_at_what_it_carries() -> None:
+    """Its middle lies in its own workspace, which must neither hold it nor take it from the table."""
+    on_table, fallen = still(2, (0.0, 0.0, 0.06)), still(2, (2.0, 0.0, -0.64))
+    for contents in ({}, COMPOSED):
+        assert located("table_ws", on_table, on_table, contents, "bin").robustness == pytest.approx(0.06)
+        assert located("table_ws", fallen, fallen, contents, "bin").outcome is Outcome.VIOLATED
+    assert located("bin_ws", on_table, on_table, {}, "bin").outcome is Outcome.UNKNOWN
 
 
 def test_a_bin_that_is_pushed_off_the_table_takes_its_part_of_the_workspace_along() -> None:

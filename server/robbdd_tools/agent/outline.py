@@ -1,15 +1,16 @@
-"""How far the objects of a scene reach around their position."""
+"""How far the objects of a scene reach around their position, which is the middle of their geometry."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import product
 from math import cos, pi, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from robbdd_tools.catalog.api import ObjectModel, Outline, Shape, ShapeKind, Vector
+from robbdd_tools.catalog.api import ObjectModel, Outline, Region, Shape, ShapeKind, Vector
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -28,6 +29,27 @@ def bounds_of(shapes: tuple[Shape, ...]) -> tuple[FloatArray, FloatArray]:
     half = np.array([_half(shape) for shape in shapes])
     middle = np.array([shape.position for shape in shapes])
     return np.min(middle - half, axis=0), np.max(middle + half, axis=0)
+
+
+def centred(model: ObjectModel) -> ObjectModel:
+    """Return an object with its origin in the middle of the box around its shapes."""
+    low, high = bounds_of(model.shapes)
+    dx, dy, dz = (float(middle) for middle in (low + high) / 2)
+
+    def moved(place: Vector) -> Vector:
+        return (place[0] - dx, place[1] - dy, place[2] - dz)
+
+    def moved_region(region: Region) -> Region:
+        return replace(region, center=moved(region.center))
+
+    return replace(
+        model,
+        shapes=tuple(replace(shape, position=moved(shape.position)) for shape in model.shapes),
+        rest_height=float(high[2] - low[2]) / 2,
+        region=None if model.region is None else moved_region(model.region),
+        parts=tuple(map(moved_region, model.parts)),
+        frame=moved(model.frame),
+    )
 
 
 def _half(shape: Shape) -> Vector:

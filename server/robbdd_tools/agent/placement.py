@@ -41,7 +41,7 @@ SIDES = 4
 
 @dataclass(frozen=True, slots=True)
 class Arrangement:
-    """The pose of every object's origin, and how often a random place overlapped with something and was drawn again."""
+    """The pose of every object's middle, and how often a random place overlapped with something and was drawn again."""
 
     poses: dict[str, Pose]
     resampled: int
@@ -175,8 +175,9 @@ def field_before(
         return _field_before_end(base, table, model.region, area)
     side = 1.0 if table.position[0] >= base.position[0] else -1.0
     (near, far), (low, high) = (sorted(side * edge for edge in edges) for edges in (area[:2], area[2:]))
-    x = _overlap(base.position[0] + near, base.position[0] + far, table.position[0], model.region.half[0])
-    y = _overlap(base.position[1] + low, base.position[1] + high, table.position[1], model.region.half[1])
+    left, ahead, _ = (at + offset for at, offset in zip(table.position, model.region.center, strict=True))
+    x = _overlap(base.position[0] + near, base.position[0] + far, left, model.region.half[0])
+    y = _overlap(base.position[1] + low, base.position[1] + high, ahead, model.region.half[1])
     if x is None or y is None:
         return None
     return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)

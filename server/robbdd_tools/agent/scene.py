@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.configuration import Configured, configure, height_of
 from robbdd_tools.agent.errors import SceneError
+from robbdd_tools.agent.outline import centred
 from robbdd_tools.catalog.registry import load_catalog
 
 if TYPE_CHECKING:
@@ -48,8 +49,10 @@ class Cast:
     """Height (m) of each object before ``height_scale``."""
 
     def pose(self, name: str, attempt: int = 0) -> Pose | None:
-        """Return where an executable scene has an object; raises ``SceneError``."""
-        return None if self.staging is None else self.staging.pose(name, attempt)
+        """Return where an executable scene has the middle of an object; raises ``SceneError``."""
+        pose = None if self.staging is None else self.staging.pose(name, attempt)
+        x, y, z = self.objects[name].frame
+        return None if pose is None else pose.at((-x, -y, -z))
 
     def base(self, name: str) -> Pose | None:
         """Return where an executable scene has an agent's base; raises ``SceneError``."""
@@ -106,6 +109,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     heights = {name: height_of(model) for name, model in objects.items()}
     found = Configured(objects, agents)
     configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
+    objects |= {name: centred(model) for name, model in objects.items()}
     regions = _regions(scene, objects)
     return Cast(objects, agents, regions, found.ranges, found.seed, found.judged, staging, tuple(left_out), heights)
 

@@ -74,7 +74,7 @@ class Evidence(Protocol):
         ...
 
     def position(self, name: str) -> FloatArray:
-        """Position of an object's reference point or an agent's tool centre point, shape (n, 3)."""
+        """Position of the middle of an object or an agent's tool centre point, shape (n, 3)."""
         ...
 
     def orientation(self, name: str) -> FloatArray:
@@ -232,6 +232,8 @@ class ObjectModel:
     """Standard places (m; x, y on the surface below, z ignored for what stands on a table), best first."""
     parts: tuple[Region, ...] = ()
     """Parts of the object that are workspaces of their own, such as the boards of a shelf."""
+    frame: Vector = (0.0, 0.0, 0.0)
+    """Where (m) the frame that poses in a scene place lies: the body frame of its file, which may be anywhere."""
 
     def spaces(self, workspace: str) -> tuple[Region, ...]:
         """Return the regions of a workspace that the object carries: the parts that its local name speaks of

@@ -11,6 +11,10 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Evidence, FloatArray, Region, Vector
 
 
+CONTACT = 1e-3
+"""How deep (m) a thing at rest may be in what carries it: the simulation keeps what settled below that."""
+
+
 def into_frame(points: FloatArray, origin: FloatArray, orientation: FloatArray) -> FloatArray:
     """Express world points (n, 3) in frames given by origins (n, 3) and unit quaternions (w, x, y, z) (n, 4)."""
     import numpy as np
@@ -37,15 +41,18 @@ def inside_margin(evidence: Evidence, name: str, workspaces: Iterable[str]) -> F
     The space of a workspace is the union of the regions of its objects and of the workspaces composed into it, without
     what other regions with a higher floor take of it: a thing on a shelf is on the shelf, not on the table below. The
     body's position counts; with the configuration ``whole_object`` all of it does, but at the lowest face, which
-    carries it. Raises ``KeyError`` for a workspace without regions.
+    carries it. What a body carries itself neither holds it nor is taken from where it is. Raises ``KeyError`` for a
+    workspace without regions, or with its own only.
     """
     import numpy as np
 
     position = evidence.position(name)
     outline = evidence.outline(name) if is_configured(evidence, name, "whole_object") else ()
     balls = [(out_of_frame(center, position, evidence.orientation(name)), radius) for center, radius in outline]
-    own = dict.fromkeys(place for workspace in workspaces for place in _space(evidence, workspace))
-    every = dict.fromkeys(place for workspace in evidence.workspaces for place in evidence.regions(workspace))
+    own = _without(name, (place for workspace in workspaces for place in _space(evidence, workspace)))
+    if not own:
+        raise KeyError(name)
+    every = _without(name, (place for workspace in evidence.workspaces for place in evidence.regions(workspace)))
     others = [(_floor(evidence, other), _into(evidence, other, position)) for other in every if other not in own]
     margins = np.full(len(position), -np.inf)
     for place in own:
@@ -63,6 +70,11 @@ def inside_margin(evidence: Evidence, name: str, workspaces: Iterable[str]) -> F
     return margins
 
 
+def _without(carrier: str, places: Iterable[tuple[str, Region]]) -> dict[tuple[str, Region], None]:
+    """Return each region once, in order, but those of one carrier."""
+    return dict.fromkeys(place for place in places if place[0] != carrier)
+
+
 def _space(evidence: Evidence, workspace: str) -> Iterator[tuple[str, Region]]:
     """Yield the regions of a workspace's objects and of the workspaces composed into it; raises ``KeyError``."""
     inner = [name for name in evidence.contents(workspace) if name in evidence.workspaces]
@@ -73,10 +85,16 @@ def _space(evidence: Evidence, workspace: str) -> Iterator[tuple[str, Region]]:
 
 
 def _into(evidence: Evidence, place: tuple[str, Region], position: FloatArray) -> FloatArray:
-    """Distance (m) of points (n, 3) to the faces of a region in its carrier's frame, positive inside, shape (n,)."""
+    """Distance (m) of points (n, 3) to the faces of a region in its carrier's frame, positive inside, shape (n,).
+
+    A point that is less than ``CONTACT`` below the bottom is on it.
+    """
     carrier, region = place
-    frame = evidence.position(carrier), evidence.orientation(carrier)
-    return _signed_distance(_outside(into_frame(position, *frame), region))
+    local = into_frame(position, evidence.position(carrier), evidence.orientation(carrier))
+    bottom = region.center[2] - region.half[2]
+    resting = (local[:, 2] < bottom) & (local[:, 2] >= bottom - CONTACT)
+    local[resting, 2] = bottom
+    return _signed_distance(_outside(local, region))
 
 
 def _floor(evidence: Evidence, place: tuple[str, Region]) -> FloatArray:

@@ -39,7 +39,7 @@ class World(Protocol):
         ...
 
     def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
-        """Position (3,) m and rotation matrix (3, 3) of an object; raises ``KeyError`` for an unknown one."""
+        """Position of an object's middle (3,) m, its rotation matrix (3, 3); raises ``KeyError`` for an unknown one."""
         ...
 
     def place(self, workspace: str) -> FloatArray:

@@ -20,5 +20,5 @@ BOTTLE = ObjectModel(
     graspable=True,
     rest_height=HEIGHT / 2,
     color=(0.30, 0.60, 0.45, 1.0),
-    doc="A bottle of 60 mm diameter and 120 mm height with a neck of 32 mm; its position is the middle of its body.",
+    doc="A bottle of 60 mm diameter and 120 mm height with a neck of 32 mm; poses place the middle of its body.",
 )

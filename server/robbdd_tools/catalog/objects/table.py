@@ -31,7 +31,7 @@ TABLE = ObjectModel(
     graspable=False,
     rest_height=HEIGHT,
     color=(0.80, 0.74, 0.64, 1.0),
-    doc="A table with a top of 0.70 × 1.50 m; its origin is the middle of the top, its workspace 0.15 m above it.",
+    doc="A table with a top of 0.70 × 1.50 m; poses place the middle of the top, its workspace is 0.15 m above it.",
     region=Region(center=(0.0, 0.0, SPACE / 2), half=(LENGTH / 2, WIDTH / 2, SPACE / 2)),
     places=((0.50, 0.0, 0.0), (-0.55, 0.0, 0.0)),
 )
