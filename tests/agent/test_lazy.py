@@ -11,8 +11,9 @@ from agent.worlds import BIN_WS, CUBE, PANDA, SCENE, scenario
 from robbdd_tools.agent.channel import Channel
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.session import ScenarioRun
+from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import ConfigSpec, RunMessage, ScenarioFinished, SceneSpec
+from robbdd_tools.run.protocol import ConfigSpec, ExecutionSpec, RunMessage, ScenarioFinished, SceneSpec
 
 pytestmark = pytest.mark.physics
 GIVEN = (5, "given", f'"{CUBE}" is located at "env:bench_ws" before event "t:pick-start"')
@@ -58,6 +59,27 @@ def test_a_when_runs_to_the_end_of_the_behaviour(tmp_path: Path) -> None:
     run.finish()
     assert found.at is not None
     assert found.at < sent.simulated
+
+
+def limited(folder: Path, timeout: float, friction: str = "0.6") -> ScenarioRun:
+    config = (ConfigSpec(CUBE, "friction", friction), ConfigSpec(CUBE, "mass", "0.1"))
+    instance = SceneInstance("x:cell")
+    how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance, timeout=timeout)
+    spec = replace(scenario(replace(SCENE, config=config)), execution=how)
+    return ScenarioRun(0, spec, (WHEN,), Sent(), Moments(folder))
+
+
+def test_a_behaviour_that_the_time_limit_stops_is_unknown(tmp_path: Path) -> None:
+    found = limited(tmp_path, 2.0).behaviour(WHEN[0], WHEN[2])
+    assert found.outcome is Outcome.UNKNOWN
+    assert found.reason == "the execution was stopped after 2 s of simulated time"
+
+
+def test_a_behaviour_that_failed_before_the_time_limit_is_violated(tmp_path: Path) -> None:
+    """A slippery part is lost after about four seconds; the arm is still on its way back at the limit."""
+    found = limited(tmp_path, 4.5, "0.01").behaviour(WHEN[0], WHEN[2])
+    assert found.outcome is Outcome.VIOLATED
+    assert found.reason.startswith("gripper lost")
 
 
 def test_a_then_that_looks_back_does_not_run_on_and_one_with_a_horizon_does(tmp_path: Path) -> None:

@@ -90,7 +90,8 @@ class Course:
     ``stamps`` are what emitters have emitted so far; ``completed`` counts the behaviours that went through, of those
     that are executed one after the other; ``tree`` is the behaviour tree, if one is executed. ``remark`` is the last
     word on what went wrong; ``broken`` says what is wrong with the user's code or model, if anything is, so that
-    nothing can be concluded, and ``fault`` describes an error in that code. ``wall`` is the time spent, s. Raises
+    nothing can be concluded, and ``fault`` describes an error in that code. ``cut_short`` says why the execution ended
+    before its script did; ``failed`` that one of the behaviours failed. ``wall`` is the time spent, s. Raises
     ``SceneError`` when the scene cannot be set up.
     """
 
@@ -117,6 +118,8 @@ class Course:
         self._draw = np.random.default_rng((world.seed, PLACES))
         self.completed = 0
         self.broken = ""
+        self.cut_short = ""
+        self.failed = False
         self.fault: Fault | None = None
         self.regions: Regions = world.cast.regions
         self.contents = {workspace: contents_of(spec.scene, workspace) for workspace in spec.scene.contains}
@@ -153,11 +156,12 @@ class Course:
             return
         except SimulationError as error:
             self.finished = True
-            self.remark = str(error)
+            self.remark = self.cut_short = str(error)
             return
         if self.simulation.ticks >= self._last:
             self.finished = True
-            self._note(f"the execution was stopped after {self._timing.timeout:g} s of simulated time")
+            self.cut_short = f"the execution was stopped after {self._timing.timeout:g} s of simulated time"
+            self._note(self.cut_short)
 
     def _scenario(self) -> Iterator[None]:
         self._emit(START)
@@ -182,6 +186,7 @@ class Course:
             yield from self._behaviour(call)
         except BehaviourError as error:
             self.remark = str(error)
+            self.failed = True
             if not self._is_users():
                 yield from self._controller(call).withdraw()
             return str(error)

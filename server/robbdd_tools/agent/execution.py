@@ -159,6 +159,13 @@ class Execution:
         return (tree.failure(self._node) if tree is not None and self._node else "") or self.course.remark
 
     @property
+    def cut_short(self) -> str:
+        """Why the execution ended while the behaviour was still going on; empty where it did not."""
+        tree = self.course.tree
+        over = self.course.failed if tree is None or not self._node else tree.is_over(self._node)
+        return "" if over else self.course.cut_short
+
+    @property
     def _begun(self) -> bool:
         tree = self.course.tree
         return tree is None or not self._node or tree.has_begun(self._node)

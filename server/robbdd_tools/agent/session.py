@@ -147,7 +147,7 @@ class ScenarioRun:
                 return Verdict(Outcome.HOLDS, reason=f"placed at {place}" if place else "")
             if execution.broken:
                 return unknown(execution.broken, fault=execution.fault)
-            unreached = execution.trace.unreached
+            unreached = execution.trace.unreached or execution.cut_short
             chosen = f" (the chosen place was {place})" if place else ""
             return unknown(unreached) if unreached else Verdict(Outcome.VIOLATED, reason=execution.failure + chosen)
 
