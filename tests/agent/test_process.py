@@ -234,8 +234,9 @@ def test_a_scenario_is_executed_as_often_as_it_is_ordered(tmp_path: Path) -> Non
 
 
 def test_repetitions_share_the_scenario_of_their_feature(tmp_path: Path) -> None:
+    """How far the cube is from the bin follows from the seed."""
     folder = tmp_path / "run"
-    (spec,) = write_run(folder, [Steps((("then", f'"{CUBE}" is located at "env:bench_ws" after event "t:end"'),))])
+    (spec,) = write_run(folder, [Steps((("then", f'"{CUBE}" is located at "{BIN_WS}" after event "t:end"'),))])
     write_manifest(folder, Manifest("t", 1, (spec, replace(spec, seed=2))))
     judged = [message for message in messages(agent(folder, orders=(1, 0)).stdout) if isinstance(message, ClauseJudged)]
     assert [message.index for message in judged] == [1, 0]
