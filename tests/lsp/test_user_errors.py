@@ -86,6 +86,7 @@ async def test_an_error_is_shown_once_at_each_of_three_places_until_the_code_is_
     await cell.until(cell.three_places)
     (in_code,) = cell.client.diagnostics[path_to_uri(cell.code)]
     assert in_code.message == "KeyError: 'goal' (in the last run, 2 scenarios)"
+    assert in_code.range.start.character == 8, "the line without its indentation"
     assert in_code.severity is types.DiagnosticSeverity.Error
     (at_name,) = (one for one in cell.client.diagnostics[cell.model.uri] if one.code == CODE)
     assert at_name.message.startswith("carrying:Carry failed: KeyError: 'goal' (carrying.py:")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 
-from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.files import load_text, path_to_uri, uri_to_path
 from robbdd_tools.features.user_errors import CODE, UserError, errors_in, user_errors
 from robbdd_tools.lsp.convert import SOURCE, document_of
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from robbdd_tools.features.results import JudgedScenario
     from robbdd_tools.lsp.convert import Converter
     from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.monitor.fault import Frame
     from robbdd_tools.names.project import Snapshot
 
 CODE_EDITED = "robbdd/codeEdited"
@@ -110,7 +111,7 @@ def _in_code(convert: Converter, error: UserError) -> types.Diagnostic:
     assert place is not None
     count = len(error.scenarios)
     spoilt = "1 scenario" if count == 1 else f"{count} scenarios"
-    return _diagnostic(convert, _line(place.line), f"{error.fault.summary} (in the last run, {spoilt})", _calls(error))
+    return _diagnostic(convert, _line(place), f"{error.fault.summary} (in the last run, {spoilt})", _calls(error))
 
 
 def _diagnostic(
@@ -131,7 +132,7 @@ def _related(error: UserError) -> list[types.DiagnosticRelatedInformation]:
     place = error.fault.place
     if place is None:
         return []
-    location = types.Location(uri=_uri(place.file), range=_line(place.line))
+    location = types.Location(uri=_uri(place.file), range=_line(place))
     return [types.DiagnosticRelatedInformation(location=location, message=error.fault.summary)]
 
 
@@ -140,17 +141,21 @@ def _calls(error: UserError) -> list[types.DiagnosticRelatedInformation]:
     calls = [frame for frame in error.fault.frames if frame.own and frame != error.fault.place]
     return [
         types.DiagnosticRelatedInformation(
-            location=types.Location(uri=_uri(frame.file), range=_line(frame.line)),
+            location=types.Location(uri=_uri(frame.file), range=_line(frame)),
             message=f"called in {frame.function}",
         )
         for frame in reversed(calls)
     ]
 
 
-def _line(number: int) -> types.Range:
-    """Return the range of a line, which is counted from 1."""
-    start = types.Position(line=number - 1, character=0)
-    return types.Range(start=start, end=types.Position(line=number - 1, character=END_OF_LINE))
+def _line(frame: Frame) -> types.Range:
+    """Return the range of a call's line, without its indentation."""
+    try:
+        text = load_text(Path(frame.file)).split("\n")[frame.line - 1]
+    except (OSError, ValueError, IndexError):
+        text = ""
+    start = types.Position(line=frame.line - 1, character=len(text) - len(text.lstrip()))
+    return types.Range(start=start, end=types.Position(line=frame.line - 1, character=END_OF_LINE))
 
 
 def _uri(file: str) -> str:
