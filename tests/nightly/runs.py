@@ -15,6 +15,9 @@ from tests.nightly.mutate import damaged_bytes, damaged_text, encoded
 
 from kit import EXAMPLES
 from robbdd_tools.catalog.executable import ArmModel, ModelSource
+from robbdd_tools.run.database import NAME as DATABASE
+from robbdd_tools.run.database import DatabaseProblem, inspect
+from robbdd_tools.run.store import store_beside
 
 PROJECT = EXAMPLES / "pickplace"
 MODEL = "pickplace.bdd"
@@ -68,8 +71,9 @@ def _stored() -> Files:
 def _damaged_store(random: Random) -> Files:
     files = dict(_stored())
     kept = [name for name in files if ".robbdd" in name]
+    databases = [name for name in kept if name.rpartition("/")[2].startswith(DATABASE)]
     for _ in range(random.randrange(1, 4)):
-        name = random.choice(kept)
+        name = random.choice(random.choice((kept, databases)))
         if random.random() < 0.15:
             files.pop(name, None)
         elif name in files:
@@ -79,6 +83,10 @@ def _damaged_store(random: Random) -> Files:
 
 def _check_store(folder: Path) -> None:
     """Every command that reads stored runs answers, or says what is wrong."""
+    database = store_beside(folder).database
+    if database.exists():
+        with suppress(DatabaseProblem):
+            inspect(database)
     robbdd(folder, "runs")
     robbdd(folder, "query", MODEL, "ASK { ?s ?p ?o }", "--results", "latest")
     robbdd(folder, "graph", MODEL, "--results", "latest")
