@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import shutil
@@ -11,10 +12,16 @@ import threading
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
+from typing import Any, cast
 
 import pytest
+from lsprotocol import types
+from pygls.protocol import default_converter
+from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
 from kit import EXAMPLES
+from lsp_kit import ASKED, PATIENCE
+from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.query import BadQuery, run_query
 from robbdd_tools.graph.serialize import parse
 
@@ -45,6 +52,13 @@ COMMANDS = (
     "gherkin pickplace.bdd -o out",
     "import foreign.jsonld -o out/foreign.bdd",
     "run remote.bddx --first 1 --no-store",
+    "run pickplace.bddx --first 1 --no-store",
+    "view pickplace.bddx -o out.png",
+    "run pickplace.bdd --first 1 --store runs",
+    "judge latest pickplace.bdd --store runs",
+    "replay latest --store runs --force",
+    "query pickplace.bdd --name variants",
+    "steps pickplace.bdd",
     "view pickplace.bdd -o out.png",
     "format --check .",
 )
@@ -92,27 +106,129 @@ def folder(tmp_path: Path, contacts: tuple[str, list[str]]) -> Path:
     }
     for name, text in texts.items():
         (models / name).write_text(text.replace("ADDRESS", address), encoding="utf-8")
+    scenes = models / "bench.scenex"
+    text = scenes.read_text(encoding="utf-8")
+    assert '{ catalog "cube" }' in text
+    scenes.write_text(text.replace('{ catalog "cube" }', "{ sys path = 'five.xml' }"), encoding="utf-8")
     return models
+
+
+def environment(folder: Path) -> dict[str, str]:
+    return {**os.environ, "ROBBDD_CONFIG": str(folder / "none.toml"), "ROBBDD_CACHE": str(folder / "cache")}
 
 
 @pytest.mark.physics
 def test_no_command_contacts_a_server(folder: Path, contacts: tuple[str, list[str]], tmp_path: Path) -> None:
-    environment = {**os.environ, "ROBBDD_CONFIG": str(tmp_path / "none.toml"), "ROBBDD_CACHE": str(tmp_path / "cache")}
     for command in COMMANDS:
         process = [sys.executable, "-P", "-m", "robbdd_tools.cli", *command.split()]
-        done = subprocess.run(process, cwd=folder, env=environment, capture_output=True, encoding="utf-8")
+        done = subprocess.run(process, cwd=folder, env=environment(tmp_path), capture_output=True, encoding="utf-8")
         assert contacts[1] == [], command
         assert "Traceback" not in done.stderr, (command, done.stderr)
     process = [sys.executable, "-P", "-m", "robbdd_tools.cli", "check", "foreign.jsonld", "--allow-host", "127.0.0.1"]
-    subprocess.run(process, cwd=folder, env=environment, capture_output=True)
+    subprocess.run(process, cwd=folder, env=environment(tmp_path), capture_output=True)
     assert contacts[1] == ["/c.jsonld"], "the server counts"
 
 
-QUERIES = ("SELECT * FROM <{}/g> {{ ?s ?p ?o }}", "SELECT * {{ SERV\\u0049CE <{}/s> {{ ?s ?p ?o }} }}")
+@pytest.mark.physics
+@pytest.mark.parametrize("trusted", [True, False], ids=["trusted", "untrusted"])
+async def test_no_request_contacts_a_server(
+    trusted: bool, folder: Path, contacts: tuple[str, list[str]], tmp_path: Path
+) -> None:
+    client = make_test_lsp_client()
+    for method in ASKED:
+        # In place of what pytest-lsp may do by itself; pygls leaves the type of its table open.
+        client.protocol.fm.features[method] = _ignore  # pyright: ignore[reportUnknownMemberType]
+    words = (sys.executable, "-P", "-m", "robbdd_tools.lsp.main", "--stdio")
+    await cast(Any, client).start_io(*words, env=environment(tmp_path))
+    capabilities = client_capabilities("visual-studio-code")
+    assert capabilities.text_document is not None
+    assert capabilities.workspace is not None
+    capabilities.text_document.diagnostic = types.DiagnosticClientCapabilities()
+    capabilities.workspace.diagnostics = types.DiagnosticWorkspaceClientCapabilities(refresh_support=True)
+    await client.initialize_session(
+        types.InitializeParams(
+            capabilities=capabilities,
+            workspace_folders=[types.WorkspaceFolder(uri=path_to_uri(folder), name="hostile")],
+            initialization_options={"trusted": trusted, "pictures": True, "replay": True},
+        )
+    )
+    for name in ("pickplace.bdd", "remote.bdd", "bench.scene", "bench.scenex", "pickplace.bddx", "remote.bddx"):
+        await _ask_all(client, folder / name, contacts[1])
+    # The project's shapes, which ask for the network most, are checked by now.
+    model = types.TextDocumentIdentifier(path_to_uri(folder / "pickplace.bdd"))
+    async with asyncio.timeout(PATIENCE):
+        while "shapes-unchecked" not in await _codes(client, model):
+            await asyncio.sleep(0.02)
+    for method in ("robbdd/testResults", "robbdd/templates", "robbdd/tests"):
+        await client.protocol.send_request_async(method, {})
+    symbols = types.WorkspaceSymbolParams(query="")
+    await client.workspace_symbol_async(symbols)
+    assert contacts[1] == []
+    await client.shutdown_session()
+    assert contacts[1] == []
 
 
-@pytest.mark.parametrize("form", QUERIES)
-def test_no_query_contacts_a_server(form: str, contacts: tuple[str, list[str]]) -> None:
-    with pytest.raises(BadQuery, match="SERVICE and FROM are not followed"):
+async def _codes(client: LanguageClient, document: types.TextDocumentIdentifier) -> list[str]:
+    found = await client.text_document_diagnostic_async(types.DocumentDiagnosticParams(document))
+    assert isinstance(found, types.RelatedFullDocumentDiagnosticReport)
+    return [str(entry.code) for entry in found.items]
+
+
+def _ignore(*_: object) -> None:
+    return None
+
+
+async def _ask_all(client: LanguageClient, path: Path, asked: list[str]) -> None:
+    """Open a document and send every request about it, those about a position for each line with a name."""
+    uri, text = path_to_uri(path), path.read_text(encoding="utf-8")
+    item = types.TextDocumentItem(uri=uri, language_id=path.suffix[1:], version=0, text=text)
+    client.text_document_did_open(types.DidOpenTextDocumentParams(text_document=item))
+    document = {"textDocument": {"uri": uri}}
+    lines = text.splitlines()
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": len(lines), "character": 0}}
+    converter = cast(Any, default_converter())
+
+    async def send(method: str, params: dict[str, Any]) -> None:
+        known: Any = cast("dict[str, Any]", types.METHOD_TO_TYPES).get(method)
+        structured: Any = params if known is None else converter.structure(params, known[2])
+        await client.protocol.send_request_async(method, structured)
+
+    async def ask(method: str, **more: object) -> None:
+        await send(f"textDocument/{method}", {**document, **more})
+        assert asked == [], (method, more)
+
+    for method in ("diagnostic", "documentSymbol", "foldingRange", "documentLink", "codeLens", "semanticTokens/full"):
+        await ask(method)
+    await ask("inlayHint", range=whole)
+    await ask("codeAction", range=whole, context={"diagnostics": []})
+    await ask("formatting", options={"tabSize": 4, "insertSpaces": True})
+    for number, line in enumerate(lines):
+        if "import" in line or "<" in line:
+            position = {"line": number, "character": line.find("<") + 1 or line.find('"') + 1}
+            for method in ("hover", "definition", "completion"):
+                await ask(method, position=position)
+            await ask("references", position=position, context={"includeDeclaration": True})
+    for method in ("graph", "preview", "tests", "runs", "importResults"):
+        await send(f"robbdd/{method}", {"uri": uri})
+        assert asked == [], method
+    for command in ("run", "record", "gherkin", "steps"):
+        await send(
+            "workspace/executeCommand", {"command": f"robbdd.{command}", "arguments": [{"uri": uri, "first": 1}]}
+        )
+        assert asked == [], command
+
+
+NOT_FOLLOWED = "SERVICE and FROM are not followed"
+QUERIES = {
+    "SELECT * FROM <{}/g> {{ ?s ?p ?o }}": NOT_FOLLOWED,
+    "SELECT * {{ SERV\\u0049CE <{}/s> {{ ?s ?p ?o }} }}": NOT_FOLLOWED,
+    "LOAD <{}/g>": ".",
+    "LOAD <{}/g> INTO GRAPH <urn:g>; SELECT * {{ ?s ?p ?o }}": ".",
+}
+
+
+@pytest.mark.parametrize(("form", "words"), QUERIES.items())
+def test_no_query_contacts_a_server(form: str, words: str, contacts: tuple[str, list[str]]) -> None:
+    with pytest.raises(BadQuery, match=words):
         run_query(parse("<urn:a> <urn:b> <urn:c> .", "ttl"), form.format(contacts[0]))
     assert contacts[1] == []

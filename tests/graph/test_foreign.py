@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
+import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, HTTPServer
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -14,6 +18,7 @@ from graph.statements import built
 from kit import MODEL, corpus
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document
+from robbdd_tools.graph import contexts
 from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.contexts import CONTEXT_IRI, ContextLoader
 from robbdd_tools.graph.foreign import read_graph_file
@@ -173,23 +178,15 @@ def test_a_context_beside_the_model_is_read(tmp_path: Path) -> None:
         parse(document.replace("own", "other"), "json-ld", (tmp_path / "m.json").as_uri())
 
 
-@pytest.fixture
-def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, list[str]]]:
-    """A server on this machine, with what was asked of it, and a cache of its own."""
-    monkeypatch.setenv("ROBBDD_CACHE", str(tmp_path / "cache"))
+@contextmanager
+def serving(reply: Callable[[BaseHTTPRequestHandler], object]) -> Generator[tuple[str, list[str]]]:
+    """Run a server on this machine; yields its address and the list of the paths that it is asked for."""
     asked: list[str] = []
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
             asked.append(self.path)
-            if self.path == "/away.json":
-                self.send_response(302)
-                self.send_header("Location", "http://localhost:1/elsewhere.json")
-                self.end_headers()
-                return
-            self.send_response(200)
-            self.end_headers()
-            self.wfile.write(b'{"@context": {"ex": "https://example.org/"}}')
+            reply(self)
 
         def log_message(self, format: str, *args: object) -> None:
             """Keep quiet."""
@@ -197,10 +194,26 @@ def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[st
     server = HTTPServer(("127.0.0.1", 0), Handler)
     thread = threading.Thread(target=server.serve_forever)
     thread.start()
-    yield f"http://127.0.0.1:{server.server_port}", asked
-    server.shutdown()
-    thread.join()
-    server.server_close()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}", asked
+    finally:
+        server.shutdown()
+        thread.join()
+        server.server_close()
+
+
+@pytest.fixture
+def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, list[str]]]:
+    """A server on this machine, with what was asked of it, and a cache of its own."""
+    monkeypatch.setenv("ROBBDD_CACHE", str(tmp_path / "cache"))
+
+    def reply(answer: BaseHTTPRequestHandler) -> None:
+        answer.send_response(200)
+        answer.end_headers()
+        answer.wfile.write(b'{"@context": {"ex": "https://example.org/"}}')
+
+    with serving(reply) as found:
+        yield found
 
 
 def test_the_network_is_asked_once_and_only_by_permission(served: tuple[str, list[str]]) -> None:
@@ -214,11 +227,67 @@ def test_the_network_is_asked_once_and_only_by_permission(served: tuple[str, lis
     assert asked == ["/c.json"]
 
 
-def test_a_redirection_to_another_host_is_not_followed(served: tuple[str, list[str]]) -> None:
-    address, _ = served
-    text = json.dumps({"@context": f"{address}/away.json", "@id": "ex:a", "@type": "ex:b"})
-    with pytest.raises(UnreadableGraph, match="--allow-host localhost"):
-        parse(text, "json-ld", loader=ContextLoader(frozenset({"127.0.0.1"})))
+@pytest.mark.parametrize(
+    ("target", "words"),
+    [("file", "not allowed"), ("ftp", "no web address"), ("host", "not fetched: allow it .*--allow-host localhost")],
+)
+def test_a_redirection_leads_to_no_file_and_to_no_other_host(
+    target: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROBBDD_CACHE", str(tmp_path / "cache"))
+    context = '{"@context": {"ex": "https://example.org/"}}'
+    (tmp_path / "secret.json").write_text(context, encoding="utf-8")
+    with serving(lambda answer: answer.wfile.write(context.encode())) as (there, reached):
+        elsewhere = {
+            "file": (tmp_path / "secret.json").as_uri(),
+            "ftp": there.replace("http:", "ftp:"),
+            "host": there.replace("127.0.0.1", "localhost"),
+        }
+
+        def redirect(answer: BaseHTTPRequestHandler) -> None:
+            answer.send_response(302)
+            answer.send_header("Location", elsewhere[target])
+            answer.end_headers()
+
+        with serving(redirect) as (here, asked):
+            text = json.dumps({"@context": f"{here}/c.json", "@id": "ex:a", "@type": "ex:b"})
+            for _ in range(2):
+                with pytest.raises(UnreadableGraph, match=rf"{re.escape(elsewhere[target])}/?' is {words}"):
+                    parse(text, "json-ld", loader=ContextLoader(frozenset({"127.0.0.1"})))
+            assert asked == ["/c.json", "/c.json"], "nothing of it is kept"
+        assert reached == []
+
+
+def test_a_server_that_never_ends_its_answer_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROBBDD_CACHE", str(tmp_path / "cache"))
+    # Each look at the clock finds it nine seconds on.
+    monkeypatch.setattr(contexts, "monotonic", count(0, 9).__next__)
+    left = threading.Event()
+
+    def trickle(answer: BaseHTTPRequestHandler) -> None:
+        answer.send_response(200)
+        answer.end_headers()
+        try:
+            while True:
+                answer.wfile.write(b" ")
+        except OSError:
+            left.set()
+
+    with serving(trickle) as (address, _):
+        text = json.dumps({"@context": f"{address}/c.json", "@id": "ex:a", "@type": "ex:b"})
+        with pytest.raises(UnreadableGraph, match="cannot be fetched: the server takes longer than 20 s"):
+            parse(text, "json-ld", loader=ContextLoader(frozenset({"127.0.0.1"})))
+        assert left.wait(60)
+
+
+def test_a_server_that_does_not_answer_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROBBDD_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(contexts, "TIMEOUT", 0.05)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"http://127.0.0.1:{silent.getsockname()[1]}"
+        text = json.dumps({"@context": f"{address}/c.json", "@id": "ex:a", "@type": "ex:b"})
+        with pytest.raises(UnreadableGraph, match="cannot be fetched: timed out"):
+            parse(text, "json-ld", loader=ContextLoader(frozenset({"127.0.0.1"})))
 
 
 def test_a_damaged_copy_is_not_used(served: tuple[str, list[str]], tmp_path: Path) -> None:

@@ -81,7 +81,9 @@ class ContextLoader:
 
     def _check(self, url: str) -> None:
         host = urlsplit(url).hostname or ""
-        if urlsplit(url).scheme not in ("http", "https") or host not in self.hosts:
+        if urlsplit(url).scheme not in ("http", "https"):
+            raise UnknownContext(f"the context '{url}' is no web address: a server redirected to it")
+        if host not in self.hosts:
             raise UnknownContext(
                 f"the context '{url}' is not fetched: allow it once with '--allow-host {host}', "
                 f"or always with 'context-hosts = [\"{host}\"]' in {user_file()}, "
