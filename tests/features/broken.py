@@ -217,6 +217,12 @@ BROKEN: dict[str, list[str]] = {
         + 'scene inst (ns=x) s { scene: <bench_scene> obj <parts.bolt> { model m as mjcf { catalog "cubee" } } }\n',
         "//- main.bddx\nns x = 'https://example.org/x/'\nbhv impl (ns=x) b { catalog \"pick-plac\" }\n",
     ],
+    "no-emitter": [
+        MODEL.replace("after <place-end>)", "after <parked>)").replace(
+            "Event (ns=t) end", "Event (ns=t) parked\nEvent (ns=t) end"
+        ),
+    ],
+    "no-model": [MODEL, "//- lab.scene\n" + SCENE.replace("agent panda", "agent robot")],
     "contradictory-order": [
         _swapped("0.5 seconds after <place-end>)", "from <place-end> until <pick-start>)"),
         _swapped(

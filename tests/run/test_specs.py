@@ -58,13 +58,13 @@ def test_things_start_where_quantified_givens_want_them(tmp_path: Path) -> None:
 
 
 def test_an_awaited_event_is_bound_to_what_emits_it(tmp_path: Path) -> None:
-    text = edited("When: Behaviour", "When: event <evt_pick_end> occurs Behaviour", QUANTIFIED)
-    text = edited("Event (ns=t) end", "Event (ns=t) end\nEvent (ns=t) evt_pick_end", text)
+    text = edited("When: Behaviour", "When: event <E_PICK_ENDED> occurs Behaviour", QUANTIFIED)
+    text = edited("Event (ns=t) end", "Event (ns=t) end\nEvent (ns=t) E_PICK_ENDED", text)
     text = text.replace("located at <places.bench_ws>", "is located at <arm>").replace("is is", "is")
     text = edited("<x> is located at <arm>", "<x> is held by <arm>", text)
     (only,) = specs(tmp_path, text)
-    assert only.events["t:evt_pick_end"] == "pick-end"
-    assert [clause.sentence for clause in only.clauses][1] == 'event "t:evt_pick_end" occurs'
+    assert only.events["t:E_PICK_ENDED"] == "pick-end"
+    assert [clause.sentence for clause in only.clauses][1] == 'event "t:E_PICK_ENDED" occurs'
 
 
 def test_only_steps_that_were_written_are_to_be_judged(tmp_path: Path) -> None:

@@ -24,6 +24,8 @@ from robbdd_tools.checks.memo import findings_in
 from robbdd_tools.checks.missing_value import missing_value
 from robbdd_tools.checks.model_file import model_file
 from robbdd_tools.checks.namespace_iri import namespace_iri
+from robbdd_tools.checks.no_emitter import no_emitter
+from robbdd_tools.checks.no_model import no_model
 from robbdd_tools.checks.no_scenario import no_scenario
 from robbdd_tools.checks.not_in_scene import not_in_scene
 from robbdd_tools.checks.pose import pose
@@ -51,6 +53,7 @@ DECLARATION_RULES = (
     foreign_variable,
     many_scenarios,
     missing_value,
+    no_emitter,
     not_in_scene,
     pose,
     repeated_value,
@@ -67,6 +70,7 @@ FILE_RULES = (
     duplicate_iri,
     model_file,
     namespace_iri,
+    no_model,
     no_scenario,
     published_form,
     unused_event,

@@ -22,12 +22,10 @@ def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
         scene = placed.declaration.tree
         if not isinstance(scene, tree.Scene) or _is_executable(snapshot, scene.name.text):
             continue
-        chosen, unknown = _chosen(scene_members(Site(snapshot, file, placed)) or frozenset())
+        chosen = _chosen(scene_members(Site(snapshot, file, placed)) or frozenset())
         if chosen:
             named = "; ".join(f"{', '.join(names)} as {model}" for model, names in sorted(chosen.items()))
             message = f"without a .scenex this scene runs on models of the catalog, by name: {named}"
-            if unknown:
-                message += f"; none fits {', '.join(unknown)}"
             span = scene.name.span.shifted(placed.offset)
             yield Diagnostic(file.document.uri, span, Severity.INFORMATION, "catalog-models", message)
 
@@ -41,19 +39,16 @@ def _is_executable(snapshot: Snapshot, scene: str) -> bool:
     return False
 
 
-def _chosen(members: frozenset[Element]) -> tuple[dict[str, list[str]], list[str]]:
-    """Return model → names of the elements that it stands for, and the names for which there is none."""
+def _chosen(members: frozenset[Element]) -> dict[str, list[str]]:
+    """Return model → names of the elements that it stands for."""
     catalog = load_catalog()
     found: dict[str, list[str]] = {}
-    unknown: list[str] = []
     for member in sorted(members, key=lambda element: element.name):
         name = member.name.rpartition(".")[2]
         if member.kind not in ("object", "agent"):
             continue
         sets = member.name.split(".")[:-1]
         model = catalog.object_for(name, sets) if member.kind == "object" else catalog.robot_for(name, sets)
-        if model is None:
-            unknown.append(name)
-        else:
+        if model is not None:
             found.setdefault(model.name, []).append(name)
-    return found, unknown
+    return found

@@ -168,13 +168,17 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
         case SymbolKind.SCENE:
             yield from _members(tuple(sorted(scene_members(site) or (), key=lambda member: member.key)))
         case SymbolKind.OBJECT:
-            model = load_catalog().object_for(definition.symbol.name)
+            model = load_catalog().object_for(definition.symbol.name, _sets(definition))
             yield from [f"Simulated as *{model.name}*: {model.doc}"] if model is not None else []
         case SymbolKind.AGENT:
-            robot = load_catalog().robot_for(definition.symbol.name)
+            robot = load_catalog().robot_for(definition.symbol.name, _sets(definition))
             yield from [f"Simulated as *{robot.name}*: {robot.doc}"] if robot is not None else []
         case _:
             pass
+
+
+def _sets(definition: Definition) -> tuple[str, ...]:
+    return tuple(definition.symbol.path.split(".")[:-1])
 
 
 def _clause(site: Site, definition: Definition) -> Iterator[str]:

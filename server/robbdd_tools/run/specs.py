@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from robbdd_tools.catalog.coordination import END, START, emitter
+from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.feature import ScenarioText
@@ -273,7 +274,7 @@ def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
     """Which emitter stamps which event of the model.
 
     The template's duration is the execution's, a behaviour's duration is that of its first and last emitted event;
-    any other event is the behaviour's inner event of the same name (``evt-pick-end`` is ``pick-end``). Of a scenario
+    any other event is the behaviour's event of the same name (``inner_event``). Of a scenario
     that is ``linked`` to a node of a behaviour tree, the duration is the node's, unless that is the root.
     """
     template = variant.template
@@ -281,20 +282,20 @@ def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
     if linked is not None and not linked.is_root:
         bound = {template.start: emitter(linked.node, START), template.end: emitter(linked.node, END)}
     behaviours = load_catalog().behaviours
-    emitted: set[str] = set()
+    emitted: dict[str, None] = {}
     clauses = tuple(_every((*template.clauses, *variant.clauses)))
     for clause in clauses:
         if isinstance(clause, BehaviourClause):
             events = behaviours[clause.behaviour].events
-            emitted.update(events)
+            emitted |= dict.fromkeys(events)
             first, last = events[0], events[-1]
             if linked is not None:
                 first, last = emitter(linked.node, START), emitter(linked.node, END)
             bound |= {clause.start: first, clause.end: last}
     for clause in clauses:
         for event in _named_events(clause):
-            name = _event_name(event)
-            if name in emitted:
+            name = inner_event(event, emitted)
+            if name is not None:
                 bound.setdefault(event, name if linked is None else emitter(linked.node, name))
     return bound
 
@@ -313,8 +314,3 @@ def _named_events(clause: Clause) -> Iterator[Iri]:
         event = getattr(time, name, None)
         if event is not None:
             yield Iri(event)
-
-
-def _event_name(event: str) -> str:
-    local = event.replace("#", "/").rsplit("/", 1)[-1].lower().replace("_", "-")
-    return local.removeprefix("evt-").removeprefix("event-")

@@ -1,0 +1,34 @@
+"""Which event of a behaviour an event of a model stands for, by its name."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
+"""A word of ``pick_end``, ``PickEnd``, ``EPickEnd`` or ``E_PICK_END``."""
+_DECORATION = frozenset({"e", "ev", "evt", "event", "on"})
+"""Words before or after a name that only say that it is an event."""
+_FORMS: Mapping[str, str] = {"started": "start", "starts": "start", "ended": "end", "ends": "end"}
+
+
+def inner_event(name: str, events: Iterable[str]) -> str | None:
+    """Return the one of a behaviour's ``events`` that a name (CURIE, IRI or local name) means, ``None`` for no such.
+
+    Case, separators, the form of the verb and words such as ``evt`` do not matter: ``evt-pick-end``, ``E_PICK_END``,
+    ``pickEnd``, ``pick_ended`` and ``PickEnded`` all mean ``pick-end``.
+    """
+    words = _words(name)
+    return next((event for event in events if _words(event) == words), None)
+
+
+def _words(name: str) -> list[str]:
+    found: list[str] = [word.lower() for word in _WORD.findall(re.split(r"[#/:]", name)[-1])]
+    while len(found) > 1 and found[0] in _DECORATION:
+        found = found[1:]
+    while len(found) > 1 and found[-1] in _DECORATION:
+        found = found[:-1]
+    return [_FORMS.get(word, word) for word in found]

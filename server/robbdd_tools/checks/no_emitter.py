@@ -1,0 +1,99 @@
+"""``no-emitter``: a clause that refers to an event which nothing in its scenario emits, so that it stays unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.catalog.event_names import inner_event
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.finding import MOST_OFFERED, change, finding
+from robbdd_tools.checks.variants import scenarios
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.elements import Site
+
+CODE = "no-emitter"
+Key = tuple[str, str]
+
+
+@dataclass(slots=True)
+class _Emitters:
+    """What an execution of a template emits.
+
+    ``bound`` are the events that delimit the scenario and its behaviours, with their names; ``inner`` are those of the
+    behaviours by the names of the catalog.
+    """
+
+    bound: dict[Key, str] = field(default_factory=dict[Key, str])
+    inner: dict[str, None] = field(default_factory=dict[str, None])
+
+    def emits(self, event: Definition) -> bool:
+        """Tell whether a run stamps an event."""
+        return _key(event) in self.bound or inner_event(event.symbol.name, self.inner) is not None
+
+
+def no_emitter(site: Site) -> Iterator[Diagnostic]:
+    """Report each reference to such an event in the clauses of a template and of the variants of a story."""
+    root = site.tree
+    if isinstance(root, tree.Template):
+        if site.whole(root):
+            yield from _unemitted(site, root, _emitters(site, root))
+        return
+    for scenario in scenarios(site):
+        template = scenario.template
+        if template is not None and isinstance(template.tree, tree.Template):
+            yield from _unemitted(site, scenario.variant, _emitters(template, template.tree))
+
+
+def _emitters(site: Site, template: tree.Template) -> _Emitters:
+    found = _Emitters()
+    behaviours = [node for node in walk(template) if isinstance(node, tree.BehaviourUse)]
+    for duration in (template.duration, *(behaviour.duration for behaviour in behaviours)):
+        for ref in (duration.start, duration.end) if duration is not None else ():
+            event = site.target(ref)
+            if event is not None:
+                found.bound.setdefault(_key(event), ref.path)
+    for behaviour in behaviours:
+        found.inner |= dict.fromkeys(load_catalog().behaviours[behaviour.action.word].events)
+    return found
+
+
+def _unemitted(site: Site, node: tree.Node, emitters: _Emitters) -> Iterator[Diagnostic]:
+    for ref in _events(node):
+        event = site.target(ref)
+        if event is None or emitters.emits(event):
+            continue
+        names = list(emitters.bound.values())
+        message = f"nothing emits '{ref.path}', so that its clause stays unknown: this scenario has {_listed(names)}"
+        if emitters.inner:
+            message += f", and its behaviours emit {_listed(list(emitters.inner))}, under these names"
+        near = get_close_matches(ref.path, names, n=len(names), cutoff=0.0)
+        fixes = tuple(change(site, f"Change to '{name}'", ref, name) for name in near[:MOST_OFFERED])
+        yield finding(site, ref, Severity.WARNING, CODE, message, fixes=fixes)
+
+
+def _events(node: tree.Node) -> Iterator[tree.Ref]:
+    for inner in walk(node):
+        match inner:
+            case tree.Before() | tree.After() | tree.Occurrence():
+                yield inner.event
+            case tree.During():
+                yield from (inner.start, inner.end)
+            case _:
+                pass
+
+
+def _key(event: Definition) -> Key:
+    return event.uri, event.symbol.path
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names) or "none"

@@ -1,0 +1,167 @@
+"""``no-model``: an object or agent of a scene for which neither the catalog nor a ``.scenex`` has a model.
+
+A run of a scenario that uses it can judge nothing; one that does not use it leaves it out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.finding import listed
+from robbdd_tools.checks.scene_use import used_elements
+from robbdd_tools.names.elements import Element, Site, elements_of, scene_members
+from robbdd_tools.names.index import language_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+
+CODE = "no-model"
+Key = tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Elements of a scene without a model that are reported at one place: a name, or an entry of the scene."""
+
+    scene: Site
+    span: Span
+    elements: tuple[Element, ...]
+
+
+def no_model(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report elements without a model, as a warning where a scenario uses one of them."""
+    for placed in file.declarations:
+        scene = Site(snapshot, file, placed)
+        gaps = gaps_of(scene)
+        if gaps:
+            used = used_elements(scene)
+            every = {element.key for gap in gaps for element in gap.elements}
+            needed = every if used is None else every & used
+            for keys, severity in ((needed, Severity.WARNING), (every - needed, Severity.INFORMATION)):
+                yield from _findings([gap for gap in gaps if _keys(gap) & keys], keys, severity)
+
+
+def gaps_of(scene: Site) -> list[Gap]:
+    """Return what a scene has without a model; nothing where a model of the whole scene may have it."""
+    if not isinstance(scene.tree, tree.Scene):
+        return []
+    unfit = [element for element in sorted(scene_members(scene) or (), key=lambda one: one.key) if not _fits(element)]
+    if not unfit:
+        return []
+    instances = list(scene_instances(scene))
+    if any(_may_have_all(instance) for instance in instances):
+        return []
+    modelled = frozenset[Key]().union(*map(_modelled, instances))
+    found: dict[Span, list[Element]] = {}
+    for element in unfit:
+        if element.key not in modelled:
+            found.setdefault(_place(scene, element), []).append(element)
+    return [Gap(scene, span, tuple(found[span])) for span in sorted(found)]
+
+
+def scene_instances(scene: Site) -> Iterator[Site]:
+    """Yield the loaded executable scenes of a scene."""
+    root, snapshot = scene.tree, scene.snapshot
+    assert isinstance(root, tree.Scene)
+    for uri in sorted(snapshot.sources):
+        file = snapshot.file(uri) if language_of(uri) == "scenex" else None
+        for placed in file.declarations if file is not None else ():
+            instance = placed.declaration.tree
+            if file is not None and isinstance(instance, tree.SceneInstance):
+                target = placed.targets.get(instance.scene)
+                if target is not None and (target.uri, target.symbol.path) == (scene.uri, root.name.text):
+                    yield Site(snapshot, file, placed)
+
+
+def _fits(element: Element) -> bool:
+    *sets, name = element.name.split(".")
+    match element.kind:
+        case "object":
+            return load_catalog().object_for(name, sets) is not None
+        case "agent":
+            return load_catalog().robot_for(name, sets) is not None
+        case _:
+            return True
+
+
+def _may_have_all(instance: Site) -> bool:
+    """Tell whether an executable scene takes its things from a file, whose bodies are known in a run only."""
+    root = instance.tree
+    return isinstance(root, tree.SceneInstance) and any(isinstance(entry, tree.Model) for entry in root.entries)
+
+
+def _modelled(instance: Site) -> frozenset[Key]:
+    found: set[Key] = set()
+    for node in walk(instance.tree) if instance.tree is not None else ():
+        if not isinstance(node, tree.Modelled) or not any(isinstance(entry, tree.Model) for entry in node.entries):
+            continue
+        target = instance.target(node.reference)
+        if target is None:
+            continue
+        if target.kind in (SymbolKind.OBJECT, SymbolKind.AGENT):
+            found.add((target.uri, target.symbol.path))
+        else:
+            found.update(element.key for element in elements_of(instance.follow(node.reference)) or ())
+    return frozenset(found)
+
+
+def _place(scene: Site, element: Element) -> Span:
+    """Return the name of an element in the scene's file, else the entry of the scene that brings it."""
+    root = scene.tree
+    assert isinstance(root, tree.Scene)
+    uri, path = element.key
+    if uri == scene.uri and path in scene.file.definitions:
+        return scene.file.definitions[path].span
+    for entry in root.entries:
+        inner = scene.follow(entry.reference)
+        held = elements_of(inner) or ()
+        if element in held or (inner is not None and entry.reference.role == "Composition" and _names(inner, element)):
+            return scene.span(entry.reference)
+    return scene.span(root.name)
+
+
+def _names(composition: Site, element: Element) -> bool:
+    targets = (composition.target(reference.ref) for reference in composition.placed.declaration.references)
+    return any(target is not None and (target.uri, target.symbol.path) == element.key for target in targets)
+
+
+def _keys(gap: Gap) -> set[Key]:
+    return {element.key for element in gap.elements}
+
+
+def _findings(gaps: list[Gap], keys: set[Key], severity: Severity) -> Iterator[Diagnostic]:
+    named = {gap.span: [_local(element) for element in gap.elements if element.key in keys] for gap in gaps}
+    for gap in gaps:
+        own = named[gap.span]
+        others = [name for span, names in named.items() if span != gap.span for name in names]
+        message = f"no model fits the name {listed(own)}"
+        if others:
+            message += f" (nor {', '.join(others)})"
+        if severity is Severity.WARNING:
+            message += f": it has none of the words {_words(gap)}; give it a model in a .scenex, or another name"
+        else:
+            message += ": no scenario uses it, so runs leave it out"
+        uri = gap.scene.uri
+        related = tuple(Related(uri, other.span, "no model fits this name") for other in gaps if other.span != gap.span)
+        yield Diagnostic(uri, gap.span, severity, CODE, message, related)
+
+
+def _words(gap: Gap) -> str:
+    catalog = load_catalog()
+    kinds = {element.kind for element in gap.elements}
+    models = [*(catalog.objects.values() if "object" in kinds else ())]
+    robots = [*(catalog.robots.values() if "agent" in kinds else ())]
+    return ", ".join(sorted({word for model in (*models, *robots) for word in model.prefixes}))
+
+
+def _local(element: Element) -> str:
+    return element.name.rpartition(".")[2]

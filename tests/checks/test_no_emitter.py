@@ -1,0 +1,66 @@
+"""A clause that refers to an event which nothing emits says so at the event, with the events there are."""
+
+from __future__ import annotations
+
+import pytest
+
+from checks.models import found
+from kit import DOCS, EVENTS, STORY, TEMPLATE
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.catalog.registry import load_catalog
+
+CODE = "no-emitter"
+DECLARED = EVENTS + "Event (ns=t) {}\n"
+VARIANT_THEN = "Then: later: holds(<fetch.part> is located at <fetch.goal>, after <{}>) variation:"
+
+
+def waiting(event: str) -> str:
+    """A model whose template waits for an event."""
+    return DECLARED.format(event) + TEMPLATE.replace("after <place-end>)", f"after <{event}>)") + STORY
+
+
+def test_an_unemitted_event_is_reported_where_a_clause_waits_for_it() -> None:
+    text = waiting("parked")
+    (finding,) = found(text, CODE)
+    assert text[finding.span.start : finding.span.end] == "parked"
+    assert finding.severity is Severity.WARNING
+    for name in ("start", "end", "pick-start", "place-end", "pick-end", "place-start"):
+        assert f"'{name}'" in finding.message
+    assert {fix.edits[0].text for fix in finding.fixes} <= {"start", "end", "pick-start", "place-end"}
+    assert len(finding.fixes) == 3
+
+
+@pytest.mark.parametrize("event", ["evt-pick-end", "E_PLACE_START", "pickEnd", "pick_ended", "PlaceStarted"])
+def test_events_of_the_behaviour_are_emitted_by_name(event: str) -> None:
+    assert found(waiting(event), CODE) == []
+
+
+def test_durations_emit_their_events_whatever_their_names() -> None:
+    text = waiting("parked").replace("from <pick-start> until <place-end>", "from <pick-start> until <parked>")
+    assert found(text, CODE) == []
+
+
+def test_an_event_of_a_behaviour_that_the_scenario_does_not_have_is_not_emitted() -> None:
+    text = waiting("place_begin").replace("place_begin", "place-start").replace(" and places at <goal>", "")
+    (finding,) = found(text, CODE)
+    assert "'pick-start', 'pick-end', under" in finding.message
+
+
+def test_clauses_of_a_variant_refer_to_what_its_template_emits() -> None:
+    for event, count in (("parked", 1), ("evt-pick-end", 0), ("place-end", 0)):
+        declared = "" if event == "place-end" else f"Event (ns=t) {event}\n"
+        text = EVENTS + declared + TEMPLATE + STORY.replace("variation:", VARIANT_THEN.format(event))
+        assert [entry.code for entry in found(text, "syntax", CODE)] == [CODE] * count, event
+
+
+def test_an_awaited_event_must_be_emitted() -> None:
+    text = DECLARED.format("door-open") + TEMPLATE.replace(
+        "        Behaviour", "        event <door-open> occurs\n        Behaviour"
+    )
+    assert [entry.code for entry in found(text + STORY, "syntax", CODE)] == [CODE]
+
+
+def test_the_page_lists_the_events_of_the_catalog() -> None:
+    page = (DOCS / "semantics.md").read_text(encoding="utf-8")
+    for behaviour in load_catalog().behaviours.values():
+        assert f"| `{behaviour.name}` | {', '.join(f'`{event}`' for event in behaviour.events)} |" in page
