@@ -17,7 +17,7 @@ def test_a_duration_needs_two_events() -> None:
         "until <start>\n",
         "until <start>\n//            ^^^^^^^^^^^^^^^^^^^^^^^^^^ empty-duration starts and ends with 'start'\n",
     )
-    text = text.replace("after <place-end>", "after <end>")
+    text = text.replace("until <place-end>", "until <end>")
     check(text)
     assert [entry.severity for entry in found(text)] == [Severity.WARNING]
 

@@ -57,7 +57,7 @@ def test_an_import_is_used_through_what_it_imports() -> None:
 def test_files_that_import_each_other_use_each_other() -> None:
     other = "//- other.bdd\nimport \"main.bdd\"\nns o = 'https://example.org/o/'\nEvent (ns=o) extra\n"
     text = MODEL.replace('import "lab.scene"', 'import "other.bdd"\nimport "lab.scene"').replace(
-        "after <place-end>", "after <extra>"
+        "until <place-end>", "until <extra>"
     )
     assert [entry.code for entry in found("//- main.bdd\n" + text + other)] == ["cyclic-import"]
 
@@ -89,7 +89,7 @@ def test_varying_an_unused_variable_is_a_warning_without_a_fix() -> None:
 def test_a_variable_may_be_used_by_a_variant_only() -> None:
     story = STORY.replace(
         "variation:\n",
-        "Then: also: holds(pred('{s}', s=<fetch.spare>), after <end>)\n"
+        "Then: also: holds(<fetch.robot> has config seed = <fetch.spare>, after <end>)\n"
         "variation:\n                var <fetch.spare>: { 1, 2 }\n",
     )
     check(EVENTS + TEMPLATE.replace("    var goal\n", "    var goal\n" + SPARE) + story)

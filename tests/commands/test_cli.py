@@ -27,7 +27,7 @@ def robbdd(*arguments: str | Path, folder: Path | None = None) -> subprocess.Com
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "main.bdd").write_text(MODEL, encoding="utf-8")
-    (tmp_path / "lab.scene").write_text(SCENE, encoding="utf-8")
+    (tmp_path / "lab.scene").write_text(SCENE.replace("bolt", "cube0").replace("nut", "cube1"), encoding="utf-8")
     return tmp_path
 
 

@@ -31,6 +31,23 @@ _ELSEWHERE = "//- more.scene\nns x = 'https://example.org/x/'\nagn set (ns=x) ro
 _EXECUTABLE = "//- main.scenex\nimport \"lab.scene\"\nns x = 'https://example.org/x/'\n"
 
 
+_EXECUTED = """//- main.bddx
+import "main.bdd"
+import "lab.scenex"
+ns x = 'https://example.org/x/'
+bhv impl (ns=x) built-in { catalog "pick-place" }
+Scenario Exec (ns=x) once {
+    variant: <fetching.bench-to-tray>
+    scene inst: <models>
+    bhv: <built-in>
+}
+//- lab.scenex
+import "lab.scene"
+ns s = 'https://example.org/s/'
+scene inst (ns=s) models { scene: <bench_scene> }
+"""
+
+
 _REPEATED = (
     EVENTS
     + TREE
@@ -221,6 +238,13 @@ BROKEN: dict[str, list[str]] = {
         MODEL.replace("after <place-end>)", "after <parked>)").replace(
             "Event (ns=t) end", "Event (ns=t) parked\nEvent (ns=t) end"
         ),
+    ],
+    "no-evaluator": [
+        _swapped("<part> is located at <goal>, 0.5", "pred('{o} is up', o=<part>), 0.5"),
+        _swapped(
+            "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)", "'It is up' after <end>"
+        ),
+        "//- main.bdd\n" + _swapped("<part> is located at <goal>, 0.5", "pred('{o} is up', o=<part>), 0.5") + _EXECUTED,
     ],
     "no-model": [MODEL, "//- lab.scene\n" + SCENE.replace("agent panda", "agent robot")],
     "contradictory-order": [

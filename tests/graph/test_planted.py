@@ -38,7 +38,7 @@ SCENE_DEFECTS = (
     ("obj <furniture.bench>", "obj <bench>", "bench", ()),
 )
 """What the imported scene says, what stands there instead, the text of the finding, those of its other ends."""
-HARMLESS = ("unused", "no-scenario", "catalog-models")
+HARMLESS = ("unused", "no-scenario", "catalog-models", "no-model")
 """Codes that the sound model has as well."""
 
 

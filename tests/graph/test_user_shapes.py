@@ -41,11 +41,11 @@ def project(tmp_path: Path) -> Path:
 
 
 def check(folder: Path) -> list[Diagnostic]:
-    """Return what is found, without the remark on catalog models, which every scene without a .scenex has."""
+    """Return what is found, without remarks on models, which every scene without a .scenex has."""
     uri = (folder / "models" / "main.bdd").as_uri()
     loaded = Project()
     loaded.load(uri)
-    return [found for found in all_diagnostics(loaded.snapshot(), uri) if found.code != "catalog-models"]
+    return [one for one in all_diagnostics(loaded.snapshot(), uri) if one.code not in ("catalog-models", "no-model")]
 
 
 def words(folder: Path) -> list[tuple[str, str, str]]:

@@ -25,6 +25,7 @@ from robbdd_tools.checks.missing_value import missing_value
 from robbdd_tools.checks.model_file import model_file
 from robbdd_tools.checks.namespace_iri import namespace_iri
 from robbdd_tools.checks.no_emitter import no_emitter
+from robbdd_tools.checks.no_evaluator import no_evaluator
 from robbdd_tools.checks.no_model import no_model
 from robbdd_tools.checks.no_scenario import no_scenario
 from robbdd_tools.checks.not_in_scene import not_in_scene
@@ -70,6 +71,7 @@ FILE_RULES = (
     duplicate_iri,
     model_file,
     namespace_iri,
+    no_evaluator,
     no_model,
     no_scenario,
     published_form,

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 from robbdd_tools import __version__
 from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.locks import hold
+from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.commands.execute import record as record_run
 from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.commands.requests import digest, load_models
 from robbdd_tools.commands.run import Outputs, conclude, seen, unusable
 from robbdd_tools.commands.runs import store_at
-from robbdd_tools.gherkin.skeleton import steps_file
 from robbdd_tools.run import user_code
 from robbdd_tools.run.pictures import no_display
 from robbdd_tools.run.prepare import FEATURES, MODEL_STEPS

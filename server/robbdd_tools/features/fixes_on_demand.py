@@ -12,6 +12,7 @@ from robbdd_tools.checks.variants import Scenario, scenarios
 from robbdd_tools.features.fixes import imports_of, reference_at
 from robbdd_tools.features.fixes_of_files import cycle_fixes, import_fixes, model_file_fixes
 from robbdd_tools.features.model_choices import model_choices
+from robbdd_tools.features.policy_skeleton import policy_fixes
 from robbdd_tools.features.rename import RenameRefused, rename
 from robbdd_tools.features.unimported import Elsewhere, beside
 from robbdd_tools.names.elements import Site, elements_of, site_of
@@ -147,6 +148,7 @@ def _site(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Sit
 _FINDERS: Mapping[str, Finder] = {
     "import": import_fixes,
     "model-file": model_file_fixes,
+    "no-evaluator": policy_fixes,
     "no-model": model_choices,
     "cyclic-import": cycle_fixes,
     "duplicate-iri": _another_name,

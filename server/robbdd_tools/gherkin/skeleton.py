@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator
@@ -11,6 +10,7 @@ from keyword import iskeyword
 from pathlib import Path
 
 from robbdd_tools.base.files import load_text
+from robbdd_tools.base.step_files import defined_steps
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin import text
@@ -58,11 +58,6 @@ class Pattern:
     parameters: tuple[tuple[str, str], ...]
 
 
-def steps_file(model: Path) -> Path:
-    """Return where the users' own steps for a model stand; nothing may be there yet."""
-    return model.parent / "steps" / f"{model.stem.replace('-', '_')}_steps.py"
-
-
 def patterns(model: AcceptanceModel) -> list[Pattern]:
     """Return the distinct sentences of a model: those of the scene first, then in the order of the clauses."""
     found: dict[Pattern, None] = {}
@@ -108,7 +103,7 @@ def skeleton(wanted: Iterable[Pattern], existing: str | None, name: str) -> tupl
     ``existing`` is the text that the file has, ``None`` without one; what it defines is left as it is. Raises
     ``SyntaxError`` when it is not Python.
     """
-    defined, names = _definitions(existing or "")
+    defined, names = defined_steps(existing or "")
     grouped: dict[tuple[str, tuple[tuple[str, str], ...]], list[str]] = {}
     for pattern in wanted:
         if not defined & {(pattern.role, pattern.text), ("step", pattern.text)}:
@@ -181,25 +176,6 @@ def _parameter(slot: str, taken: Collection[str]) -> str:
     while name in taken:
         name, number = f"{base}{number}", number + 1
     return name
-
-
-def _definitions(source: str) -> tuple[set[tuple[str, str]], set[str]]:
-    """Return the (keyword, sentence) of the steps that a file defines, and the names of its functions."""
-    steps: set[tuple[str, str]] = set()
-    names: set[str] = set()
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            names.add(node.name)
-            for decorator in node.decorator_list:
-                match decorator:
-                    case ast.Call(
-                        func=ast.Name(id=keyword) | ast.Attribute(attr=keyword),
-                        args=[ast.Constant(value=str() as told), *_],
-                    ):
-                        steps.add((keyword, told))
-                    case _:
-                        pass
-    return steps, names
 
 
 def _function(sentence: str, parameters: tuple[tuple[str, str], ...], roles: list[str], names: set[str]) -> str:

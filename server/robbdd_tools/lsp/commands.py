@@ -13,9 +13,11 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
 from robbdd_tools.base.files import path_to_uri, uri_to_path
+from robbdd_tools.base.step_files import steps_file
+from robbdd_tools.checks.no_evaluator import no_evaluator
 from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.gherkin.files import write_features
-from robbdd_tools.gherkin.skeleton import add_steps, free_patterns, steps_file
+from robbdd_tools.gherkin.skeleton import add_steps, free_patterns
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan
 from robbdd_tools.lsp.runs import cancel_run, start_run
@@ -78,19 +80,28 @@ def _register_writing(server: RobbddServer) -> None:
 
 
 def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionParams) -> Iterator[types.CodeAction]:
-    """Yield the fix of a clause that no step can judge."""
+    """Yield the fix of clauses that no step can judge, before a run and after it."""
     uri = params.text_document.uri
+    file = snapshot.file(uri)
     span = ls.convert.span(document_of(snapshot, uri), params.range)
-    for found in clause_diagnostics(snapshot, uri, ls.findings, brief=ls.shows_pictures):
-        if found.code == _UNDEFINED and found.span.start <= span.end and span.start <= found.span.end:
-            title = "Write a step skeleton"
-            yield types.CodeAction(
-                title=title,
-                kind=types.CodeActionKind.QuickFix,
-                diagnostics=[ls.convert.diagnostic(snapshot, found)],
-                command=types.Command(title=title, command=STEPS, arguments=[{"uri": uri}]),
-                is_preferred=True,
-            )
+    found = [
+        *(no_evaluator(snapshot, file) if file is not None else ()),
+        *(
+            one
+            for one in clause_diagnostics(snapshot, uri, ls.findings, brief=ls.shows_pictures)
+            if one.code == _UNDEFINED
+        ),
+    ]
+    selected = [one for one in found if one.span.start <= span.end and span.start <= one.span.end]
+    if selected:
+        title = "Write a step skeleton"
+        yield types.CodeAction(
+            title=title,
+            kind=types.CodeActionKind.QuickFix,
+            diagnostics=[ls.convert.diagnostic(snapshot, one) for one in selected],
+            command=types.Command(title=title, command=STEPS, arguments=[{"uri": uri}]),
+            is_preferred=True,
+        )
 
 
 async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:

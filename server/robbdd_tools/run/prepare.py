@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from robbdd_tools.base.files import load_bytes, uri_to_path
+from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.gherkin.feature import Numbered, every_scenario
 from robbdd_tools.gherkin.files import FeaturePlan, only, whole_plan, written_scenarios
-from robbdd_tools.gherkin.skeleton import steps_file
 from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri, Story, Variant
 from robbdd_tools.run.manifest import written_manifest
 from robbdd_tools.run.protocol import OWN_STEPS, Manifest, ScenarioSpec

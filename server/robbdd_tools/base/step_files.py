@@ -1,0 +1,65 @@
+"""Files of users' own steps: where the file of a model is, and which sentences it defines."""
+
+from __future__ import annotations
+
+import ast
+import re
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import UnreadableFile, file_state, load_text, path_to_uri
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from robbdd_tools.base.files import FileState
+
+_SLOT = re.compile(r"\\\{[^{}]*\\\}")
+
+
+def steps_file(model: Path) -> Path:
+    """Return the path of the users' own steps for a model; the file may be missing."""
+    return model.parent / "steps" / f"{model.stem.replace('-', '_')}_steps.py"
+
+
+def defined_steps(source: str) -> tuple[set[tuple[str, str]], set[str]]:
+    """Return the (keyword, sentence) of the steps that a file defines, and the names of its functions.
+
+    Raises ``SyntaxError`` when it is not Python.
+    """
+    steps: set[tuple[str, str]] = set()
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            names.add(node.name)
+            for decorator in node.decorator_list:
+                match decorator:
+                    case ast.Call(
+                        func=ast.Name(id=keyword) | ast.Attribute(attr=keyword),
+                        args=[ast.Constant(value=str() as sentence), *_],
+                    ):
+                        steps.add((keyword, sentence))
+                    case _:
+                        pass
+    return steps, names
+
+
+def may_define(model: Path, sentence: str) -> bool:
+    """Tell whether a model's own steps may match a sentence of a feature.
+
+    A slot of a step matches any text. Steps of another matcher, and of a file that cannot be read, may match anything.
+    """
+    state = file_state(path_to_uri(steps_file(model)))
+    return state is not None and any(pattern.fullmatch(sentence) for pattern in _patterns(state))
+
+
+@lru_cache(maxsize=16)
+def _patterns(state: FileState) -> tuple[re.Pattern[str], ...]:
+    try:
+        source = load_text(state.path)
+        sentences = {sentence for _, sentence in defined_steps(source)[0]}
+    except (UnreadableFile, OSError, SyntaxError, ValueError):
+        return (re.compile(".*"),)
+    if "use_step_matcher" in source:
+        return (re.compile(".*"),)
+    return tuple(re.compile(_SLOT.sub(".+", re.escape(sentence))) for sentence in sorted(sentences))

@@ -1,0 +1,110 @@
+"""``no-evaluator``: free text in a clause that neither a step function nor an observation policy judges."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.base.step_files import may_define
+from robbdd_tools.names.index import language_of
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import Declaration
+
+CODE = "no-evaluator"
+FreeClause = tree.Fluent | tree.TextClause
+_SLOT = re.compile(r"\{\w[\w-]*\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Unjudged:
+    """A clause of free text that nothing judges; ``span`` is that of its text."""
+
+    placed: PlacedDeclaration
+    clause: FreeClause
+    span: Span
+
+
+def no_evaluator(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report each such clause at its text."""
+    for found in unjudged(snapshot, file):
+        ways = "a step function or a policy in a .bddx" if isinstance(found.clause, tree.Fluent) else "a step function"
+        message = f"nothing judges this text, so the clause stays unknown: it needs {ways}"
+        yield Diagnostic(file.document.uri, found.span, Severity.WARNING, CODE, message)
+
+
+def unjudged(snapshot: Snapshot, file: FileAnalysis) -> list[Unjudged]:
+    """Return the clauses of free text that nothing judges, in the order of the text."""
+    clauses = [(placed, clause) for placed in file.parts() for clause in _free_clauses(placed.declaration)]
+    if not clauses:
+        return []
+    uri = file.document.uri
+    judged = frozenset(_judged_by_policies(snapshot, uri))
+    users = (uri, *(name for name in snapshot.importers(uri) if language_of(name) == "bdd"))
+    models = [path for path in map(uri_to_path, users) if path is not None]
+    found: list[Unjudged] = []
+    for placed, clause in clauses:
+        if isinstance(clause, tree.Fluent) and clause.name.span.shifted(placed.offset) in judged:
+            continue
+        sentence = _sentence(clause)
+        if not any(may_define(model, sentence) for model in models):
+            found.append(Unjudged(placed, clause, text_of(clause).span.shifted(placed.offset)))
+    return found
+
+
+def text_of(clause: FreeClause) -> tree.Text:
+    """Return the free text of a clause."""
+    if isinstance(clause, tree.TextClause):
+        return clause.text
+    assert isinstance(clause.predicate, tree.TextPredicate)
+    return clause.predicate.template
+
+
+@kept_with_key
+def _free_clauses(declaration: Declaration) -> tuple[FreeClause, ...]:
+    root = declaration.tree
+    found: list[FreeClause] = []
+    for node in walk(root) if isinstance(root, tree.Template | tree.Story | tree.Variant) else ():
+        match node:
+            case tree.TextClause() | tree.Fluent(predicate=tree.TextPredicate()) if text_of(node).value.strip():
+                found.append(node)
+            case _:
+                pass
+    return tuple(found)
+
+
+def _judged_by_policies(snapshot: Snapshot, uri: str) -> Iterator[Span]:
+    """Yield the names of the clauses of a file that a loaded ``.bddx`` has a policy for."""
+    for importer in snapshot.importers(uri):
+        file = snapshot.file(importer) if language_of(importer) == "bddx" else None
+        for placed in file.declarations if file is not None else ():
+            if isinstance(placed.declaration.tree, tree.Policy):
+                clause = placed.targets.get(placed.declaration.tree.fluent)
+                if clause is not None and clause.uri == uri:
+                    yield clause.span
+
+
+def _sentence(clause: FreeClause) -> str:
+    """Return what a step is asked to match: the text as a feature has it, with words for names of events and values."""
+    told = _SLOT.sub('"x"', text_of(clause).value.strip().replace("\\", "\\\\"))
+    match clause.time:
+        case tree.During():
+            return f'{told} from "x" until "x"'
+        case tree.Before(horizon=horizon):
+            return f'{told} {_within(horizon)}before event "x"'
+        case tree.After(horizon=horizon):
+            return f'{told} {_within(horizon)}after event "x"'
+
+
+def _within(horizon: tree.Number | None) -> str:
+    return "" if horizon is None else f"within {horizon.value:g} seconds "
