@@ -147,9 +147,9 @@ async def test_a_clause_without_a_step_is_reported_with_a_fix_that_writes_one(ed
     context = types.CodeActionContext(diagnostics=[found], only=[types.CodeActionKind.QuickFix])
     document = types.TextDocumentIdentifier(uri=editor.uri)
     params = types.CodeActionParams(text_document=document, range=found.range, context=context)
-    (action,) = await editor.client.text_document_code_action_async(params) or []
+    actions = await editor.client.text_document_code_action_async(params) or []
     # The test client takes an action that is but a command for a command.
-    assert action.title == "Write a step skeleton"
+    (action,) = (one for one in actions if one.title == "Write a step skeleton")
     assert "robbdd.steps" in str(action.command)
     answer = await execute(editor, "steps")
     written = editor.path.parent / "steps" / "pickplace_steps.py"

@@ -75,8 +75,8 @@ def _unemitted(site: Site, node: tree.Node, emitters: _Emitters) -> Iterator[Dia
         message = f"nothing emits '{ref.path}', so that its clause stays unknown: this scenario has {_listed(names)}"
         if emitters.inner:
             message += f", and its behaviours emit {_listed(list(emitters.inner))}, under these names"
-        near = get_close_matches(ref.path, names, n=len(names), cutoff=0.0)
-        fixes = tuple(change(site, f"Change to '{name}'", ref, name) for name in near[:MOST_OFFERED])
+        near = get_close_matches(ref.path, names, n=MOST_OFFERED, cutoff=0.0)
+        fixes = tuple(change(site, f"Change to '{name}'", ref, name) for name in near)
         yield finding(site, ref, Severity.WARNING, CODE, message, fixes=fixes)
 
 
