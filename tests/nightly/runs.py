@@ -103,7 +103,7 @@ def _damaged_trace(random: Random) -> Files:
 
 def _check_trace(folder: Path) -> None:
     """A trace is read whole, or refused."""
-    from robbdd_tools.agent.trace_file import SCHEMAS, UnreadableTrace, read_trace, read_views
+    from robbdd_tools.traces.mcap_file import SCHEMAS, UnreadableTrace, read_trace, read_views
 
     path = folder / "case.mcap"
     with suppress(UnreadableTrace):

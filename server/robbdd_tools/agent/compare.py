@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from robbdd_tools.agent.trace_codec import pack
-from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
 from robbdd_tools.run.manifest import read_manifest
 from robbdd_tools.run.protocol import trace_file
+from robbdd_tools.traces.codec import pack
+from robbdd_tools.traces.mcap_file import UnreadableTrace, read_trace
 
 if TYPE_CHECKING:
-    from robbdd_tools.agent.trace_codec import Evidence
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.monitor.trace import Trace
+    from robbdd_tools.traces.codec import Evidence
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,6 @@ from robbdd_tools.agent.output import Printed, finish_output
 from robbdd_tools.agent.sentences import fluents_of, read_event
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.agent.stated import stated_clause, stated_iteration
-from robbdd_tools.agent.trace_codec import Evidence
-from robbdd_tools.agent.trace_file import UnreadableTrace, read_trace
 from robbdd_tools.agent.vacuity import margin_ranges
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
@@ -42,6 +40,8 @@ from robbdd_tools.run.protocol import (
     scenario_key,
     trace_file,
 )
+from robbdd_tools.traces.codec import Evidence
+from robbdd_tools.traces.mcap_file import UnreadableTrace, read_trace
 
 STRANGER = "the stored run has no scenario with these values"
 CHANGED = "{} changed since the run: only a new run can tell"

@@ -18,12 +18,10 @@ from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.output import finish_output
 from robbdd_tools.agent.sentences import Fluent, Unmatched, read_clause, read_doing, read_event
 from robbdd_tools.agent.stated import stated_clause, stated_iteration
-from robbdd_tools.agent.trace_codec import Evidence
-from robbdd_tools.agent.trace_file import verdict_views, write_trace
 from robbdd_tools.agent.user_code import fault_of
 from robbdd_tools.agent.vacuity import margin_ranges
 from robbdd_tools.agent.viewer import NoViewer, Viewer
-from robbdd_tools.agent.views import views
+from robbdd_tools.agent.views import verdict_views, views
 from robbdd_tools.monitor.time import never_occurred
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.run.protocol import (
@@ -39,6 +37,8 @@ from robbdd_tools.run.protocol import (
     judged,
     trace_file,
 )
+from robbdd_tools.traces.codec import Evidence
+from robbdd_tools.traces.mcap_file import write_trace
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.channel import Channel

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from robbdd_tools.agent.arrays import array
-from robbdd_tools.agent.trace_file import UnreadableTrace, read_views
 from robbdd_tools.run.protocol import trace_file
+from robbdd_tools.traces.mcap_file import UnreadableTrace, read_views
 
 FAILED = 2
 FRAMES = 4000

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent.engine import mujoco
@@ -10,9 +11,10 @@ from robbdd_tools.agent.geometry import DIGITS, color, geometry, shown_geoms
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.simulation import Simulation
-    from robbdd_tools.agent.trace_file import View
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.monitor.trace import Trace
+    from robbdd_tools.run.protocol import ClauseJudged, ScenarioSpec
+    from robbdd_tools.traces.mcap_file import View
 
 EVERY = 4
 """Samples between two pictures: about 16 per second are enough to look at; the exact trace has all of them."""
@@ -42,6 +44,16 @@ def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
         yield time, "/tf", {"transforms": _frames(time, [names[body] for body in shown], places, turns)}
         if simulation.robots:
             yield time, "/joints", _joints(simulation, states[row])
+
+
+def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:
+    """Yield the verdicts, each at its instant, or at the trace's end (s) where it has none."""
+    clauses = {clause.line: clause for clause in spec.clauses}
+    for one in judged:
+        clause = asdict(clauses[one.line])
+        del clause["line"]
+        details = {"verdict": one.verdict, "robustness": one.robustness, "unit": one.unit, "reason": one.reason}
+        yield (end if one.at is None else one.at), "/verdicts", {**clause, **details}
 
 
 def _joints(simulation: Simulation, state: FloatArray) -> dict[str, dict[str, float]]:

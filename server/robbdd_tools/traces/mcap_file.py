@@ -1,6 +1,6 @@
 """Traces in MCAP, the robotics log format: the exact trace for us, and what viewers and plotters show of it.
 
-Topics: ``/trace`` (one message: the bytes of ``trace_codec``), ``/tf`` (foxglove.FrameTransforms), ``/scene``
+Topics: ``/trace`` (one message: the bytes of ``codec``), ``/tf`` (foxglove.FrameTransforms), ``/scene``
 (foxglove.SceneUpdate), ``/geometry`` (the same with meshes, for our own views), ``/joints``, ``/events`` and
 ``/verdicts`` (JSON with the schemas below). Times are simulated;
 nothing depends on the wall clock, so equal executions give equal files.
@@ -9,20 +9,16 @@ nothing depends on the wall clock, so equal executions give equal files.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
-from robbdd_tools.agent.trace_codec import Evidence, pack, unpack
 from robbdd_tools.base.files import open_regular
 from robbdd_tools.base.writing import replacing_bytes
-
-if TYPE_CHECKING:
-    from robbdd_tools.run.protocol import ClauseJudged, ScenarioSpec
+from robbdd_tools.traces.codec import Evidence, pack, unpack
 
 TRACE, ENCODING = "/trace", "robbdd-trace-1"
 LIBRARY = "robbdd"
@@ -129,13 +125,3 @@ def _wrong_with_it(error: Exception) -> str:
     if isinstance(error, OSError):
         return f"cannot be read: {error.strerror or error}"
     return "is damaged, or another version wrote it: run the scenario again"
-
-
-def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:
-    """Yield the verdicts, each at its instant, or at the trace's end (s) where it has none."""
-    clauses = {clause.line: clause for clause in spec.clauses}
-    for one in judged:
-        clause = asdict(clauses[one.line])
-        del clause["line"]
-        details = {"verdict": one.verdict, "robustness": one.robustness, "unit": one.unit, "reason": one.reason}
-        yield (end if one.at is None else one.at), "/verdicts", {**clause, **details}

@@ -1,0 +1,1 @@
+"""Recorded evidence: stored traces, read and written without a simulator."""
