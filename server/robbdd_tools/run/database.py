@@ -66,7 +66,8 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
             ended TEXT NOT NULL,
             UNIQUE (run, idx)
         )""",
-        # position is the order of judgement; ranges is a JSON list of the fluents' least and largest margins.
+        # position is the order of judgement; ranges is a JSON list of the fluents' least and largest margins;
+        # held_before is 1 where the clause held before the behaviour began, NULL where that is not known.
         """CREATE TABLE clause (
             execution INTEGER NOT NULL REFERENCES execution (id) ON DELETE CASCADE,
             position INTEGER NOT NULL,
@@ -81,6 +82,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
             vacuous TEXT NOT NULL,
             fault TEXT NOT NULL,
             ranges TEXT,
+            held_before INTEGER,
             PRIMARY KEY (execution, position)
         ) WITHOUT ROWID""",
     ),

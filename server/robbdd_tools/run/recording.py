@@ -166,7 +166,7 @@ class Recording:
     def _write(self, finished: ScenarioFinished, messages: Sequence[ClauseJudged | MarginRanges]) -> None:
         spec = self._manifest.scenarios[finished.index]
         judged = {message.line: message for message in messages if isinstance(message, ClauseJudged)}
-        ranges = {message.line: json.dumps(message.ranges) for message in messages if isinstance(message, MarginRanges)}
+        varied = {message.line: message for message in messages if isinstance(message, MarginRanges)}
         names = {clause.line: clause.iri for clause in spec.clauses}
         row = {
             "run": self._place.number,
@@ -201,7 +201,8 @@ class Recording:
                     "reason": one.reason,
                     "vacuous": one.vacuous,
                     "fault": one.fault,
-                    "ranges": ranges.get(line),
+                    "ranges": None if line not in varied else json.dumps(varied[line].ranges),
+                    "held_before": None if line not in varied else varied[line].held_before,
                 }
                 _insert(connection, "clause", clause)
 

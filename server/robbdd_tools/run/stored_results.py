@@ -130,14 +130,15 @@ def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) ->
         if index >= len(manifest.scenarios):
             continue
         spec = manifest.scenarios[index]
-        query = """SELECT line, verdict, robustness, unit, at, reason, worst_at, vacuous, fault, ranges
+        query = """SELECT line, verdict, robustness, unit, at, reason, worst_at, vacuous, fault, ranges, held_before
             FROM clause WHERE execution = ? ORDER BY position"""
         known = {clause.line for clause in spec.clauses}
-        for line, *judged, ranges in connection.execute(query, (identifier,)):
+        for line, *judged, ranges, held_before in connection.execute(query, (identifier,)):
             if line in known:
                 results.apply(ClauseJudged(index, line, *judged))
                 if ranges is not None:
-                    results.apply(MarginRanges(index, line, json.loads(ranges)))
+                    held = None if held_before is None else bool(held_before)
+                    results.apply(MarginRanges(index, line, json.loads(ranges), held))
         results.apply(ScenarioFinished(index, simulated, wall, stepping, resampled))
     return results
 
