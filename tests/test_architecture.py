@@ -18,15 +18,17 @@ LAYERS: tuple[frozenset[str], ...] = (
     frozenset({"base", "catalog.api"}),
     frozenset({"monitor"}),
     frozenset({"catalog"}),
+    frozenset({"traces"}),
     frozenset({"syntax"}),
     frozenset({"names"}),
     frozenset({"graph"}),
     frozenset({"checks", "features", "gherkin"}),
     frozenset({"run"}),
+    frozenset({"workbench"}),
     frozenset({"lsp", "cli", "commands"}),
     frozenset({"start"}),
 )
-AGENT_MAY = {"base", "catalog", "catalog.api", "monitor", "run.manifest", "run.protocol", "agent"}
+AGENT_MAY = {"base", "catalog", "catalog.api", "monitor", "traces", "run.manifest", "run.protocol", "agent"}
 HOMES = {
     "textx": {"syntax"},
     "rapidfuzz": {"names"},
@@ -38,7 +40,7 @@ HOMES = {
     "jinja2": {"gherkin"},
     "behave": {"agent"},
     "mujoco": {"agent"},
-    "mcap": {"agent"},
+    "mcap": {"traces"},
     "sqlite3": {"run"},
     "py_trees": {"agent"},
     "pygls": {"lsp"},

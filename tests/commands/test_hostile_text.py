@@ -42,7 +42,7 @@ with Display(results) as display:
         display.watch(message)
         display.show(message)
     display.broken(text)
-    display.summary()
+    display.summary(results)
 """
 
 

@@ -18,11 +18,9 @@ from robbdd_tools.agent import beginning
 from robbdd_tools.agent.channel import Channel
 from robbdd_tools.agent.course import Course
 from robbdd_tools.agent.session import Session
-from robbdd_tools.commands.requests import Choice, load_models, requests
-from robbdd_tools.gherkin.select import Wanted
 from robbdd_tools.monitor.verdict import Verdict
-from robbdd_tools.run.prepare import prepare_all
 from robbdd_tools.run.protocol import Manifest
+from robbdd_tools.workbench.model import load
 
 pytestmark = pytest.mark.physics
 LOST = "precondition not reached: pick failed: gripper lost env:cube0 at "
@@ -80,11 +78,7 @@ def verdicts(scenarios: list[dict[str, Any]]) -> dict[str, list[str]]:
 
 
 def prepared(path: Path, folder: Path) -> Manifest:
-    models = load_models(path)
-    assert models is not None
-    found = requests(models, Choice(Wanted(seed=1)))
-    assert not isinstance(found, str)
-    return prepare_all(found, path.name, 1, folder)
+    return load(path).scenarios(seed=1).prepare(folder)
 
 
 def judged(folder: Path, manifest: Manifest, order: list[int]) -> dict[str, Verdict]:

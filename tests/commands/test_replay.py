@@ -16,8 +16,8 @@ from typing import Any
 import pytest
 
 from kit import EXAMPLES, schema_errors
-from robbdd_tools.agent.trace_codec import Evidence
-from robbdd_tools.agent.trace_file import read_trace, write_trace
+from robbdd_tools.traces.codec import Evidence
+from robbdd_tools.traces.mcap_file import read_trace, write_trace
 
 pytestmark = pytest.mark.physics
 AT_GOAL = "at-goal: holds(<thing> is located at <goal>, after <evt-place-end>)"

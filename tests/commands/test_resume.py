@@ -74,7 +74,7 @@ def test_a_signal_ends_a_run_and_keeps_what_was_shown(folder: Path, number: sign
     rest, errors = process.communicate()
     assert process.returncode == 128 + number
     assert "the run is incomplete: the run was interrupted" in rest
-    assert "go on with it by: robbdd run --resume 1" in errors
+    assert "resume it with: robbdd run --resume 1" in errors
     document = stored(folder)
     names = finished(document)
     assert names
@@ -135,7 +135,7 @@ def test_a_resumed_run_gives_the_results_of_one_that_was_not_interrupted(folder:
     before = finished(stored(folder))
     done = robbdd(folder, "run", "--resume", "--json", "resumed.json", "--junit", "resumed.xml")
     assert done.returncode == 0, done.stderr
-    assert f"run 1 of {MODEL} goes on; died: {len(before)} of 4 finished" in done.stderr
+    assert f"resuming run 1 of {MODEL}; died: {len(before)} of 4 finished" in done.stderr
     assert not any(line.startswith(before[0]) for line in done.stdout.splitlines()), "it was shown before"
     assert "4 scenarios: 4 hold" in done.stdout
     whole = robbdd(folder, "run", MODEL, "--seed", "3", "--json", "whole.json")
@@ -155,7 +155,7 @@ def test_a_run_of_a_changed_model_is_not_resumed(folder: Path) -> None:
     until_first_line(process)
     listed = robbdd(folder, "runs").stdout
     assert "running: " in listed
-    assert "run 1 is going on" in robbdd(folder, "run", "--resume", "1").stderr
+    assert "run 1 is in progress" in robbdd(folder, "run", "--resume", "1").stderr
     process.send_signal(signal.SIGTERM)
     process.communicate()
     model = folder / MODEL
@@ -163,7 +163,7 @@ def test_a_run_of_a_changed_model_is_not_resumed(folder: Path) -> None:
     model.write_text(text.replace("<goal>, after <evt-place-end>", "<goal>, before <evt-place-end>"), encoding="utf-8")
     done = robbdd(folder, "run", "--resume", MODEL)
     assert done.returncode == 2
-    assert f"run 1 cannot go on: {MODEL} was changed since it began" in done.stderr
+    assert f"run 1 cannot be resumed: {MODEL} was changed since the run" in done.stderr
     model.write_text(text, encoding="utf-8")
     with closing(sqlite3.connect(folder / ".robbdd" / NAME)) as connection:
         connection.execute("UPDATE run SET version = '0.0.9'")

@@ -37,7 +37,7 @@ def test_an_error_is_printed_once_with_its_traceback_and_what_was_printed_with_i
     begin = lines.index("error 1: carrying:Carry failed")
     assert lines[begin + 1 : begin + 4] == [
         f'  File "{code}", line {line}, in reset',
-        '    self._ticks = self._carry(arguments["object"], arguments[print("looking") or "place"])',
+        '    place = arguments[print("looking") or "place"]',
         "KeyError: 'place'",
     ]
     assert ran.stdout.count("KeyError") == 1, "two scenarios of four clauses have one cause"

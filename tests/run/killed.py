@@ -17,13 +17,14 @@ from unittest.mock import patch
 
 from kit import write_manifest
 from robbdd_tools.base.locks import hold
-from robbdd_tools.commands.execute import record
+from robbdd_tools.commands.execute import follow_run
 from robbdd_tools.run import scheduler
 from robbdd_tools.run.protocol import Manifest, RunMessage, RunStarted
 from robbdd_tools.run.recording import Recording, pending
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.run.store import FOLDER, LOCK, RunStore
+from robbdd_tools.workbench.run import Run
 from run.recorded import RECORD, execution, spec
 
 COUNT, JOBS = 60, 3
@@ -79,7 +80,7 @@ def main(folder: Path) -> None:
             results = RunResults(MANIFEST)
             recording.begin(RECORD, policy)
             place.write_record(RECORD)
-        record(place.folder, MANIFEST, policy, recording, results, pending(results, stops=False))
+        follow_run(Run(place, policy, recording, results, pending(results, stops=False)))
 
 
 if __name__ == "__main__":

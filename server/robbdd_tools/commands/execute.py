@@ -1,106 +1,68 @@
-"""Executes a prepared run folder in view of the user."""
+"""Follows a run, a replay or a judgement on the terminal; signals end it in good order."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Protocol
 
 from robbdd_tools.base.processes import end_requests
 from robbdd_tools.commands.progress import Display
-from robbdd_tools.run.protocol import RunStarted
-from robbdd_tools.run.recording import OtherSimulator, why
-from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import Scheduler
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from robbdd_tools.run.protocol import RunMessage
+    from robbdd_tools.run.results import RunResults
+    from robbdd_tools.workbench.run import Run
 
-    from robbdd_tools.run.protocol import Manifest, RunMessage
-    from robbdd_tools.run.recording import Recording
-    from robbdd_tools.run.scheduler import Policy
-
-
-@dataclass(slots=True)
-class Executed:
-    """What came of a run: its results, the simulator's name and version, what ended it early.
-
-    ``signal`` is the number of the signal that did, ``problem`` why the run could not go on.
-    """
-
-    results: RunResults
-    simulator: str = ""
-    signal: int = 0
-    problem: str = ""
+INTERRUPTED = "the run was interrupted"
 
 
-def execute(folder: Path, manifest: Manifest, policy: Policy, indices: Sequence[int] | None = None) -> Executed:
-    """Run a prepared folder, or some scenarios of it, without keeping anything; signals end it in good order.
+class Followed(Protocol):
+    """What a run, a replay and a judgement have in common."""
 
-    Raises ``OSError``.
-    """
-    executed = Executed(RunResults(manifest))
-    with Display(executed.results, None if indices is None else len(indices)) as display:
-        reason = _follow(Scheduler(folder, manifest, policy, display.watch, indices), executed, display)
-        if not executed.results.complete:
-            executed.results.close(reason)
-            display.broken(reason)
-        display.summary(executed.results)
-    return executed
+    progress: RunResults
+    ending: str
 
+    def messages(self) -> Iterator[RunMessage]:
+        """Yield the messages in the manifest's order."""
+        ...
 
-def record(
-    folder: Path,
-    manifest: Manifest,
-    policy: Policy,
-    recording: Recording,
-    results: RunResults,
-    indices: Sequence[int] | None = None,
-) -> Executed:
-    """Run a prepared folder, or some scenarios of it, keeping each finished execution before it is shown.
-
-    ``results`` are those of a run that goes on, with what is finished of it. Raises ``OSError``.
-    """
-    executed = Executed(results)
-    with Display(results) as display:
-
-        def watch(message: RunMessage) -> None:
-            if recording.take(message):
-                display.watch(message)
-
-        scheduler = Scheduler(folder, manifest, policy, watch, indices)
-        try:
-            reason = _follow(scheduler, executed, display, recording.is_news)
-        except OtherSimulator as error:
-            executed.problem = reason = str(error)
-        except OSError as error:
-            executed.problem = reason = why(error)
-        try:
-            executed.results = recording.end(reason, interrupted=bool(executed.signal))
-        except OSError as error:
-            executed.problem = executed.problem or why(error)
-            executed.results.close(executed.problem)
-        if not executed.results.complete:
-            display.broken(executed.results.ending)
-        display.summary(executed.results)
-    return executed
+    def cancel(self, reason: str) -> None:
+        """End it early."""
+        ...
 
 
-def _follow(
-    scheduler: Scheduler, executed: Executed, display: Display, is_news: Callable[[RunMessage], bool] = lambda _: True
-) -> str:
-    """Execute and show what is news; returns why scenarios were left open, nothing where none was."""
+def follow_run(run: Run) -> int:
+    """Execute a run and show it; returns the number of the signal that ended it, 0 without one."""
+
+    def watching(display: Display) -> None:
+        run.listen(display.watch)
+
+    return _follow(run, None, watching)
+
+
+def follow(work: Followed, total: int | None = None) -> int:
+    """Show a replay or a judgement of ``total`` scenarios; returns as ``follow_run``. Raises ``OSError``."""
+    return _follow(work, total, None)
+
+
+def _follow(work: Followed, total: int | None, watching: Callable[[Display], None] | None) -> int:
+    ended_by = 0
 
     def cancel(number: int) -> None:
-        executed.signal = number
-        scheduler.cancel()
+        nonlocal ended_by
+        ended_by = number
+        work.cancel(INTERRUPTED)
 
-    # Nothing that is being done is broken off.
-    with end_requests(cancel):
-        for message in scheduler.messages():
-            if isinstance(message, RunStarted):
-                executed.simulator = message.simulator
-            if is_news(message):
-                executed.results.apply(message)
+    with Display(work.progress, total) as display:
+        if watching is not None:
+            watching(display)
+        with end_requests(cancel):
+            for message in work.messages():
+                if watching is None:
+                    display.watch(message)
                 display.show(message)
-    return "the run was interrupted" if executed.signal else scheduler.ending
+        if not work.progress.complete:
+            work.progress.close(work.ending)
+            display.broken(work.progress.ending)
+        display.summary(work.progress)
+    return ended_by

@@ -25,14 +25,14 @@ def print_graph(path: Path, form: str, results: str | None) -> int:
     """Print the graph of a model and its imports, with the results of a run if any; returns the exit code."""
     from robbdd_tools.graph.serialize import UnwritableGraph, serialize
 
-    snapshot = sound_model(path)
-    if snapshot is None:
+    model = sound_model(path)
+    if model is None:
         return FAILED
-    built = graph_with_results(snapshot, path, results)
+    built = graph_with_results(model, path, results)
     if built is None:
         return FAILED
     try:
-        print_document(_picture(snapshot, built, path) if form == PICTURE else serialize(built.graph, form))
+        print_document(_picture(model.snapshot, built, path) if form == PICTURE else serialize(built.graph, form))
     except UnwritableGraph as error:
         return fail(f"{path}: {error}")
     return OK

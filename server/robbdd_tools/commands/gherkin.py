@@ -7,7 +7,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
 from robbdd_tools.commands.output import fail, print_line
@@ -37,15 +36,12 @@ def write_gherkin(options: GherkinOptions) -> int:
     """Write the features of a model with all that behave needs and print their paths; returns the exit code."""
     from robbdd_tools.gherkin.files import clause_origins, whole_plan
     from robbdd_tools.gherkin.render import TemplateProblem, sheet
-    from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.places import placed_model
     from robbdd_tools.graph.serialize import serialize
 
-    snapshot = sound_model(options.path)
-    if snapshot is None:
+    file = sound_model(options.path)
+    if file is None:
         return FAILED
-    built = build_graph(snapshot, path_to_uri(options.path))
-    model = placed_model(built, snapshot)
+    built, model = file.graph, file.acceptance
     if not model.stories:
         return fail(f"{options.path} has no user story with a scenario, so there is no feature to write")
     try:
@@ -55,7 +51,7 @@ def write_gherkin(options: GherkinOptions) -> int:
     selected = selection(model, [variant for story in model.stories for variant in story.variants], options.wanted)
     if selected is None:
         return FAILED
-    plan = whole_plan(model, clause_origins(built, snapshot, model))
+    plan = whole_plan(model, clause_origins(built, file.snapshot, model))
     plan = replace(plan, scenarios=selected.scenarios, sheet=template)
     try:
         _write(plan, selected.total, options, serialize(built.graph, "json-ld"))

@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
@@ -23,7 +22,6 @@ _MODEL = "model.bdd"
 
 def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     """Write a model as RobBDD text to ``output`` and, where it has scenes, to a ``.scene`` beside it."""
-    from robbdd_tools.graph.build import build_graph
     from robbdd_tools.graph.losses import compare
     from robbdd_tools.graph.text import write_model
 
@@ -33,10 +31,10 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     present = [file for file in (output, scene) if file.exists()]
     if present and not overwrite:
         return fail(f"{present[0]} is there already; --force replaces it")
-    snapshot = sound_model(path)
-    if snapshot is None:
+    model = sound_model(path)
+    if model is None:
         return FAILED
-    graph = build_graph(snapshot, path_to_uri(path)).graph
+    graph = model.graph.graph
     text = write_model(graph, scene.name)
     losses, of_scene = (
         compare(graph, graph_of(text, scene.name, asked).graph, text.renamed) for asked in (_MODEL, scene.name)

@@ -8,18 +8,17 @@ from pathlib import Path
 from robbdd_tools.base.files import Unreadable, read_text
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, OK
-from robbdd_tools.commands.models import model_files, not_a_model
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.features.layout import lay_out
+from robbdd_tools.workbench.model import NotAModel, named_files
 
 
 def format_models(paths: Sequence[Path], check: bool) -> int:
     """Lay out files and the models in folders; with ``check`` only name those that would change (exit code 1)."""
-    files = model_files(paths)
-    stranger = not_a_model(files)
-    if stranger is not None or not files:
-        print_note(stranger or f"robbdd: there is no model in {', '.join(map(str, paths))}")
-        return FAILED
+    try:
+        files = named_files(paths)
+    except NotAModel as error:
+        return fail(str(error))
     changed: list[Path] = []
     for path in files:
         text = read_text(path)

@@ -35,10 +35,10 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
     if source is None:
         return FAILED
     place, asked = source
-    snapshot = sound_model(path)
-    if snapshot is None:
+    model = sound_model(path)
+    if model is None:
         return FAILED
-    built = graph_with_results(snapshot, path, results)
+    built = graph_with_results(model, path, results)
     if built is None:
         return FAILED
     try:

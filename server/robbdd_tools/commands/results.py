@@ -6,25 +6,24 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import Unreadable, path_to_uri, read_text
+from robbdd_tools.base.files import Unreadable, read_text
 from robbdd_tools.commands.output import print_note
 from robbdd_tools.commands.runs import say_unfinished
 from robbdd_tools.run.store import LATEST, NoSuchRun, store_beside
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.built import BuiltGraph
-    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.workbench.model import ModelFile
 
 
-def graph_with_results(snapshot: Snapshot, path: Path, results: str | None) -> BuiltGraph | None:
+def graph_with_results(model: ModelFile, path: Path, results: str | None) -> BuiltGraph | None:
     """Return the graph of a model with the results of a run: a file, a run of the project's store, or none.
 
     Says what is wrong with the results, and returns ``None``, where they cannot be used.
     """
-    from robbdd_tools.graph.build import build_graph
     from robbdd_tools.graph.results import BadResults, add_results, read_results
 
-    built = build_graph(snapshot, path_to_uri(path))
+    built = model.graph
     if results is None:
         return built
     file = Path(results)

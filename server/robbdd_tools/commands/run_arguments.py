@@ -7,11 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from robbdd_tools.commands.arguments import allow_selection, positive, wanted
+from robbdd_tools.commands.arguments import allow_selection, positive
 
 if TYPE_CHECKING:
     from robbdd_tools.commands.resume import ResumeOptions
-    from robbdd_tools.commands.run import RunOptions
+    from robbdd_tools.commands.run import Outputs, RunOptions
     from robbdd_tools.run.scheduler import Policy
 
 
@@ -85,29 +85,41 @@ def allow_policy(parser: argparse.ArgumentParser) -> None:
 
 def run_options(options: argparse.Namespace) -> RunOptions:
     """Return what the parsed arguments ask for."""
-    from robbdd_tools.commands.requests import Choice
-    from robbdd_tools.commands.run import Outputs, RunOptions
+    from robbdd_tools.commands.run import RunOptions
+    from robbdd_tools.workbench.plan import Selection
 
-    choice = Choice(wanted(options), options.scenario or (), options.seed, options.repeat)
-    outputs = Outputs(
-        options.json, options.junit, options.output, options.record, options.store, keep=not options.no_store
+    names = options.scenario or ()
+    selection = Selection(names, options.where, options.first, options.sample, options.pairwise, options.seed)
+    outputs = _outputs(options, keep=not options.no_store)
+    return RunOptions(
+        options.path, selection, policy(options), outputs, options.repeat, options.rerun_failed, options.viewer
     )
-    return RunOptions(options.path, choice, policy(options), outputs, options.rerun_failed, options.viewer)
 
 
 def resume_options(options: argparse.Namespace) -> ResumeOptions:
     """Return what the parsed arguments ask to be resumed."""
     from robbdd_tools.commands.resume import ResumeOptions
-    from robbdd_tools.commands.run import Outputs
 
-    outputs = Outputs(options.json, options.junit, None, options.record, options.store)
     run, path = options.resume, options.path
     if path is None and Path(run).suffix and Path(run).is_file():
         # A model right behind --resume is taken for its value.
         run, path = "latest", Path(run)
     return ResumeOptions(
-        run, path, outputs, options.jobs, options.timeout, options.stop_on_failure, viewer=options.viewer
+        run,
+        path,
+        _outputs(options),
+        options.jobs,
+        options.timeout,
+        options.stop_on_failure,
+        viewer=options.viewer,
     )
+
+
+def _outputs(options: argparse.Namespace, *, keep: bool = True) -> Outputs:
+    from robbdd_tools.commands.run import Outputs
+    from robbdd_tools.workbench.folder import Keeping
+
+    return Outputs(options.json, options.junit, options.record, Keeping(options.output, options.store, keep))
 
 
 def policy(options: argparse.Namespace) -> Policy:

@@ -9,15 +9,11 @@ from robbdd_tools.commands import OK
 from robbdd_tools.commands.output import print_line, print_note
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.missing import missing_parts
-from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, store_beside
+from robbdd_tools.run.store import NoSuchRun, StoredRun
+from robbdd_tools.workbench.stored import store_at
 
 if TYPE_CHECKING:
     from robbdd_tools.run.stored_results import RunStatus
-
-
-def store_at(path: Path, store: Path | None) -> RunStore:
-    """Return the store that a command is about: the one named, else that of the project of a path."""
-    return store_beside(path) if store is None else RunStore(store)
 
 
 def list_runs(path: Path, store: Path | None) -> int:

@@ -1,12 +1,13 @@
-"""Selects scenarios for a command, and tells what was selected or why that cannot be done."""
+"""Selects scenarios for a command that writes them, and prints what a covering array covers."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from robbdd_tools.commands.output import print_note
+from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
+from robbdd_tools.workbench.plan import NO_SCENARIO_FITS, Coverage, coverage
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.model import AcceptanceModel, Variant
@@ -17,18 +18,17 @@ def selection(model: AcceptanceModel, variants: Sequence[Variant], wanted: Wante
     try:
         selected = Selected(model, variants, wanted)
     except SelectionError as error:
-        print_note(f"robbdd: {error}")
+        fail(str(error))
         return None
     if selected.is_empty():
-        print_note("robbdd: no scenario fits the selection")
+        fail(NO_SCENARIO_FITS)
         return None
-    describe(model, selected)
+    print_coverage(coverage(model, selected.covers))
     return selected
 
 
-def describe(model: AcceptanceModel, selected: Selected) -> None:
-    """Tell how much of the combinations of values a covering array covers."""
-    for iri, cover in selected.covers.items():
-        number = len(cover.indices)
-        covered = f"{cover.covered} of {cover.possible} combinations"
-        print_note(f"{model.curie(iri)}: {number} scenario{'' if number == 1 else 's'} with {covered}")
+def print_coverage(covers: Iterable[Coverage]) -> None:
+    """Print how many of the combinations of values each covering array covers."""
+    for cover in covers:
+        scenarios = f"{cover.scenarios} scenario{'' if cover.scenarios == 1 else 's'}"
+        print_note(f"{cover.variant}: {scenarios} with {cover.covered} of {cover.possible} combinations")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
 from robbdd_tools.commands.output import fail, print_document, print_line
@@ -16,13 +15,11 @@ def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> 
     ``undefined`` leaves out the sentences that the catalog knows.
     """
     from robbdd_tools.gherkin.skeleton import add_steps, free_patterns, patterns, skeleton
-    from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.read import read_model
 
-    snapshot = sound_model(path)
-    if snapshot is None:
+    file = sound_model(path)
+    if file is None:
         return FAILED
-    model = read_model(build_graph(snapshot, path_to_uri(path)).graph)
+    model = file.acceptance
     wanted = free_patterns(model) if undefined else patterns(model)
     try:
         if target is None:

@@ -7,13 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.commands import FAILED, OK
-from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands import OK
 from robbdd_tools.commands.output import fail, print_line
+from robbdd_tools.commands.run import Outputs, guarded
 from robbdd_tools.run.pictures import NoPictures, render_scene
-from robbdd_tools.run.prepare import RunRequest, prepare
-from robbdd_tools.run.user_code import refusal
+from robbdd_tools.run.user_code import refuse_user_code
+from robbdd_tools.workbench.model import load
 
 if TYPE_CHECKING:
     from robbdd_tools.run.protocol import Manifest
@@ -21,25 +20,19 @@ if TYPE_CHECKING:
 
 def view(path: Path, name: str | None, seed: int | None, output: Path | None) -> int:
     """Write the picture of the first scenario, or of that called ``name``; returns the exit code."""
-    from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.places import placed_model
+    return guarded(Outputs(), viewer=False, work=lambda: _view(path, name, seed, output))
 
-    snapshot = sound_model(path)
-    if snapshot is None:
-        return FAILED
-    model = placed_model(build_graph(snapshot, path_to_uri(path)), snapshot)
+
+def _view(path: Path, name: str | None, seed: int | None, output: Path | None) -> int:
     target = output or Path(f"{path.stem}.png")
+    plan = load(path).scenarios(seed=seed)
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
-        request = RunRequest(model, str(path)) if seed is None else RunRequest(model, str(path), seed)
-        manifest = prepare(request, Path(folder))
+        manifest = plan.prepare(Path(folder))
         index = _index(manifest, name)
         if index is None:
             known = dict.fromkeys(_variant(scenario.name) for scenario in manifest.scenarios)
-            wanted = "no scenario" if name is None else f"no scenario '{name}'; the model has {', '.join(known)}"
-            return fail(f"there is {wanted}")
-        problem = refusal(replace(manifest, scenarios=(manifest.scenarios[index],)), Path(folder), judges=False)
-        if problem:
-            return fail(problem)
+            return fail(f"there is no scenario '{name}'; the model has {', '.join(known)}")
+        refuse_user_code(replace(manifest, scenarios=(manifest.scenarios[index],)), Path(folder), judges=False)
         try:
             render_scene(Path(folder), index, target)
         except NoPictures as error:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.gherkin.covering import Cover, TooManyCombinations, cover
 from robbdd_tools.gherkin.feature import Numbered
 from robbdd_tools.gherkin.variations import at, bindings, count
@@ -29,7 +30,7 @@ class Wanted:
     seed: int = 1
 
 
-class SelectionError(Exception):
+class SelectionError(RobbddError):
     """The selection cannot be made; the message says why, for the user."""
 
 

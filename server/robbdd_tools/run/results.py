@@ -105,34 +105,40 @@ class RunResults:
             "scenarios": list(self._scenarios()),
         }
 
+    def scenario_json(self, index: int) -> dict[str, Any]:
+        """Return one entry of ``scenarios`` in that document."""
+        return _scenario(self.scenarios[index], self.vacuous())
+
     def _scenarios(self) -> Iterable[dict[str, Any]]:
         vacuous = self.vacuous()
-        for scenario in self.scenarios:
-            spec = scenario.spec
-            yield {
-                "story": spec.story,
-                "variant": spec.variant,
-                "variation": spec.variation,
-                "name": spec.name,
-                "values": dict(spec.values),
-                "seed": spec.seed,
-                "model": spec.model,
-                "execution": None if spec.execution is None else spec.execution.name,
-                "repetition": spec.repetition,
-                "shared": None if spec.tree is None else _shared(spec.tree, spec.node),
-                "duration": None if scenario.finished is None else scenario.finished.simulated,
-                "resampled": 0 if scenario.finished is None else scenario.finished.resampled,
-                "verdict": str(scenario.verdict),
-                "clauses": [
-                    _clause(clause, scenario.judged.get(clause.line), vacuous.get(clause.iri, ""))
-                    for clause in spec.clauses
-                ],
-            }
+        return (_scenario(scenario, vacuous) for scenario in self.scenarios)
 
 
 def finished_in(document: Mapping[str, Any]) -> frozenset[int]:
     """Return the numbers of the scenarios that a document of results has finished."""
     return frozenset(i for i, entry in enumerate(document["scenarios"]) if entry.get("duration") is not None)
+
+
+def _scenario(scenario: ScenarioResult, vacuous: Mapping[str, str]) -> dict[str, Any]:
+    spec = scenario.spec
+    return {
+        "story": spec.story,
+        "variant": spec.variant,
+        "variation": spec.variation,
+        "name": spec.name,
+        "values": dict(spec.values),
+        "seed": spec.seed,
+        "model": spec.model,
+        "execution": None if spec.execution is None else spec.execution.name,
+        "repetition": spec.repetition,
+        "shared": None if spec.tree is None else _shared(spec.tree, spec.node),
+        "duration": None if scenario.finished is None else scenario.finished.simulated,
+        "resampled": 0 if scenario.finished is None else scenario.finished.resampled,
+        "verdict": str(scenario.verdict),
+        "clauses": [
+            _clause(clause, scenario.judged.get(clause.line), vacuous.get(clause.iri, "")) for clause in spec.clauses
+        ],
+    }
 
 
 def _shared(tree: TreeSpec, node: str) -> dict[str, Any]:

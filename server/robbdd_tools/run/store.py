@@ -18,6 +18,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, cast
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import full_path, load_text
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.locks import Lock, hold, is_held
@@ -51,7 +52,7 @@ PATIENCE = 30.0
 """Seconds that a run waits for another one that is just beginning."""
 
 
-class NoSuchRun(Exception):
+class NoSuchRun(RobbddError):
     """There is no such run, or it cannot be read; the message says which there are, or why."""
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.isolation import NO_USER_CODE, UNTRUSTED
 from robbdd_tools.run.protocol import OWN_STEPS
 
@@ -15,6 +16,17 @@ if TYPE_CHECKING:
 
 _FIX = "leave out --no-user-code if you trust this code, or run what does without it"
 _FIX_TRUST = "trust the workspace if you trust this code"
+
+
+class UserCodeRefused(RobbddError):
+    """A run would execute code of users, which ``--no-user-code`` refuses; the message names each place."""
+
+
+def refuse_user_code(manifest: Manifest, folder: Path, *, judges: bool = True, simulates: bool = True) -> None:
+    """Raise ``UserCodeRefused`` for what ``refusal`` reports."""
+    problem = refusal(manifest, folder, judges=judges, simulates=simulates)
+    if problem:
+        raise UserCodeRefused(problem)
 
 
 def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates: bool = True) -> str:

@@ -1,0 +1,133 @@
+"""Results of executions as plain data for programs: one object per execution, one row per clause."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, cast
+
+from robbdd_tools.monitor.verdict import Outcome
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseResult:
+    """The verdict on one clause of one execution.
+
+    ``role`` is ``given``, ``when`` or ``then``. ``margin`` is the robustness in ``unit`` (SI; positive: holds),
+    ``None`` without a measurable margin or when unknown. ``at`` (s, simulated) is the instant of the violation,
+    ``worst_at`` that of the smallest margin. ``reason`` says why it is violated or unknown, ``vacuous`` why it could
+    not have been violated.
+    """
+
+    name: str
+    iri: str
+    role: str
+    sentence: str
+    verdict: Outcome
+    margin: float | None
+    unit: str
+    at: float | None
+    worst_at: float | None
+    reason: str
+    vacuous: str
+
+
+@dataclass(frozen=True, slots=True)
+class ExecutionResult:
+    """The result of one execution of a scenario.
+
+    ``index`` is its position in the run (from 0), ``variation`` the number of the scenario in its variant and
+    ``repetition`` that of the execution (both from 1). ``values`` maps variables to CURIEs, literals or lists of them.
+    ``execution`` is the CURIE of the ``.bddx`` execution, empty without one. ``duration`` (s) is simulated time,
+    ``None`` for an execution that did not finish.
+    """
+
+    index: int
+    name: str
+    story: str
+    variant: str
+    variation: int
+    repetition: int
+    execution: str
+    model: str
+    values: Mapping[str, Any]
+    seed: int
+    verdict: Outcome
+    duration: float | None
+    clauses: tuple[ClauseResult, ...]
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Yield one flat dictionary per clause; the values of variables are columns called ``value.NAME``."""
+        own: dict[str, Any] = {
+            "index": self.index,
+            "scenario": self.name,
+            "variant": self.variant,
+            "variation": self.variation,
+            "repetition": self.repetition,
+            "execution": self.execution,
+            "seed": self.seed,
+            "duration": self.duration,
+            "scenario_verdict": str(self.verdict),
+        }
+        values = {f"value.{name}": _cell(value) for name, value in self.values.items()}
+        for clause in self.clauses:
+            yield {
+                **own,
+                **values,
+                "clause": clause.name,
+                "role": clause.role,
+                "verdict": str(clause.verdict),
+                "margin": clause.margin,
+                "unit": clause.unit,
+                "at": clause.at,
+                "reason": clause.reason,
+            }
+
+
+def execution_result(index: int, entry: Mapping[str, Any]) -> ExecutionResult:
+    """Return an entry of ``scenarios`` in ``docs/schemas/run.schema.json``, at its position, as an object."""
+    return ExecutionResult(
+        index,
+        entry["name"],
+        entry["story"],
+        entry["variant"],
+        entry["variation"],
+        entry["repetition"],
+        entry["execution"] or "",
+        entry["model"],
+        entry["values"],
+        entry["seed"],
+        Outcome(entry["verdict"]),
+        entry["duration"],
+        tuple(map(_clause, entry["clauses"])),
+    )
+
+
+def execution_results(document: Mapping[str, Any]) -> tuple[ExecutionResult, ...]:
+    """Return all ``scenarios`` of a document of ``docs/schemas/run.schema.json``."""
+    return tuple(execution_result(index, entry) for index, entry in enumerate(document["scenarios"]))
+
+
+def rows_of(executions: Iterable[ExecutionResult]) -> list[dict[str, Any]]:
+    """Return the rows of several executions, for ``pandas.DataFrame(rows)`` or ``polars.from_dicts(rows)``."""
+    return [row for execution in executions for row in execution.rows()]
+
+
+def _clause(entry: Mapping[str, Any]) -> ClauseResult:
+    return ClauseResult(
+        entry["name"],
+        entry["iri"],
+        entry["role"],
+        entry["sentence"],
+        Outcome(entry["verdict"]),
+        entry["robustness"],
+        entry["unit"],
+        entry["at"],
+        entry.get("worst_at"),
+        entry["reason"],
+        entry.get("vacuous", ""),
+    )
+
+
+def _cell(value: Any) -> Any:
+    return ", ".join(map(str, cast(list[object], value))) if isinstance(value, list) else value

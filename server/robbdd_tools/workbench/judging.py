@@ -1,0 +1,100 @@
+"""Judge the traces of a stored run against the clauses of an edited model, without simulating."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.base.writing import replace_file
+from robbdd_tools.run.launch import Agent, stop
+from robbdd_tools.run.manifest import STORED_RESULTS
+from robbdd_tools.run.misfit import misfit
+from robbdd_tools.run.protocol import LogLine, ScenarioStarted, scenario_key
+from robbdd_tools.run.results import RunResults, finished_in
+from robbdd_tools.run.scheduler import CANCELLED
+from robbdd_tools.run.user_code import refuse_user_code
+from robbdd_tools.workbench.plan import NothingSelected, Plan, Selection
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.protocol import Manifest, RunMessage
+    from robbdd_tools.run.store import StoredRun
+    from robbdd_tools.workbench.model import Model
+
+JUDGE = "robbdd_tools.agent.judge"
+
+
+class NothingToJudge(RobbddError):
+    """A stored run has no execution that the model can judge."""
+
+
+class Judgement:
+    """The judgement of a stored run by a model; consume ``messages`` once, then read ``progress``.
+
+    Scenarios are matched by variant, values, execution and repetition.
+    """
+
+    def __init__(self, place: StoredRun, model: Model, folder: Path) -> None:
+        """Prepare in an empty ``folder``.
+
+        Raises ``NoSuchRun``, ``NothingToJudge``, ``UserCodeRefused``, and as ``Model.scenarios``.
+        """
+        self._place = place
+        self._folder = folder
+        self._manifest = _prepared(place, model, folder)
+        self._agent: Agent | None = None
+        self._reason = ""
+        self.progress = RunResults(self._manifest)
+        self.ending = ""
+        """Why clauses were left open; empty when all were judged."""
+
+    def cancel(self, reason: str = CANCELLED) -> None:
+        """End the judgement; may be called from any thread."""
+        self._reason = reason
+        if self._agent is not None:
+            self._agent.terminate()
+
+    def messages(self) -> Iterator[RunMessage]:
+        """Yield what the judging process reports, each message after ``progress`` has it."""
+        self._agent = agent = Agent(self._folder, module=JUDGE, arguments=[str(self._place.folder.absolute())])
+        complaint = ""
+        try:
+            for message in _possible(agent.messages(), self._manifest):
+                self.progress.apply(message)
+                complaint = message.text if isinstance(message, LogLine) else complaint
+                yield message
+        finally:
+            stop([agent])
+        if not self.progress.complete:
+            self.ending = self._reason or complaint or agent.ending()
+            self.progress.close(self.ending)
+
+
+def _possible(messages: Iterable[RunMessage], manifest: Manifest) -> Iterator[RunMessage]:
+    """Yield the messages; one that the judging process cannot mean becomes a line of the log."""
+    present = None
+    for message in messages:
+        present = message.index if isinstance(message, ScenarioStarted) else present
+        problem = misfit(message, manifest.scenarios, present)
+        yield LogLine("warning", problem) if problem else message
+
+
+def _prepared(place: StoredRun, model: Model, folder: Path) -> Manifest:
+    manifest, results = place.manifest(), place.results()
+    finished = finished_in(results)
+    if not finished:
+        raise NothingToJudge(f"run {place.number or place.folder} has finished no execution yet")
+    known = {scenario_key(manifest.scenarios[index]) for index in finished}
+    repeat = max(spec.repetition for spec in manifest.scenarios)
+    selection = Selection(only=lambda spec: scenario_key(spec) in known, default_seed=manifest.seed)
+    plan = Plan.of(model, selection)
+    try:
+        prepared = plan.prepare(folder, repeat=repeat if repeat > 1 else None)
+    except NothingSelected:
+        name = f"run {place.number or place.folder}"
+        raise NothingToJudge(f"no scenario of {model.path} has the values of one in {name}") from None
+    refuse_user_code(prepared, folder, simulates=False)
+    replace_file(folder / STORED_RESULTS, json.dumps(results))
+    return prepared

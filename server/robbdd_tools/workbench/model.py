@@ -1,0 +1,242 @@
+"""Models as users handle them: a file, a folder or a text, with its findings and what it can run."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.features.diagnostics import all_diagnostics
+from robbdd_tools.graph.foreign import GRAPH_FORMATS, graph_format
+from robbdd_tools.names.index import language_of
+from robbdd_tools.names.project import Project, Snapshot
+from robbdd_tools.syntax.parse import LANGUAGES
+from robbdd_tools.workbench.findings import Finding, Place, findings
+
+if TYPE_CHECKING:
+    from robbdd_tools.graph.built import BuiltGraph
+    from robbdd_tools.graph.model import AcceptanceModel
+    from robbdd_tools.workbench.plan import Plan
+
+NO_SCENARIO = "the model has no scenario to run"
+
+
+class NotAModel(RobbddError):
+    """There is no such file, or its name does not end as that of a model."""
+
+
+class ModelErrors(RobbddError):
+    """A model has errors; ``findings`` are these, at least one."""
+
+    def __init__(self, found: tuple[Finding, ...]) -> None:
+        super().__init__("\n".join(map(str, found)))
+        self.findings = found
+
+
+class NothingToRun(RobbddError):
+    """None of several models has a scenario."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModelFile:
+    """One model of a snapshot; ``name`` is what reports call it: the path as it was given, or its URI."""
+
+    snapshot: Snapshot
+    uri: str
+    name: str
+
+    @cached_property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """All diagnostics of the file and its imports, shapes included."""
+        return tuple(all_diagnostics(self.snapshot, self.uri))
+
+    @cached_property
+    def graph(self) -> BuiltGraph:
+        """The knowledge graph of the file and its imports; raises ``ModelErrors``."""
+        from robbdd_tools.graph.build import build_graph
+
+        errors = [one for one in self.diagnostics if one.severity is Severity.ERROR]
+        if errors:
+            raise ModelErrors(findings(self.snapshot, errors))
+        return build_graph(self.snapshot, self.uri)
+
+    @cached_property
+    def acceptance(self) -> AcceptanceModel:
+        """The acceptance criteria as plain data; raises ``ModelErrors``."""
+        from robbdd_tools.graph.places import placed_model
+
+        return placed_model(self.graph, self.snapshot)
+
+    @cached_property
+    def digest(self) -> str:
+        """The SHA-256 of the graph; raises ``ModelErrors``."""
+        from robbdd_tools.graph.digest import graph_digest
+
+        return graph_digest(self.graph)
+
+    @property
+    def is_unreadable(self) -> bool:
+        """Whether the file has no text: it is missing, too large or not text."""
+        return self.snapshot.unreadable(self.uri) is not None
+
+    @property
+    def has_scenarios(self) -> bool:
+        """Whether there is something to run; raises ``ModelErrors``."""
+        return any(story.variants for story in self.acceptance.stories)
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """The models that were loaded together from ``path`` (a file or a folder, or what a text is called)."""
+
+    path: Path
+    files: Sequence[ModelFile]
+
+    @cached_property
+    def diagnostics(self) -> tuple[Finding, ...]:
+        """All findings, each once, in the order of files and places."""
+        found: dict[Finding, None] = {}
+        for file in self.files:
+            found |= dict.fromkeys(findings(file.snapshot, file.diagnostics))
+        return tuple(found)
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether there is no error, so that the model can be run."""
+        return not any(finding.is_error for finding in self.diagnostics)
+
+    @cached_property
+    def runnable(self) -> tuple[ModelFile, ...]:
+        """The models with scenarios, those with executions first; raises ``ModelErrors`` and ``NothingToRun``."""
+        errors = tuple(finding for finding in self.diagnostics if finding.is_error)
+        if errors:
+            raise ModelErrors(errors)
+        # An execution configures how its scenario runs, so that the plain scenario need not run as well.
+        ordered = sorted(self.files, key=lambda file: not file.uri.endswith(".bddx"))
+        found = tuple(file for file in ordered if file.has_scenarios)
+        if not found and len(self.files) == 1:
+            start = Place(self.files[0].uri, 1, 1, 1, 1)
+            raise ModelErrors((Finding(start, Severity.ERROR, "no-scenario", NO_SCENARIO),))
+        if not found:
+            raise NothingToRun(f"{self.path}: {NO_SCENARIO}")
+        return found
+
+    @property
+    def digest(self) -> str:
+        """The digest of all graphs that can be run; raises as ``runnable``."""
+        from robbdd_tools.graph.digest import joint_digest
+
+        return joint_digest(file.digest for file in self.runnable)
+
+    def graph(self, form: str = "ttl") -> str:
+        """Return the knowledge graph of the only file as ``ttl``, ``json-ld``, ``json-ld-expanded``, ``nt`` or ``xml``.
+
+        Raises ``ModelErrors``, and ``ValueError`` for several files.
+        """
+        from robbdd_tools.graph.serialize import serialize
+
+        if len(self.files) != 1:
+            raise ValueError(f"{self.path} has {len(self.files)} models, each with its own graph: load one of them")
+        return serialize(self.files[0].graph.graph, form)
+
+    def scenarios(
+        self,
+        *names: str,
+        where: str | None = None,
+        first: int | None = None,
+        sample: int | None = None,
+        pairwise: int | None = None,
+        seed: int | None = None,
+    ) -> Plan:
+        """Select scenarios to run.
+
+        ``names`` are variants or executions (local name, CURIE or IRI; all without any). ``where`` is a condition on
+        the values (``"robot=panda and target=~cube.*"``). At most one of these reduces what fits: the ``first`` N, a
+        random ``sample`` of N, or the few that cover all combinations of values of any 2 or 3 variables (``pairwise``).
+        ``seed`` decides the sample, and the run unless that gets its own.
+
+        Raises ``ModelErrors``, ``NothingToRun``, and ``SelectionError`` for a selection that cannot be made.
+        """
+        from robbdd_tools.workbench.plan import Plan, Selection
+
+        given = {"first": first, "sample": sample, "pairwise": pairwise}
+        reducing = [name for name, value in given.items() if value is not None]
+        if len(reducing) > 1:
+            raise ValueError(f"give only one of {' and '.join(reducing)}")
+        return Plan.of(self, Selection(names, where, first, sample, pairwise, seed))
+
+
+def load(path: str | os.PathLike[str], *, text: str | None = None) -> Model:
+    """Load a model (``.bdd``, ``.bddx``, ``.scene`` …, ``.ttl``, ``.json``, ``.jsonld``) or all models in a folder.
+
+    ``text`` replaces the content of the file, which need not exist; imports are relative to ``path``. Errors in the
+    model are findings, not exceptions. Raises ``NotAModel``.
+    """
+    start = Path(path)
+    if text is None:
+        return load_all([start])
+    _refuse_other_files([start], must_exist=False)
+    project = Project()
+    project.open(path_to_uri(start), 0, text)
+    return _model(start, project, [start])
+
+
+def load_all(paths: Sequence[Path]) -> Model:
+    """Load files, and all models in folders, into one project; the model is called like the first path.
+
+    Raises ``NotAModel``.
+    """
+    files = named_files(paths)
+    project = Project()
+    for file in files:
+        project.load(path_to_uri(file))
+    return _model(paths[0], project, files)
+
+
+def _model(path: Path, project: Project, files: Iterable[Path]) -> Model:
+    snapshot = project.snapshot()
+    return Model(path, tuple(ModelFile(snapshot, path_to_uri(file), str(file)) for file in files))
+
+
+def named_files(paths: Sequence[Path]) -> list[Path]:
+    """Return files, and instead of each folder the model files below it, in alphabetical order.
+
+    Hidden folders, installed packages and virtual environments are skipped. Raises ``NotAModel``.
+    """
+    files: dict[Path, None] = {}
+    for path in paths:
+        if path.is_dir():
+            files |= dict.fromkeys(sorted(_own_files(path)))
+        else:
+            files.setdefault(path)
+    if not files:
+        raise NotAModel(f"there is no model in {', '.join(map(str, paths))}")
+    _refuse_other_files(files)
+    return list(files)
+
+
+def _own_files(folder: Path) -> Iterator[Path]:
+    for parent, folders, names in os.walk(folder):
+        here = Path(parent)
+        folders[:] = [name for name in folders if not _is_foreign(here / name)]
+        yield from (here / name for name in names if Path(name).suffix[1:] in LANGUAGES)
+
+
+def _is_foreign(folder: Path) -> bool:
+    return folder.name.startswith(".") or folder.name == "node_modules" or (folder / "pyvenv.cfg").is_file()
+
+
+def _refuse_other_files(paths: Iterable[Path], *, must_exist: bool = True) -> None:
+    for path in paths:
+        if language_of(path.name) or graph_format(path.name) or path.is_dir():
+            continue
+        if must_exist and not path.exists():
+            raise NotAModel(f"there is no file or folder {path}")
+        endings = ", ".join(f".{ending}" for ending in (*LANGUAGES, *GRAPH_FORMATS))
+        raise NotAModel(f"{path} is not a model: its name must end in one of {endings}")

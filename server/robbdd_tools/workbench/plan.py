@@ -1,0 +1,317 @@
+"""The one planner: which scenarios of which models a run executes, with which seeds, how often."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
+from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare_all
+from robbdd_tools.run.scheduler import Policy
+
+if TYPE_CHECKING:
+    from robbdd_tools.gherkin.covering import Cover
+    from robbdd_tools.gherkin.feature import Numbered
+    from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri, Variant
+    from robbdd_tools.run.protocol import Manifest, ScenarioSpec
+    from robbdd_tools.workbench.folder import Keeping
+    from robbdd_tools.workbench.model import Model, ModelFile
+    from robbdd_tools.workbench.run import Run
+
+NO_SCENARIO_FITS = "no scenario fits the selection"
+MODELS_CHANGED = "the model does not have these scenarios any more"
+
+
+class NothingSelected(SelectionError):
+    """The selection is valid but empty."""
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """Scenarios of one variant (its IRI).
+
+    Without ``numbers`` (from 1), all of them; without ``execution`` (IRI), by any execution or none; without
+    ``repetitions`` (from 1), all.
+    """
+
+    variant: str
+    numbers: frozenset[int] | None = None
+    execution: str | None = None
+    repetitions: frozenset[int] | None = None
+
+    def admits(self, number: int) -> bool:
+        """Whether it lists a scenario of its variant."""
+        return self.numbers is None or number in self.numbers
+
+    def admits_spec(self, spec: ScenarioSpec) -> bool:
+        """Whether it lists an execution of its variant."""
+        by = None if spec.execution is None else spec.execution.iri
+        return (
+            self.admits(spec.variation)
+            and (None in (self.execution, by) or self.execution == by)
+            and (self.repetitions is None or spec.repetition in self.repetitions)
+        )
+
+
+class Choice:
+    """An explicit list of scenarios."""
+
+    def __init__(self, entries: Iterable[Listed]) -> None:
+        self._entries: dict[str, list[Listed]] = {}
+        for entry in entries:
+            self._entries.setdefault(entry.variant, []).append(entry)
+
+    def entries(self, variant: str) -> Sequence[Listed]:
+        """Return the entries of a variant."""
+        return self._entries.get(variant, ())
+
+    def admits(self, variant: str, number: int) -> bool:
+        """Whether a scenario is listed, by whatever execution."""
+        return any(entry.admits(number) for entry in self.entries(variant))
+
+    def admits_spec(self, spec: ScenarioSpec) -> bool:
+        """Whether an execution is listed."""
+        return any(entry.admits_spec(spec) for entry in self.entries(spec.variant))
+
+    def admits_execution(self, execution: Execution) -> bool:
+        """Whether scenarios are listed that an execution of the model runs."""
+        return any(entry.execution in (None, execution.iri) for entry in self.entries(execution.variant))
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """What a user asks for; the empty selection takes everything.
+
+    ``names`` are variants or executions by local name, CURIE or IRI. At most one of ``first``, ``sample`` and
+    ``pairwise`` reduces the scenarios that satisfy ``where``. A scenario must be listed in each of ``choices`` and
+    satisfy ``only``. ``seed`` decides the sample and, unless the run has its own, the run; ``default_seed`` is used
+    where neither the user nor an execution of a model states one.
+    """
+
+    names: Sequence[str] = ()
+    where: str | None = None
+    first: int | None = None
+    sample: int | None = None
+    pairwise: int | None = None
+    seed: int | None = None
+    choices: Sequence[Choice] = ()
+    only: Callable[[ScenarioSpec], bool] | None = None
+    default_seed: int = DEFAULT_SEED
+
+    def wanted(self) -> Wanted:
+        """Return the part of the selection that is made on the variations."""
+        seed = self.default_seed if self.seed is None else self.seed
+        return Wanted(self.where, self.first, self.sample, self.pairwise, seed)
+
+    def admits_spec(self, spec: ScenarioSpec) -> bool:
+        """Whether an execution is selected by ``choices`` and ``only``."""
+        return all(choice.admits_spec(spec) for choice in self.choices) and (self.only is None or self.only(spec))
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """What a covering array covers: a variant's CURIE, its scenarios, the covered and the possible combinations."""
+
+    variant: str
+    scenarios: int
+    covered: int
+    possible: int
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What to execute of some models.
+
+    ``name`` is what reports call them together, ``path`` their file or folder, ``None`` for a text that is no file.
+    """
+
+    name: str
+    path: Path | None
+    files: tuple[ModelFile, ...]
+    selection: Selection
+    requests: tuple[RunRequest, ...]
+    covers: tuple[Coverage, ...]
+
+    @classmethod
+    def of(cls, model: Model, selection: Selection) -> Plan:
+        """Return the plan of a model; raises ``ModelErrors``, ``NothingToRun`` and ``SelectionError``."""
+        return cls.of_files(str(model.path), model.path, model.runnable, selection)
+
+    @classmethod
+    def of_files(cls, name: str, path: Path | None, files: tuple[ModelFile, ...], selection: Selection) -> Plan:
+        """Return the plan of sound models with scenarios; raises ``SelectionError``."""
+        planner = _Planner(files, selection)
+        return cls(name, path, files, selection, tuple(planner.requests()), tuple(planner.covers))
+
+    @cached_property
+    def digest(self) -> str:
+        """The joint digest of the models' graphs."""
+        from robbdd_tools.graph.digest import joint_digest
+
+        return joint_digest(file.digest for file in self.files)
+
+    @cached_property
+    def scenarios(self) -> tuple[ScenarioSpec, ...]:
+        """The scenarios in execution order, with names, values and seeds, as a run without further options has them."""
+        with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
+            return self.prepare(Path(folder)).scenarios
+
+    def __len__(self) -> int:
+        """Return the number of executions."""
+        return len(self.scenarios)
+
+    def run(
+        self,
+        *,
+        seed: int | None = None,
+        repeat: int | None = None,
+        jobs: int | None = None,
+        timeout: float | None = None,
+        stop_on_failure: bool = False,
+        keeping: Keeping | None = None,
+    ) -> Run:
+        """Return a run of the plan, to be used as a context manager.
+
+        ``seed`` and ``repeat`` replace those of the model; ``jobs`` is the number of agent processes (default: the
+        number of cores), ``timeout`` the wall time (s) of one scenario (0: any). ``keeping`` says where the run is
+        kept, by default in the store of the model's project. Raises ``OSError`` and ``NothingSelected``.
+        """
+        from robbdd_tools.workbench.folder import Keeping, new_folder
+        from robbdd_tools.workbench.run import Run
+
+        place = new_folder(self.path or Path(), keeping or Keeping())
+        policy = Policy(stop_on_failure=stop_on_failure)
+        policy = policy if jobs is None else replace(policy, jobs=jobs)
+        policy = policy if timeout is None else replace(policy, timeout=timeout)
+        return Run.begin(self, place.place, policy, seed=seed, repeat=repeat, on_close=place.remove)
+
+    def prepare(
+        self, folder: Path, *, seed: int | None = None, repeat: int | None = None, traces: bool = False
+    ) -> Manifest:
+        """Write all that agents need into ``folder``; raises ``OSError`` and ``NothingSelected``.
+
+        A ``seed`` replaces those of the selection and of executions, ``repeat`` their number of repetitions; ``traces``
+        keeps the traces.
+        """
+        chosen = self.selection.seed if seed is None else seed
+        requests = [_with(request, chosen, repeat) for request in self.requests]
+        own = self.selection.default_seed if chosen is None else chosen
+        manifest = prepare_all(requests, self.name, own, folder, traces)
+        if not manifest.scenarios:
+            raise NothingSelected(NO_SCENARIO_FITS)
+        return manifest
+
+
+def _with(request: RunRequest, seed: int | None, repeat: int | None) -> RunRequest:
+    """Return a request with a seed that also replaces those of executions, and a number of repetitions."""
+    if seed is not None:
+        executions = tuple(replace(execution, seed=None) for execution in request.chosen_executions())
+        request = replace(request, seed=seed, executions=executions)
+    return replace(request, repeat=repeat)
+
+
+class _Planner:
+    """Selects among models in order; each variant and execution is taken from the first model that has it."""
+
+    def __init__(self, files: Sequence[ModelFile], selection: Selection) -> None:
+        self._files = files
+        self._selection = selection
+        self._taken: set[Iri] = set()
+        self.covers: list[Coverage] = []
+
+    def requests(self) -> list[RunRequest]:
+        """Return a request for each model with something selected; raises ``SelectionError``."""
+        self._refuse_unknown_names()
+        found: list[RunRequest] = []
+        problems: list[SelectionError] = []
+        for file in self._files:
+            try:
+                request = self._request(file)
+            except SelectionError as error:
+                problems.append(error)
+            else:
+                found += [] if request is None else [request]
+        if not found:
+            raise problems[0] if problems else NothingSelected(MODELS_CHANGED)
+        return found
+
+    def _request(self, file: ModelFile) -> RunRequest | None:
+        model, selection = file.acceptance, self._selection
+        executions = tuple(one for one in self._executions(model) if one.iri not in self._taken)
+        executed = {execution.variant for execution in executions}
+        variants = [
+            one
+            for one in self._variants(model)
+            if (one.iri in executed if model.executions else one.iri not in self._taken)
+        ]
+        self._taken.update(one.iri for one in (*variants, *executions))
+        if not variants:
+            return None
+        selected = Selected(model, variants, selection.wanted())
+        self.covers += coverage(model, selected.covers)
+
+        def scenarios(variant: Variant) -> Iterable[Numbered]:
+            for one in selected.scenarios(variant):
+                if all(choice.admits(variant.iri, one[0]) for choice in selection.choices):
+                    yield one
+
+        if all(next(iter(scenarios(variant)), None) is None for variant in variants):
+            raise NothingSelected(NO_SCENARIO_FITS)
+        return RunRequest(
+            model,
+            file.name,
+            selection.wanted().seed,
+            frozenset(variant.iri for variant in variants),
+            scenarios,
+            executions,
+            only=selection.admits_spec,
+        )
+
+    def _executions(self, model: AcceptanceModel) -> Iterable[Execution]:
+        for execution in model.executions:
+            names = {*_names(model, execution.iri), *_names(model, execution.variant)}
+            if self._names_any(names) and all(one.admits_execution(execution) for one in self._selection.choices):
+                yield execution
+
+    def _variants(self, model: AcceptanceModel) -> Iterable[Variant]:
+        executed = {execution.variant for execution in self._executions(model)}
+        for variant in (variant for story in model.stories for variant in story.variants):
+            named = variant.iri in executed or (not model.executions and self._names_any(_names(model, variant.iri)))
+            if named and all(choice.entries(variant.iri) for choice in self._selection.choices):
+                yield variant
+
+    def _names_any(self, names: set[str]) -> bool:
+        return not self._selection.names or not names.isdisjoint(self._selection.names)
+
+    def _refuse_unknown_names(self) -> None:
+        local: set[str] = set()
+        known: set[str] = set()
+        for file in self._files:
+            model = file.acceptance
+            executed = {execution.variant for execution in model.executions}
+            every = [variant.iri for story in model.stories for variant in story.variants]
+            iris = [one for one in every if one in executed or not executed]
+            for iri in (*iris, *(execution.iri for execution in model.executions)):
+                known |= _names(model, iri)
+                local.add(_local(model, iri))
+        for name in self._selection.names:
+            if name not in known:
+                raise SelectionError(f"there is no scenario '{name}'; the model has {', '.join(sorted(local))}")
+
+
+def coverage(model: AcceptanceModel, covers: Mapping[Iri, Cover]) -> Iterable[Coverage]:
+    """Yield what each covering array of a selection covers."""
+    for iri, cover in covers.items():
+        yield Coverage(model.curie(iri), len(cover.indices), cover.covered, cover.possible)
+
+
+def _names(model: AcceptanceModel, iri: Iri) -> set[str]:
+    return {str(iri), model.curie(iri), _local(model, iri)}
+
+
+def _local(model: AcceptanceModel, iri: Iri) -> str:
+    return model.curie(iri).rsplit(":", 1)[-1]

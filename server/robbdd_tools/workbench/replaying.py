@@ -1,0 +1,135 @@
+"""Simulate a stored run again and compare the traces bit by bit."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.base.files import load_bytes
+from robbdd_tools.base.interpreter import run as run_module
+from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.writing import replace_file
+from robbdd_tools.run.manifest import MANIFEST
+from robbdd_tools.run.prepare import FEATURES
+from robbdd_tools.run.protocol import RunStarted, trace_file
+from robbdd_tools.run.results import RunResults, finished_in
+from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
+from robbdd_tools.run.user_code import refuse_user_code
+from robbdd_tools.workbench.unchanged import model_now, refusal
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.protocol import Manifest, RunMessage, ScenarioSpec
+    from robbdd_tools.run.store import StoredRun
+
+COMPARE = "robbdd_tools.agent.compare"
+
+
+class CannotReplay(RobbddError):
+    """A stored run cannot be replayed; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayedTrace:
+    """How the trace of one execution compares: ``difference`` is empty for traces equal to the last bit."""
+
+    index: int
+    name: str
+    difference: str
+
+
+class Replay:
+    """The replay of a stored run; consume ``messages`` once, then ask for ``traces``.
+
+    ``names`` selects scenarios or variants, all without any; ``force`` simulates with files as they are now, changed or
+    not. ``folder`` is an empty folder to simulate in.
+    """
+
+    def __init__(
+        self, place: StoredRun, folder: Path, policy: Policy, names: Collection[str] = (), *, force: bool = False
+    ) -> None:
+        """Prepare a replay; raises ``CannotReplay``, ``UserCodeRefused``, ``NoSuchRun`` and ``OSError``."""
+        reason = "" if force else refusal(place, model_now(place))
+        if reason:
+            raise CannotReplay(reason)
+        self._place = place
+        self._folder = folder
+        self._manifest: Manifest = place.manifest()
+        refuse_user_code(self._manifest, place.folder)
+        wanted = _wanted(place, self._manifest, names)
+        self._indices = [index for index in wanted if trace_file(place.folder, index).is_file()]
+        self.without_trace = [self._manifest.scenarios[i].name for i in wanted if i not in self._indices]
+        """Names of finished scenarios whose trace was not kept."""
+        if not self._indices:
+            scenarios = " or ".join(names) or "any scenario"
+            raise CannotReplay(f"run {place.number or place.folder} keeps no trace of {scenarios}")
+        _copy(place.folder / MANIFEST, folder / MANIFEST)
+        shutil.copytree(place.folder / FEATURES, folder / FEATURES, ignore=_links, copy_function=_copy)
+        self.progress = RunResults(self._manifest)
+        self.simulator = ""
+        """Name and version of the simulator of the replay."""
+        self.ending = ""
+        """Why scenarios were left open; empty when all were simulated."""
+        self._reason = ""
+        self._scheduler = Scheduler(folder, self._manifest, policy, indices=self._indices)
+
+    @property
+    def total(self) -> int:
+        """The number of executions that are simulated again."""
+        return len(self._indices)
+
+    def cancel(self, reason: str = CANCELLED) -> None:
+        """End the replay; may be called from any thread."""
+        self._reason = self._reason or reason
+        self._scheduler.cancel()
+
+    def messages(self) -> Iterator[RunMessage]:
+        """Yield the messages of the simulation in the manifest's order. Raises ``OSError``."""
+        for message in self._scheduler.messages():
+            if isinstance(message, RunStarted):
+                self.simulator = message.simulator
+            self.progress.apply(message)
+            yield message
+        self.ending = self._reason or self._scheduler.ending
+
+    def traces(self) -> list[ReplayedTrace]:
+        """Compare the traces; raises ``CannotReplay`` when they cannot be read."""
+        done = run_module(COMPARE, str(self._place.folder.absolute()), str(self._folder.absolute()))
+        if done.returncode:
+            raise CannotReplay(f"the traces cannot be compared: {(done.stderr.strip().splitlines() or [''])[-1]}")
+        found = {entry["index"]: entry["difference"] for entry in map(json.loads, done.stdout.splitlines())}
+        missing = "it could not be simulated again"
+        return [
+            ReplayedTrace(index, self._manifest.scenarios[index].name, found.get(index, missing))
+            for index in self._indices
+        ]
+
+
+def _wanted(place: StoredRun, manifest: Manifest, names: Collection[str]) -> list[int]:
+    finished = finished_in(place.results())
+    return [
+        index
+        for index, spec in enumerate(manifest.scenarios)
+        if index in finished and (not names or not _names(spec).isdisjoint(names))
+    ]
+
+
+def _names(spec: ScenarioSpec) -> set[str]:
+    return {spec.name, _local(spec.name), _local(spec.variant)}
+
+
+def _local(name: str) -> str:
+    return name.replace("#", "/").rpartition("/")[2].rpartition(":")[2]
+
+
+def _copy(source: str | Path, target: str | Path) -> None:
+    replace_file(Path(target), load_bytes(Path(source), RESULT_SIZE))
+
+
+def _links(folder: str, names: list[str]) -> list[str]:
+    """Return the links in a folder, which are skipped: a run folder that we wrote has none."""
+    return [name for name in names if (Path(folder) / name).is_symlink()]

@@ -1,0 +1,55 @@
+"""Select again what failed in a stored run."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, shown_path
+from robbdd_tools.run.stored_results import RUNNING
+from robbdd_tools.workbench.plan import Choice, Listed
+
+
+class NothingFailed(RobbddError):
+    """Every scenario of the last run holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """What did not hold in a run, with the run's seed and its number of repetitions if it had several."""
+
+    choice: Choice
+    seed: int
+    repeat: int | None
+
+
+def last_run(store: RunStore, model: Path) -> StoredRun:
+    """Return the last stored run of a model that is not in progress; raises ``NoSuchRun``."""
+    for place in reversed(store.runs()):
+        with suppress(NoSuchRun):
+            if place.record().path == shown_path(model) and place.status().state != RUNNING:
+                return place
+    raise NoSuchRun(f"there is no stored run of {model} in {store.folder}")
+
+
+def failed_in(place: StoredRun) -> Failed:
+    """Return what did not hold in a run; raises ``NothingFailed`` and ``NoSuchRun``."""
+    results, specs = place.results(), place.manifest().scenarios
+    entries = zip(specs, results["scenarios"], strict=False)
+    failed = [spec for spec, entry in entries if entry["verdict"] != Outcome.HOLDS]
+    if not failed:
+        raise NothingFailed("nothing failed in the last run")
+    listed = [
+        Listed(
+            spec.variant,
+            frozenset({spec.variation}),
+            None if spec.execution is None else spec.execution.iri,
+            frozenset({spec.repetition}),
+        )
+        for spec in failed
+    ]
+    repeated = max(spec.repetition for spec in specs)
+    return Failed(Choice(listed), results["seed"], repeated if repeated > 1 else None)

@@ -1,0 +1,217 @@
+"""One run: agents execute a prepared folder, each finished execution is stored, then shown."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Self
+
+from robbdd_tools import __version__
+from robbdd_tools.run.protocol import ScenarioFinished
+from robbdd_tools.run.recording import OtherSimulator, Recording, why
+from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
+from robbdd_tools.run.store import RunRecord, origin, shown_path
+from robbdd_tools.run.used_files import digests, prepared_digest
+from robbdd_tools.run.user_code import refuse_user_code
+from robbdd_tools.workbench.executions import ExecutionResult, execution_result, execution_results
+from robbdd_tools.workbench.stored import Recorded
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from robbdd_tools.run.protocol import Manifest, RunMessage
+    from robbdd_tools.run.store import StoredRun
+    from robbdd_tools.workbench.plan import Plan
+
+Listener = Callable[["RunMessage"], None]
+
+
+class Run(Recorded):
+    """A run in progress; use it as a context manager, synchronous or asynchronous.
+
+    Consume it once, in one of three ways: iterate over it (results as executions finish), over ``messages`` (messages
+    in the manifest's order), or call ``wait``. ``cancel`` may be called from any thread. Leaving the context cancels
+    what is still open, and keeps what is finished.
+    """
+
+    def __init__(
+        self,
+        place: StoredRun,
+        policy: Policy,
+        recording: Recording,
+        results: RunResults,
+        indices: Sequence[int] | None = None,
+        on_close: Callable[[], None] = lambda: None,
+    ) -> None:
+        super().__init__(place)
+        self._manifest = results.manifest
+        self._recording = recording
+        self._listeners: list[Listener] = []
+        self._scheduler = Scheduler(place.folder, results.manifest, policy, self._take, indices)
+        self._on_close = on_close
+        self._reason = ""
+        self._thread: threading.Thread | None = None
+        self._closed = False
+        self.progress = results
+        """What is known so far; replaced by the stored results when the run ends."""
+        self.ending = ""
+        """Why executions were left open; empty for a complete run."""
+        self.problem = ""
+        """What kept the run from going on, such as a full disk; empty without one."""
+
+    @classmethod
+    def begin(
+        cls,
+        plan: Plan,
+        place: StoredRun,
+        policy: Policy,
+        *,
+        seed: int | None = None,
+        repeat: int | None = None,
+        on_close: Callable[[], None] = lambda: None,
+    ) -> Self:
+        """Prepare the run of a plan in a run folder, which is removed where that fails.
+
+        Raises ``OSError``, ``NothingSelected`` and ``UserCodeRefused``.
+        """
+        recording: Recording | None = None
+        try:
+            manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept)
+            refuse_user_code(manifest, place.folder)
+            recording = Recording(place, manifest)
+            record = _record(plan, place.folder, manifest)
+            recording.begin(record, policy, prepared_digest(place.folder))
+            place.write_record(record)
+        except BaseException:
+            if recording is not None:
+                recording.close()
+            if place.number:
+                place.discard()
+            on_close()
+            raise
+        return cls(place, policy, recording, RunResults(manifest), on_close=on_close)
+
+    @property
+    def manifest(self) -> Manifest:
+        """What the agents are told."""
+        return self._manifest
+
+    def listen(self, listener: Listener) -> None:
+        """Call ``listener`` with every message when it arrives, from the thread that consumes the run."""
+        self._listeners.append(listener)
+
+    def cancel(self, reason: str = CANCELLED) -> None:
+        """End the run within half a second; finished executions are kept, open clauses get ``reason``."""
+        self._reason = self._reason or reason
+        self._scheduler.cancel()
+
+    def messages(self) -> Iterator[RunMessage]:
+        """Yield the messages of the run in the manifest's order, each after ``progress`` has it."""
+        try:
+            for message in self._scheduler.messages():
+                if self._recording.is_news(message):
+                    self.progress.apply(message)
+                    yield message
+            self.ending = self._reason or self._scheduler.ending
+        except GeneratorExit:
+            self.ending = self._reason = self._reason or CANCELLED
+            raise
+        except OtherSimulator as error:
+            self.ending = self.problem = str(error)
+        except OSError as error:
+            self.ending = self.problem = why(error)
+        finally:
+            self._conclude()
+
+    def wait(self) -> Self:
+        """Execute everything; returns the run."""
+        for _ in self.messages():
+            pass
+        return self
+
+    def __iter__(self) -> Iterator[ExecutionResult]:
+        """Yield the result of each execution when it finishes, in whatever order."""
+        finished: SimpleQueue[ExecutionResult | BaseException | None] = SimpleQueue()
+        known = RunResults(self._manifest)
+
+        def collect(message: RunMessage) -> None:
+            known.apply(message)
+            if isinstance(message, ScenarioFinished):
+                finished.put(execution_result(message.index, known.scenario_json(message.index)))
+
+        def consume() -> None:
+            try:
+                self.wait()
+            except BaseException as error:  # raised again in the thread that iterates
+                finished.put(error)
+            finished.put(None)
+
+        self.listen(collect)
+        self._thread = threading.Thread(target=consume, daemon=True)
+        self._thread.start()
+        while (result := finished.get()) is not None:
+            if isinstance(result, BaseException):
+                raise result
+            yield result
+
+    async def __aiter__(self) -> AsyncIterator[ExecutionResult]:
+        """Yield as ``__iter__``, without blocking the event loop."""
+        results = iter(self)
+        while (result := await asyncio.to_thread(next, results, None)) is not None:
+            yield result
+
+    @property
+    def results(self) -> tuple[ExecutionResult, ...]:
+        """The results of all executions in the manifest's order; executes what nobody has executed yet."""
+        if self._thread is not None:
+            self._thread.join()
+        elif not self._closed and not self.ending and not self.progress.complete:
+            self.wait()
+        return execution_results(self.progress.as_json())
+
+    def close(self) -> None:
+        """Cancel what is open and release the store."""
+        if self._closed:
+            return
+        self.cancel()
+        if self._thread is not None:
+            self._thread.join()
+        self._closed = True
+        self._recording.close()
+        self._on_close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await asyncio.to_thread(self.close)
+
+    def _take(self, message: RunMessage) -> None:
+        if self._recording.take(message):
+            for listener in self._listeners:
+                listener(message)
+
+    def _conclude(self) -> None:
+        """Write the end of the run; ``progress`` becomes what is stored."""
+        try:
+            self.progress = self._recording.end(self.ending, interrupted=bool(self._reason))
+        except OSError as error:
+            self.problem = self.problem or why(error)
+            self.progress.close(self.problem)
+        self.ending = self.progress.ending
+
+
+def _record(plan: Plan, folder: Path, manifest: Manifest) -> RunRecord:
+    """Return what is run; a model that is no file is called by its name."""
+    path = plan.path
+    shown, start = (plan.name, plan.name) if path is None else (shown_path(path), origin(path, folder))
+    return RunRecord(shown, start, plan.digest, manifest.seed, __version__, files=digests(manifest, folder))

@@ -1,0 +1,40 @@
+"""Whether a stored run's model and files are still what they were, so that it can be replayed or resumed."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.run.used_files import changed
+from robbdd_tools.workbench.model import Model, load
+
+if TYPE_CHECKING:
+    from robbdd_tools.run.store import StoredRun
+
+
+def model_now(place: StoredRun) -> Model | str:
+    """Return the model of a stored run as it is now, or why it cannot be run; raises ``NoSuchRun``."""
+    path, shown = place.model(), place.record().path
+    if not path.exists():
+        return f"the model of the run, {shown}, is gone"
+    try:
+        model = load(path)
+        _ = model.runnable
+    except RobbddError as error:
+        return f"the model of the run, {shown}, cannot be run as it is now: {error}"
+    return model
+
+
+def refusal(place: StoredRun, model: Model | str) -> str:
+    """Return what changed since the run, with what to do; empty when nothing did. Raises ``NoSuchRun``."""
+    record = place.record()
+    others = [os.path.relpath(path) for path in changed(record.files, place.folder)]
+    if others:
+        return f"{', '.join(others)} {'was' if len(others) == 1 else 'were'} changed since the run"
+    if isinstance(model, str):
+        return model
+    if model.digest != record.digest:
+        digests = f"its graph's digest is {model.digest[:12]}, the run's {record.digest[:12]}"
+        return f"{record.path} was changed since the run ({digests})"
+    return ""
