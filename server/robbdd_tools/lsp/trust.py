@@ -35,10 +35,10 @@ async def refuse_run(ls: RobbddServer, argument: dict[str, Any]) -> str:
         asked = RunOptions.of(argument)
         options = replace(asked, failed=False, sample=None, first=min(asked.first or _SEARCHED, _SEARCHED))
         plan = await ls.in_background(lambda snapshot: plan_run(snapshot, ls.convert, options, ()), options.uri)
-        code = await asyncio.to_thread(_user_code, plan.request)
+        places = await asyncio.to_thread(_user_code, plan.request)
     except (ModelError, OSError):
-        code = ""
-    return f"{_REFUSAL}: {code}" if code else _WITHOUT_PLACES
+        places = ""
+    return f"{_REFUSAL}: {places}" if places else _WITHOUT_PLACES
 
 
 def _user_code(request: RunRequest) -> str:
