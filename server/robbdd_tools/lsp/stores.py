@@ -41,6 +41,8 @@ class Stores:
             status = run.status()
         except NoSuchRun:
             return frozenset()
+        if not run.folder.is_dir():
+            return frozenset()
         now = (status.state, status.finished)
         known = self._traced.get(run.folder)
         if known is None or known[0] != now:
