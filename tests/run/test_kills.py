@@ -35,10 +35,24 @@ def ends_within(process: subprocess.Popen[str], seconds: float) -> bool:
     try:
         assert process.wait(seconds) == 0
     except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
+        _kill(process)
         return False
     return True
+
+
+def ends_before(process: subprocess.Popen[str], folder: Path, results: int) -> bool:
+    """Return whether a process comes to its end before it has printed so many results; else it is killed then."""
+    while process.poll() is None:
+        if len(printed(folder)) >= results:
+            _kill(process)
+            return False
+    assert process.returncode == 0
+    return True
+
+
+def _kill(process: subprocess.Popen[str]) -> None:
+    process.kill()
+    process.wait()
 
 
 def printed(folder: Path) -> set[int]:
@@ -81,7 +95,14 @@ def test_killed_runs_lose_nothing_and_end_as_if_they_had_not_been(tmp_path: Path
         folder = tmp_path / "killed"
         folder.mkdir()
         before: set[int] = set()
-        while not ends_within(start(folder), chance.uniform(0.0, longest)):
+        # Starting takes longer than executing: most kills by the clock alone would come too early.
+        by_clock = kills % 2 == 0
+        while not (
+            ends_within(start(folder), chance.uniform(0.0, longest))
+            if by_clock
+            else ends_before(start(folder), folder, chance.randrange(1, COUNT))
+        ):
+            by_clock = not by_clock
             kills += 1
             runs = [run for run in RunStore(folder / FOLDER).runs() if run.began]
             now = set[int]().union(*map(stored, runs))
