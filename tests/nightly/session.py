@@ -181,10 +181,15 @@ class Session:
             document.version += 1
             self._send(document)
         wanted = {document.uri: expected.get(document.uri, []) for document in self.documents}
+
+        def published() -> dict[str, list[list[Any]]]:
+            # Files that are not open are published, too, whenever they have been looked at.
+            return {uri: found for uri, found in self._published().items() if uri in wanted}
+
         try:
-            self.client.wait(lambda _: self._published() == wanted)
+            self.client.wait(lambda _: published() == wanted)
         except TimeoutError as error:
-            raise Fault(_differences(self._published(), wanted)) from error
+            raise Fault(_differences(published(), wanted)) from error
         self.client.forget()
 
     def save(self, folder: Path) -> None:
