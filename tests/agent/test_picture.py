@@ -69,7 +69,7 @@ def test_a_scene_is_rendered_or_the_reason_is_given(tmp_path: Path) -> None:
         return
     assert done.returncode == 0, done.stderr
     nowhere = tmp_path / "nowhere" / "a.png"
-    assert render(tmp_path / "run", nowhere, MUJOCO_GL="egl").stderr == f"{nowhere}: No such file or directory\n"
+    assert render(tmp_path / "run", nowhere, MUJOCO_GL="egl").stderr == f"{nowhere.parent}: No such file or directory\n"
     pixels = read_png(tmp_path / "a.png").astype(int)
     assert pixels.shape == (800, 1280, 3)
     reddish = (pixels[..., 0] > 90) & (pixels[..., 1:].max(axis=2) < 80)

@@ -27,7 +27,7 @@ from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.frames import Request, frame
 from robbdd_tools.lsp.handlers import create_server
 from robbdd_tools.names.project import Project
-from robbdd_tools.run.launch import Agent
+from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.syntax.declaration import Declaration
 from robbdd_tools.syntax.parse import forget_declarations
 
@@ -157,5 +157,6 @@ def test_an_agent_that_has_ended_holds_no_descriptors(tmp_path: Path) -> None:
     agent = Agent(tmp_path, module="robbdd_tools.cli", arguments=["--version"])
     for _ in agent.messages():
         pass
+    stop([agent])
     assert process.num_fds() == before
     agent.execute(1)
