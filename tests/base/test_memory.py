@@ -113,6 +113,7 @@ async def test_a_handler_that_is_done_leaves_no_future_behind() -> None:
         done.set()
 
     # As pygls calls the handlers of edits: with an identifier that no answer will name.
+    # Private: pygls offers no other way to see the futures that it keeps.
     server.protocol._execute_handler("edit", handle, lambda _: None)  # pyright: ignore[reportPrivateUsage]
     await done.wait()
     await asyncio.sleep(0)
@@ -134,6 +135,7 @@ async def test_handlers_that_go_on_are_ended_by_a_shutdown() -> None:
     for number in range(3):
         protocol._execute_handler(f"edit {number}", edit, lambda _: None)  # pyright: ignore[reportPrivateUsage]
     # As pygls does it, step by step.
+    # pygls leaves the types of this generator open.
     for _ in protocol.lsp_shutdown():  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
         pass
     for _ in range(4):
@@ -144,6 +146,7 @@ async def test_handlers_that_go_on_are_ended_by_a_shutdown() -> None:
 def test_digests_do_not_keep_the_texts_that_they_were_made_of() -> None:
     tracemalloc.start()
     for number in range(300):
+        # Private: the cache under test has no other entrance that takes a bare text.
         results._digest(f"{number} " + "long " * 2000)  # pyright: ignore[reportPrivateUsage]
     used, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
