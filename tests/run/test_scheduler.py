@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from time import monotonic
 
@@ -19,6 +19,7 @@ from robbdd_tools.run.protocol import (
     ClauseJudged,
     LogLine,
     Manifest,
+    Output,
     RunFinished,
     RunMessage,
     RunStarted,
@@ -128,6 +129,41 @@ def test_steps_that_cannot_be_loaded_are_said_once(tmp_path: Path) -> None:
     results, _, ending = run(tmp_path / "run", manifest, Policy(2))
     assert not results.complete
     assert "No module named 'no_such_module'" in ending
+
+
+def test_output_of_shared_code_is_shown_once_whichever_process_is_ahead(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    manifest = prepared(tmp_path / "run", [HOLDS], [HOLDS])
+    first_may_speak = threading.Event()
+
+    class FakeAgent:
+        """The second process prints and fails while the first one still loads; then the first prints the same."""
+
+        pid = 0
+
+        def __init__(self, folder: Path, number: int, log_limit: int) -> None:
+            self.number = number
+
+        def execute(self, index: int) -> None: ...
+        def terminate(self) -> None: ...
+        def wait(self, seconds: float) -> None: ...
+        def kill(self) -> None: ...
+        def finish(self) -> None: ...
+
+        def messages(self) -> Iterator[RunMessage]:
+            if self.number == 1:
+                first_may_speak.wait(60)
+            yield Output(None, "loading")
+            if self.number == 2:
+                yield Output(None, "loaded")
+                first_may_speak.set()
+                return
+            yield RunFinished(False)
+
+    monkeypatch.setattr("robbdd_tools.run.scheduler.Agent", FakeAgent)
+    _, messages, _ = run(tmp_path / "run", manifest, Policy(2))
+    assert [message.text for message in messages if isinstance(message, Output)] == ["loading", "loaded"]
 
 
 def test_features_that_cannot_be_read_are_said_once(tmp_path: Path) -> None:

@@ -75,6 +75,7 @@ class _Worker:
     timed_out: bool = False
     complaint: str = "the agent cannot work"
     judged: set[int] = field(default_factory=set[int])
+    shared_outputs: int = 0
 
     def employ(self, task: Iterable[int]) -> None:
         """Give it scenarios to execute, one after the other."""
@@ -149,6 +150,7 @@ class Scheduler:
         self._greeted = False
         self._cancelled = False
         self._shared_faults: set[str] = set()
+        self._shared_outputs = 0
         self.ending = ""
 
     @property
@@ -258,8 +260,10 @@ class Scheduler:
                     self._watch(message)
                     yield message
             case Output(None):
-                # Each process loads the same code, which prints the same.
-                if worker is self._workers[0]:
+                # Each process loads the same code and prints the same; the one that is ahead is shown.
+                worker.shared_outputs += 1
+                if worker.shared_outputs > self._shared_outputs:
+                    self._shared_outputs = worker.shared_outputs
                     self._watch(message)
                     yield message
             case ClauseStarted() | MarginRanges() | UserCodeFailed() | Output():
