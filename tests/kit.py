@@ -20,8 +20,8 @@ import pytest
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.names.project import Project, Snapshot
-from robbdd_tools.run.manifest import written_manifest
-from robbdd_tools.run.protocol import Manifest
+from robbdd_tools.protocol.manifest_file import written_manifest
+from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.syntax.parse import LANGUAGES
 
 FOLDER = "file:///fixture/"

@@ -18,6 +18,7 @@ LAYERS: tuple[frozenset[str], ...] = (
     frozenset({"base", "catalog.api"}),
     frozenset({"monitor"}),
     frozenset({"catalog"}),
+    frozenset({"protocol"}),
     frozenset({"traces"}),
     frozenset({"syntax"}),
     frozenset({"names"}),
@@ -28,7 +29,14 @@ LAYERS: tuple[frozenset[str], ...] = (
     frozenset({"lsp", "cli", "commands"}),
     frozenset({"start"}),
 )
-AGENT_MAY = {"base", "catalog", "catalog.api", "monitor", "traces", "run.manifest", "run.protocol", "agent"}
+EVIDENCE = {"base", "catalog.api", "monitor", "catalog", "protocol", "traces"}
+BRANCH: dict[str, set[str]] = {
+    "user_code": EVIDENCE,
+    "judging": {*EVIDENCE, "user_code"},
+    "world": {*EVIDENCE, "user_code"},
+    "agent": {*EVIDENCE, "user_code", "judging", "world"},
+}
+"""The layers of the agent process, and what each may import; nothing outside of the branch imports them."""
 HOMES = {
     "textx": {"syntax"},
     "rapidfuzz": {"names"},
@@ -39,7 +47,7 @@ HOMES = {
     "pyld": {"graph"},
     "jinja2": {"gherkin"},
     "behave": {"agent"},
-    "mujoco": {"agent"},
+    "mujoco": {"world"},
     "mcap": {"traces"},
     "sqlite3": {"run"},
     "py_trees": {"agent"},
@@ -82,11 +90,11 @@ def forbidden_imports(module: str, path: Path) -> Iterator[str]:
     own = layer(module)
     for target in own_imports(path):
         other = layer(target)
-        if own == "agent":
-            allowed = other in AGENT_MAY or target in AGENT_MAY
+        if own in BRANCH:
+            allowed = other == own or other in BRANCH[own]
         else:
             same_rank = other == own or (own, other) in NEIGHBOURS
-            allowed = other != "agent" and (same_rank or rank(other) < rank(own))
+            allowed = other not in BRANCH and (same_rank or rank(other) < rank(own))
         if not allowed:
             yield f"{module} imports {target}"
 

@@ -22,8 +22,8 @@ from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 from kit import EXAMPLES
 from lsp_kit import ASKED, PATIENCE
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.graph.query import BadQuery, run_query
-from robbdd_tools.graph.serialize import parse
+from robbdd_tools.graph.ask.query import BadQuery, run_query
+from robbdd_tools.graph.rdf.serialize import parse
 
 SHAPES = """@prefix sh: <http://www.w3.org/ns/shacl#> .
 @prefix owl: <http://www.w3.org/2002/07/owl#> .

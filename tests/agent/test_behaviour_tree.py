@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from agent.worlds import BALL, BIN_WS, CUBE, EVENTS, PANDA, SCENE, scenario
 from robbdd_tools.agent.beginning import calls_of
 from robbdd_tools.agent.course import Course, Timing
-from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
 from robbdd_tools.catalog.executable import Implementation, Origin
-from robbdd_tools.run.protocol import ConfigSpec, ScenarioSpec
+from robbdd_tools.protocol.specs import ConfigSpec, ScenarioSpec
+from robbdd_tools.world.errors import SceneError
+from world.worlds import BALL, BIN_WS, CUBE, EVENTS, PANDA, SCENE, scenario
 
 pytestmark = pytest.mark.physics
 HEAVY = replace(SCENE, config=(ConfigSpec(BALL, "mass", "10"),))

@@ -7,7 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from agent.worlds import (
+from robbdd_tools.agent.course import Call, Timing
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.monitor.judge import judge
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.world.engine import TICK
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.placement import TABLE_TOP
+from world.worlds import (
     BALL,
     BENCH_WS,
     BIN,
@@ -19,16 +29,6 @@ from agent.worlds import (
     execution,
     pick_place,
 )
-from robbdd_tools.agent.course import Call, Timing
-from robbdd_tools.agent.engine import TICK
-from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.agent.execution import Execution
-from robbdd_tools.agent.placement import TABLE_TOP
-from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.monitor.judge import judge
-from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
-from robbdd_tools.monitor.trace import Trace
-from robbdd_tools.monitor.verdict import Outcome, Verdict
 
 pytestmark = pytest.mark.physics
 ORDER = ["t:start", "t:pick-start", "t:pick-end", "t:place-start", "t:place-end", "t:end"]

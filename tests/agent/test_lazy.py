@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from agent.worlds import BIN_WS, CUBE, PANDA, SCENE, scenario
 from robbdd_tools.agent.channel import Channel
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.session import ScenarioRun
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import ConfigSpec, ExecutionSpec, RunMessage, ScenarioFinished, SceneSpec
+from robbdd_tools.protocol.messages import RunMessage, ScenarioFinished
+from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
+from world.worlds import BIN_WS, CUBE, PANDA, SCENE, scenario
 
 pytestmark = pytest.mark.physics
 GIVEN = (5, "given", f'"{CUBE}" is located at "env:bench_ws" before event "t:pick-start"')

@@ -13,26 +13,24 @@ from pathlib import Path
 
 import pytest
 
-from agent.worlds import BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, Steps, write_run
 from kit import write_manifest
-from robbdd_tools.agent.world import build_world
-from robbdd_tools.run.manifest import MANIFEST
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.manifest_file import MANIFEST
+from robbdd_tools.protocol.messages import (
     ClauseJudged,
     ClauseStarted,
-    ConfigSpec,
     Execute,
     LogLine,
-    Manifest,
     RunFinished,
     RunMessage,
     RunStarted,
     ScenarioFinished,
-    ScenarioSpec,
     ScenarioStarted,
     decode,
     encode,
 )
+from robbdd_tools.protocol.specs import ConfigSpec, Manifest, ScenarioSpec
+from robbdd_tools.world.composition import build_world
+from world.worlds import BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, Steps, write_run
 
 pytestmark = pytest.mark.physics
 CLAUSES = (

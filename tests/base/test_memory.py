@@ -21,10 +21,10 @@ from kit import MODEL, SCENE
 from robbdd_tools.features import results
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.semantic_tokens import semantic_tokens
-from robbdd_tools.graph.user_shapes import EditorShapes
+from robbdd_tools.graph.shapes.project_shapes import EditorShapes
 from robbdd_tools.lsp import worker
 from robbdd_tools.lsp.background import Background
-from robbdd_tools.lsp.frames import Request, frame
+from robbdd_tools.lsp.framing import Request, frame
 from robbdd_tools.lsp.handlers import create_server
 from robbdd_tools.names.project import Project
 from robbdd_tools.run.launch import Agent, stop

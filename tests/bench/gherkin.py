@@ -20,8 +20,8 @@ import json, resource, shutil, sys, time
 from pathlib import Path
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.gherkin.files import whole_plan
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.read import read_model
+from robbdd_tools.graph.write.build import build_graph
+from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.names.project import Project
 from robbdd_tools.run.prepare import lay_out
 folder = Path(sys.argv[1])

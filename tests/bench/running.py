@@ -14,16 +14,16 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from agent.worlds import BALL, CUBE, OTHER_WS, PANDA, execution, pick_place
 from kit import EXAMPLES
-from robbdd_tools.agent.engine import SUBSTEPS, TICK, mujoco
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.read import read_model
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project
+from robbdd_tools.protocol.messages import RunMessage, RunStarted, ScenarioFinished
 from robbdd_tools.run.prepare import RunRequest, prepare
-from robbdd_tools.run.protocol import RunMessage, RunStarted, ScenarioFinished
 from robbdd_tools.run.scheduler import Policy, Scheduler
+from robbdd_tools.world.engine import SUBSTEPS, TICK, mujoco
+from world.worlds import BALL, CUBE, OTHER_WS, PANDA, execution, pick_place
 
 MODEL = EXAMPLES / "pickplace" / "pickplace.bdd"
 SEEDS = 8

@@ -11,10 +11,10 @@ from tests.bench.models import long_story, model
 
 from kit import FOLDER, SCENE
 from robbdd_tools.base.memory import collect_rarely
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.incremental import Validation
-from robbdd_tools.graph.query import ready_query, run_query
-from robbdd_tools.graph.validate import validate
+from robbdd_tools.graph.ask.query import ready_query, run_query
+from robbdd_tools.graph.shapes.incremental import Validation
+from robbdd_tools.graph.shapes.validate import validate
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project
 
 if TYPE_CHECKING:

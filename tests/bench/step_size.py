@@ -15,12 +15,12 @@ from unittest.mock import patch
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from agent.worlds import BALL, BIN, BIN_WS, CUBE, EVENTS, OTHER_BIN, OTHER_WS, SCENE, execution, pick_place
-from robbdd_tools.agent import simulation, world
-from robbdd_tools.agent.clauses import decide
-from robbdd_tools.agent.engine import SUBSTEPS, TIMESTEP
-from robbdd_tools.agent.sentences import read_clause
-from robbdd_tools.run.protocol import ConfigSpec
+from robbdd_tools.judging.clauses import decide
+from robbdd_tools.judging.sentences import read_clause
+from robbdd_tools.protocol.specs import ConfigSpec
+from robbdd_tools.world import composition, simulation
+from robbdd_tools.world.engine import SUBSTEPS, TIMESTEP
+from world.worlds import BALL, BIN, BIN_WS, CUBE, EVENTS, OTHER_BIN, OTHER_WS, SCENE, execution, pick_place
 
 AGENTS = ("env:panda", "env:ur10")
 THINGS = (CUBE, BALL)
@@ -41,7 +41,7 @@ def verdicts(seed: int, refinement: int) -> Iterator[tuple[str, str, str]]:
     config = tuple(ConfigSpec(name, "height_scale", scale) for name in (BIN, OTHER_BIN))
     scene = replace(SCENE, agents=(agent,), config=config)
     with (
-        patch.object(world, "TIMESTEP", TIMESTEP / refinement),
+        patch.object(composition, "TIMESTEP", TIMESTEP / refinement),
         patch.object(simulation, "SUBSTEPS", SUBSTEPS * refinement),
     ):
         run = execution([pick_place(thing, goal, agent)], scene, seed)

@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
-from robbdd_tools.agent.engine import mujoco
-from robbdd_tools.agent.sentences import Fluent, fluent_pattern, read_clause, read_doing
-from robbdd_tools.agent.world import mjcf_path
 from robbdd_tools.catalog.api import Behaviour, ObjectModel, Predicate, RobotModel
 from robbdd_tools.catalog.registry import DuplicateWord, build_catalog, load_catalog
+from robbdd_tools.judging.sentences import Fluent, fluent_pattern, read_clause, read_doing
+from robbdd_tools.world.composition import mjcf_path
+from robbdd_tools.world.engine import mujoco
 
 CATALOG = load_catalog()
 every_predicate = pytest.mark.parametrize("predicate", CATALOG.predicates.values(), ids=lambda word: word.name)

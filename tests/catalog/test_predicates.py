@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from monitor.traces import heights, still, trace_of
-from robbdd_tools.agent.scene import contents_of
 from robbdd_tools.catalog.api import Arguments, Region
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import Before, During
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict
-from robbdd_tools.run.protocol import SceneSpec
+from robbdd_tools.protocol.specs import SceneSpec
+from robbdd_tools.world.scene import contents_of
 
 REGIONS = {
     "tray_ws": (("tray", Region((0.0, 0.0, 0.1), (0.2, 0.1, 0.1))),),

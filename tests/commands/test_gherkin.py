@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from kit import EXAMPLES, MODEL, SCENE
-from robbdd_tools.run.manifest import read_manifest
+from robbdd_tools.protocol.manifest_file import read_manifest
 
 PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
 

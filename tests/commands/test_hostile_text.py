@@ -17,14 +17,14 @@ import pytest
 from commands.terminals import environment, on_a_terminal, screen_lines
 from commands.test_graph_models import PICKPLACE, robbdd
 from kit import EXAMPLES
-from robbdd_tools.graph.serialize import parse
+from robbdd_tools.graph.rdf.serialize import parse
 
 SENTENCE = "the part is [/nope] fine [bold]really[/bold] :smile: ['a', 'b'] 12"
 HOSTILE = "[red]x[/] \x1b[2J\x9b2J\r\n::error::forged \u202e"
 DISPLAY = """
 import sys
 from robbdd_tools.commands.progress import Display
-from robbdd_tools.run.protocol import *
+from robbdd_tools.protocol.messages import *
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.monitor.verdict import Outcome
 text = sys.argv[1]

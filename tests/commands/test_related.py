@@ -19,7 +19,7 @@ from robbdd_tools.agent.channel import Channel
 from robbdd_tools.agent.course import Course
 from robbdd_tools.agent.session import Session
 from robbdd_tools.monitor.verdict import Verdict
-from robbdd_tools.run.protocol import Manifest
+from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.workbench.model import load
 
 pytestmark = pytest.mark.physics

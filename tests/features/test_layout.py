@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from checks.models import LINES
 from kit import MODEL, MODELS, SCENE, corpus, fixture
 from robbdd_tools.features.layout import lay_out
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.serialize import serialize
+from robbdd_tools.graph.rdf.serialize import serialize
+from robbdd_tools.graph.write.build import build_graph
 
 
 def test_indentation_follows_brackets_and_labels() -> None:

@@ -18,7 +18,7 @@ from robbdd_tools.features.refactor_clauses import extracted_clauses
 from robbdd_tools.features.refactor_declarations import modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.rename import rename
-from robbdd_tools.graph.build import build_graph
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project
 
 TARGETS = "const set (ns=t) targets { <places.tray_ws>, <places.bench_ws> }\n"

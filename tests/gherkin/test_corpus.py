@@ -13,9 +13,9 @@ from kit import corpus
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.gherkin.feature import feature_pieces
 from robbdd_tools.gherkin.variations import count
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.model import AcceptanceModel
-from robbdd_tools.graph.read import read_model
+from robbdd_tools.graph.acceptance_model import AcceptanceModel
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project
 
 Seen = tuple[frozenset[tuple[str, frozenset[str]]], tuple[tuple[str, str], ...]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gherkin_kit import edited, feature, pieces, steps
 from kit import MODEL, SCENE, STORY
 from robbdd_tools.gherkin.feature import feature_file_name
-from robbdd_tools.graph.model import AcceptanceModel, Iri, Story
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Iri, Story
 
 
 def test_a_scenario_lists_its_scene_and_states_its_clauses() -> None:

@@ -13,8 +13,8 @@ import pytest
 from kit import MODEL, SCENE, fixture, schema_errors
 from robbdd_tools.gherkin.files import FeaturePlan, clause_origins, whole_plan, write_features
 from robbdd_tools.gherkin.render import sheet
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.read import read_model
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
 
 GROUPED = MODEL.replace(
     "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)",

@@ -11,8 +11,8 @@ from kit import MODELS, fixture
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.gherkin.variations import bindings, count
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.read import read_model
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.names.variants import variants_of
 

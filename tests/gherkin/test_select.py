@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
 from robbdd_tools.gherkin.variations import at, bindings, count
-from robbdd_tools.graph.model import (
+from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     Cell,
     Iri,

@@ -5,10 +5,10 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robbdd_tools.agent import sentences as read
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.steps import StepWriter
-from robbdd_tools.graph.model import AcceptanceModel, Cell, Clause, Exists, Fluent, Iri, Junction, TextClause
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Exists, Fluent, Iri, Junction, TextClause
+from robbdd_tools.judging import sentences as read
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 
 MODEL = AcceptanceModel((), {}, {Iri("x:set"): (Iri("x:a"), Iri("x:b"))}, {"x": "x:"})

@@ -5,7 +5,7 @@ from itertools import islice
 import pytest
 
 from robbdd_tools.gherkin.variations import bindings, count
-from robbdd_tools.graph.model import Cell, Iri, Product, Selection, Table
+from robbdd_tools.graph.acceptance_model import Cell, Iri, Product, Selection, Table
 
 A, B = Iri("x:a"), Iri("x:b")
 LETTERS = (Iri("x:p"), Iri("x:q"), Iri("x:r"))

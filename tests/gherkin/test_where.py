@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robbdd_tools.gherkin.where import WhereError, check_where, condition, parse_where
-from robbdd_tools.graph.model import AcceptanceModel, Cell, Iri, Product, SceneModel, Template, Variant
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, Product, SceneModel, Template, Variant
 
 SCENE = SceneModel((), (), (), {}, {})
 MODEL = AcceptanceModel((), {}, {}, {"e": "https://x/e/", "t": "https://x/t/"})

@@ -8,9 +8,9 @@ from graph.statements import built, of
 from graph.test_text import assert_identity
 from graph.test_validate import check
 from kit import EVENTS, STORY, TEMPLATE
-from robbdd_tools.graph.read import read_model
-from robbdd_tools.graph.validate import validate
-from robbdd_tools.graph.vocabulary import expand
+from robbdd_tools.graph.rdf.vocabulary import expand
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.shapes.validate import validate
 
 TREE = "Behaviour Tree (ns=t) handling { py { module: my_pkg.trees, attr: create } node pick node place }\n"
 LINKED = TEMPLATE.replace(

@@ -4,7 +4,7 @@ import pytest
 
 from graph.statements import built, of, statements
 from kit import EVENTS, MODEL, TEMPLATE, fixture
-from robbdd_tools.graph.build import build_graph
+from robbdd_tools.graph.write.build import build_graph
 
 SETS = TEMPLATE.replace("var goal", "var goal\n    set var goals")
 TIMED = "before <pick-start>"

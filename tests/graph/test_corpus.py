@@ -12,11 +12,11 @@ from rdflib.term import Node
 from kit import corpus
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.graph.build import BuiltGraph, build_graph
-from robbdd_tools.graph.read import read_model
-from robbdd_tools.graph.serialize import FORMATS, parse, serialize
-from robbdd_tools.graph.validate import validate
-from robbdd_tools.graph.vocabulary import WORKBENCH
+from robbdd_tools.graph.rdf.serialize import FORMATS, parse, serialize
+from robbdd_tools.graph.rdf.vocabulary import WORKBENCH
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.shapes.validate import validate
+from robbdd_tools.graph.write.build import BuiltGraph, build_graph
 from robbdd_tools.names.project import Project
 
 GENERATED = re.compile(r"(.*/(?:forall|exists|when-bhv|comb|perm|tv-table|tv-cart_prod)-).*")

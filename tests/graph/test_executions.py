@@ -6,10 +6,10 @@ import pytest
 
 from kit import MODEL, SCENE, fixture
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.model import Execution
-from robbdd_tools.graph.read import read_model
-from robbdd_tools.graph.serialize import FORMATS, parse, serialize
+from robbdd_tools.graph.acceptance_model import Execution
+from robbdd_tools.graph.rdf.serialize import FORMATS, parse, serialize
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
 
 X, T, ENV = "https://example.org/x/", "https://example.org/t/", "https://example.org/env/"

@@ -18,13 +18,13 @@ from graph.statements import built
 from kit import MODEL, corpus
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document
-from robbdd_tools.graph import contexts
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.contexts import CONTEXT_IRI, ContextLoader
-from robbdd_tools.graph.foreign import read_graph_file
-from robbdd_tools.graph.read import read_model
-from robbdd_tools.graph.serialize import UnreadableGraph, parse, serialize
-from robbdd_tools.graph.validate import validate
+from robbdd_tools.graph.rdf import contexts
+from robbdd_tools.graph.rdf.contexts import CONTEXT_IRI, ContextLoader
+from robbdd_tools.graph.rdf.serialize import UnreadableGraph, parse, serialize
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.shapes.validate import validate
+from robbdd_tools.graph.write.build import build_graph
+from robbdd_tools.graph.write.foreign import read_graph_file
 from robbdd_tools.names.project import Project
 
 FOREIGN = """@prefix bdd: <https://secorolab.github.io/metamodels/acceptance-criteria/bdd#> .

@@ -8,7 +8,7 @@ import robbdd_tools.graph
 
 
 def test_no_module_loads_a_graph_library_when_it_is_imported() -> None:
-    modules = [f"robbdd_tools.graph.{info.name}" for info in pkgutil.iter_modules(robbdd_tools.graph.__path__)]
+    modules = [info.name for info in pkgutil.walk_packages(robbdd_tools.graph.__path__, "robbdd_tools.graph.")]
     script = f"import sys, {', '.join(modules)}; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout.split()
     assert {"rdflib", "pyshacl", "pyld"}.isdisjoint(loaded)

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 
 from graph.models import EVERYTHING
 from kit import EXAMPLES, FOLDER, MODEL, SCENE, STORY, TEMPLATE
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.incremental import Superseded, Validation
-from robbdd_tools.graph.user_shapes import ProjectShapes, ShapeFile, shape_file
-from robbdd_tools.graph.validate import validate
+from robbdd_tools.graph.shapes.incremental import Superseded, Validation
+from robbdd_tools.graph.shapes.project_shapes import ProjectShapes, ShapeFile, shape_file
+from robbdd_tools.graph.shapes.validate import validate
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project, Snapshot
 
 SEQUENCES = int(os.environ.get("ROBBDD_FUZZ", "40"))

@@ -10,10 +10,10 @@ from graph.test_executions import BDDX
 from kit import MODEL, SCENE, fixture
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.catalog.executable import ArmModel, Law, SceneInstance
-from robbdd_tools.graph.build import build_graph
 from robbdd_tools.graph.places import placed_model
-from robbdd_tools.graph.read import read_model
-from robbdd_tools.graph.serialize import FORMATS, parse, serialize
+from robbdd_tools.graph.rdf.serialize import FORMATS, parse, serialize
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
 
 S, ENV = "https://example.org/s/", "https://example.org/env/"
 SCENEX = """import "lab.scene"

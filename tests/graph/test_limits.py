@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from robbdd_tools.graph.limits import limited
-from robbdd_tools.graph.structure import Node, Structure
+from robbdd_tools.graph.ask.excerpt import limited
+from robbdd_tools.graph.ask.structure import Node, Structure
 
 
 def structure(stories: int, clauses: int) -> Structure:

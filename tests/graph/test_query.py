@@ -12,8 +12,8 @@ from graph.models import EVERYTHING
 from graph.statements import built
 from kit import EXAMPLES, MODEL
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.query import BadQuery, Rows, Term, ready_queries, ready_query, run_query
+from robbdd_tools.graph.ask.query import BadQuery, Rows, Term, ready_queries, ready_query, run_query
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project
 
 
@@ -142,7 +142,7 @@ def test_both_engines_give_the_same_rows(model: str, name: str, monkeypatch: pyt
     assert find_spec("oxrdflib") is not None
     text, graph = ready_query(name) or "", example(model)
     fast = run_query(graph, text)
-    monkeypatch.setattr("robbdd_tools.graph.query.find_spec", absent)
+    monkeypatch.setattr("robbdd_tools.graph.ask.query.find_spec", absent)
     assert run_query(graph, text) == fast
 
 
@@ -160,5 +160,5 @@ def test_both_engines_write_numbers_and_triples_alike(text: str, monkeypatch: py
     graph = example("pickplace/pickplace.bdd")
     fast = run_query(graph, text)
     assert fast.rows
-    monkeypatch.setattr("robbdd_tools.graph.query.find_spec", absent)
+    monkeypatch.setattr("robbdd_tools.graph.ask.query.find_spec", absent)
     assert run_query(graph, text) == fast

@@ -7,7 +7,7 @@ from rdflib.namespace import RDF
 from graph.models import EVERYTHING
 from graph.statements import built
 from kit import MODEL
-from robbdd_tools.graph.model import (
+from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
     EventClause,
@@ -23,9 +23,9 @@ from robbdd_tools.graph.model import (
     TextFluent,
     Variant,
 )
-from robbdd_tools.graph.read import read_model
-from robbdd_tools.graph.serialize import FORMATS, parse, serialize
-from robbdd_tools.graph.vocabulary import expand
+from robbdd_tools.graph.rdf.serialize import FORMATS, parse, serialize
+from robbdd_tools.graph.rdf.vocabulary import expand
+from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.monitor.time import After, Before, During
 
 T, LAB, OTHER = "https://example.org/t/", "https://example.org/env/", "https://example.org/other/"

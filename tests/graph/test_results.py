@@ -14,10 +14,10 @@ import pytest
 
 from kit import EXAMPLES
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.query import ready_query, run_query
-from robbdd_tools.graph.results import BadResults, add_results, read_results
-from robbdd_tools.graph.serialize import serialize
+from robbdd_tools.graph.ask.query import ready_query, run_query
+from robbdd_tools.graph.rdf.serialize import serialize
+from robbdd_tools.graph.write.build import build_graph
+from robbdd_tools.graph.write.run_results import BadResults, add_results, read_results
 from robbdd_tools.names.project import Project
 
 RESULTS = (Path(__file__).parent / "heights.results.json").read_text(encoding="utf-8")

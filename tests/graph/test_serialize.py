@@ -13,8 +13,8 @@ from rdflib.term import Node
 from graph.models import EVERYTHING
 from graph.statements import built
 from kit import MODEL
-from robbdd_tools.graph.serialize import FORMATS, UnreadableGraph, parse, serialize
-from robbdd_tools.graph.vocabulary import PREFIXES
+from robbdd_tools.graph.rdf.serialize import FORMATS, UnreadableGraph, parse, serialize
+from robbdd_tools.graph.rdf.vocabulary import PREFIXES
 
 NAMESPACES = {
     "t": "https://example.org/t/",
@@ -70,7 +70,7 @@ def test_hash_seeds_do_not_show(form: str) -> None:
     script = (
         "import sys; sys.path[:0] = ['tests', 'server']\n"
         "from graph.models import EVERYTHING; from graph.statements import built\n"
-        "from robbdd_tools.graph.serialize import serialize\n"
+        "from robbdd_tools.graph.rdf.serialize import serialize\n"
         f"sys.stdout.buffer.write(serialize(built(EVERYTHING).graph, {form!r}).encode())"
     )
     texts = {

@@ -15,10 +15,10 @@ from rdflib.term import Node
 from graph.models import EVERYTHING
 from graph.statements import built
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.graph.build import BuiltGraph
-from robbdd_tools.graph.shapes import load_shapes
-from robbdd_tools.graph.validate import validate
-from robbdd_tools.graph.vocabulary import SHAPES, expand
+from robbdd_tools.graph.rdf.vocabulary import SHAPES, expand
+from robbdd_tools.graph.shapes.installed import load_shapes
+from robbdd_tools.graph.shapes.validate import validate
+from robbdd_tools.graph.write.build import BuiltGraph
 
 NAMES = {"t": "https://example.org/t/", "lab": "https://example.org/env/", "o": "https://example.org/other/"}
 TABLE = "o:tv-table-zz-first.table"

@@ -4,7 +4,7 @@ import pytest
 
 from graph.statements import built
 from kit import MODEL, SCENE
-from robbdd_tools.graph.source_map import Location
+from robbdd_tools.graph.write.source_map import Location
 
 T, ENV = "https://example.org/t/", "https://example.org/env/"
 TEXTS = {"main.bdd": MODEL, "lab.scene": SCENE}

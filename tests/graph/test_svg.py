@@ -13,9 +13,9 @@ from graph.models import EVERYTHING
 from graph.statements import built
 from graph.test_behaviour_trees import LINKED, NESTED
 from kit import EVENTS, EXAMPLES, MODEL, STORY
-from robbdd_tools.graph.source_map import Location
-from robbdd_tools.graph.structure import structure_of
-from robbdd_tools.graph.svg import LETTER, draw
+from robbdd_tools.graph.ask.structure import structure_of
+from robbdd_tools.graph.ask.svg import LETTER, draw
+from robbdd_tools.graph.write.source_map import Location
 
 SVG = "{http://www.w3.org/2000/svg}"
 TREES = EVENTS + NESTED + LINKED + STORY

@@ -13,12 +13,12 @@ from graph.statements import built
 from graph.test_foreign import FOREIGN
 from kit import EXAMPLES, MODEL, corpus
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.losses import Losses, compare
-from robbdd_tools.graph.model import AcceptanceModel
-from robbdd_tools.graph.read import read_model
-from robbdd_tools.graph.serialize import parse, serialize
-from robbdd_tools.graph.text import ModelText, write_model
+from robbdd_tools.graph.acceptance_model import AcceptanceModel
+from robbdd_tools.graph.rdf.serialize import parse, serialize
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.text.losses import Losses, compare
+from robbdd_tools.graph.text.model_text import ModelText, write_model
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project
 
 

@@ -7,8 +7,8 @@ import pytest
 from graph.statements import built
 from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE, assert_diagnostics, fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.validate import validate
+from robbdd_tools.graph.shapes.validate import validate
+from robbdd_tools.graph.write.build import build_graph
 
 SETS = TEMPLATE.replace("var goal", "var goal\n    set var goals").replace(
     "        in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)",

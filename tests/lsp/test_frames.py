@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from robbdd_tools.graph.user_shapes import EditorShapes
-from robbdd_tools.lsp.frames import Request, frame
+from robbdd_tools.graph.shapes.project_shapes import EditorShapes
+from robbdd_tools.lsp.framing import Request, frame
 from robbdd_tools.names.project import Project
 
 

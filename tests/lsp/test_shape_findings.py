@@ -10,8 +10,8 @@ import pytest
 from kit import FOLDER, MODEL, SCENE
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Span
-from robbdd_tools.graph.user_shapes import EditorShapes
-from robbdd_tools.lsp.frames import Answer, Request
+from robbdd_tools.graph.shapes.project_shapes import EditorShapes
+from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.worker import MOST_LEFT, Inbox, Worker
 from robbdd_tools.names.project import Project

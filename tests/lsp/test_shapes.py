@@ -14,9 +14,9 @@ from pytest_lsp import LanguageClient
 from kit import FOLDER, MODEL, SCENE
 from lsp_kit import CLIENTS, PATIENCE, Editor
 from robbdd_tools.base.limits import VALIDATION_SECONDS
-from robbdd_tools.graph.user_shapes import EditorShapes
+from robbdd_tools.graph.shapes.project_shapes import EditorShapes
 from robbdd_tools.lsp import shapes
-from robbdd_tools.lsp.frames import Answer, Request
+from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.shapes import ShapeValidator
 
 SAFETY = """@prefix sh: <http://www.w3.org/ns/shacl#> .

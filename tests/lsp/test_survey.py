@@ -10,10 +10,10 @@ from typing import Any, cast
 import pytest
 
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.graph.user_shapes import EditorShapes
+from robbdd_tools.graph.shapes.project_shapes import EditorShapes
 from robbdd_tools.lsp import survey
 from robbdd_tools.lsp.convert import Converter
-from robbdd_tools.lsp.frames import Answer, Request
+from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.survey import Survey
 

@@ -14,8 +14,8 @@ from tests.nightly.mutate import damaged_bytes, damaged_text, encoded
 from kit import EXAMPLES, MODEL, ROOT, SCENE
 from robbdd_tools.base.data import data_folder
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.serialize import serialize
+from robbdd_tools.graph.rdf.serialize import serialize
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project
 
 SOURCES = (EXAMPLES / "pickplace" / "pickplace.bdd", EXAMPLES / "tworobots" / "heights.bdd")

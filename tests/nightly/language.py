@@ -17,8 +17,8 @@ from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.files import path_to_uri, read_text
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.layout import lay_out
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.serialize import serialize
+from robbdd_tools.graph.rdf.serialize import serialize
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project, Snapshot
 
 LAYOUT = re.compile(r"[\s\-|]")

@@ -120,9 +120,9 @@ def _damaged_model(random: Random) -> Files:
 
 def _check_model(folder: Path) -> None:
     """A model file of the simulator is read, or refused."""
-    from robbdd_tools.agent.errors import SceneError
-    from robbdd_tools.agent.model_files import load, object_from
-    from robbdd_tools.agent.robot_files import robot_from
+    from robbdd_tools.world.errors import SceneError
+    from robbdd_tools.world.model_files import load, object_from
+    from robbdd_tools.world.robot_files import robot_from
 
     path = next(folder.glob("case.*"))
     arm = ArmModel("tcp" if path.suffix == ".xml" else "hand", "grip", 0.04, 0.0, ("left_pad", "right_pad"), 0.08)

@@ -18,8 +18,9 @@ from unittest.mock import patch
 from kit import write_manifest
 from robbdd_tools.base.locks import hold
 from robbdd_tools.commands.execute import follow_run
+from robbdd_tools.protocol.messages import RunMessage, RunStarted
+from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run import scheduler
-from robbdd_tools.run.protocol import Manifest, RunMessage, RunStarted
 from robbdd_tools.run.recording import Recording, pending
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import Policy

@@ -8,17 +8,15 @@ from contextlib import closing
 from pathlib import Path
 
 from robbdd_tools.catalog.coordination import TreeSpec
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.messages import (
     ClauseJudged,
-    ClauseSpec,
     ClauseStarted,
     MarginRanges,
     RunMessage,
     ScenarioFinished,
-    ScenarioSpec,
     ScenarioStarted,
-    SceneSpec,
 )
+from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec, SceneSpec
 from robbdd_tools.run.store import RunRecord
 
 RECORD = RunRecord("m.bdd", "../../../m.bdd", "abc", 1, "0.1.0")

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from robbdd_tools.base.processes import run_for
+from robbdd_tools.protocol.messages import LogLine, RunFinished
 from robbdd_tools.run.launch import LOGS, MOST_STRANGE
-from robbdd_tools.run.protocol import LogLine, RunFinished
 from robbdd_tools.run.scheduler import Policy
 from run.test_scheduler import HOLDS, prepared, reasons, run, verdicts
 

@@ -7,16 +7,10 @@ import re
 
 import pytest
 
+from robbdd_tools.protocol.messages import ClauseJudged, ScenarioFinished
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 from robbdd_tools.run.imported import BrokenResults, ImportedScenario, read_results
 from robbdd_tools.run.junit import junit
-from robbdd_tools.run.protocol import (
-    ClauseJudged,
-    ClauseSpec,
-    Manifest,
-    ScenarioFinished,
-    ScenarioSpec,
-    SceneSpec,
-)
 from robbdd_tools.run.results import RunResults
 
 CLAUSES = tuple(

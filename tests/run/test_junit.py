@@ -10,8 +10,9 @@ from xml.etree import ElementTree
 
 import pytest
 
+from robbdd_tools.protocol.messages import ClauseJudged, ScenarioFinished
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 from robbdd_tools.run.junit import junit
-from robbdd_tools.run.protocol import ClauseJudged, ClauseSpec, Manifest, ScenarioFinished, ScenarioSpec, SceneSpec
 from robbdd_tools.run.results import RunResults
 
 CLAUSES = tuple(ClauseSpec(line, f"https://x/c{line}", f"c{line}", "then", f'"e:a" {line}') for line in (5, 6))

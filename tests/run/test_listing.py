@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from kit import MODEL, fixture
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.model import AcceptanceModel, Iri
-from robbdd_tools.graph.read import read_model
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Iri
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.run.listing import ListedScenario, listed_scenarios
 from robbdd_tools.run.prepare import RunRequest, prepare
 from robbdd_tools.run.report import plain_sentence

@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robbdd_tools.protocol.messages import RunMessage, ScenarioFinished, ScenarioStarted
 from robbdd_tools.run.order import InOrder
-from robbdd_tools.run.protocol import RunMessage, ScenarioFinished, ScenarioStarted
 
 
 def story(index: int) -> list[RunMessage]:

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from kit import MODEL, SCENE, fixture
 from robbdd_tools.catalog.executable import Implementation
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri
-from robbdd_tools.graph.read import read_model
-from robbdd_tools.run.manifest import read_manifest
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Iri
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.specs import ExecutionSpec, Manifest
 from robbdd_tools.run.prepare import RunRequest, prepare
-from robbdd_tools.run.protocol import ExecutionSpec, Manifest
 
 
 def model(text: str = MODEL) -> AcceptanceModel:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from kit import MODEL, SCENE, fixture
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.read import read_model
-from robbdd_tools.run.manifest import read_manifest
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.specs import ConfigSpec, Manifest
 from robbdd_tools.run.prepare import RunRequest, prepare
-from robbdd_tools.run.protocol import ConfigSpec, Manifest
 
 GIVEN = "holds(<part> is located at"
 

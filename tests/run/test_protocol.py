@@ -8,25 +8,22 @@ from hypothesis import strategies as st
 
 from kit import write_manifest
 from robbdd_tools.monitor.fault import Fault, Frame
-from robbdd_tools.run.manifest import read_manifest
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.messages import (
     ClauseJudged,
-    ClauseSpec,
     ClauseStarted,
     LogLine,
-    Manifest,
     Output,
     RunFinished,
     RunMessage,
     RunStarted,
     ScenarioFinished,
-    ScenarioSpec,
     ScenarioStarted,
-    SceneSpec,
     UserCodeFailed,
     decode,
     encode,
 )
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 
 MESSAGES = [
     RunStarted(3, "mujoco"),

@@ -15,16 +15,12 @@ import pytest
 
 from kit import schema_errors, write_manifest
 from robbdd_tools.catalog.coordination import TreeSpec
+from robbdd_tools.protocol.messages import RunFinished, RunStarted, ScenarioFinished
+from robbdd_tools.protocol.run_folder import trace_file
+from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run import database as databases
 from robbdd_tools.run.database import DatabaseProblem, open_database, read_database
 from robbdd_tools.run.missing import missing_parts
-from robbdd_tools.run.protocol import (
-    Manifest,
-    RunFinished,
-    RunStarted,
-    ScenarioFinished,
-    trace_file,
-)
 from robbdd_tools.run.recording import OtherSimulator, Recording, pending
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import STOPPED as STOPPED_ENDING

@@ -9,10 +9,10 @@ from gherkin_kit import model_of
 from kit import EVENTS
 from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.gherkin.files import whole_plan
-from robbdd_tools.graph.model import Execution, Iri
-from robbdd_tools.run.manifest import read_manifest
+from robbdd_tools.graph.acceptance_model import Execution, Iri
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.run.prepare import RunRequest, lay_out, prepare
-from robbdd_tools.run.protocol import ScenarioSpec
 
 TREE = "Behaviour Tree (ns=t) handling { sequence whole { node pick node place } }\n"
 

@@ -7,15 +7,8 @@ import pytest
 from kit import schema_errors
 from robbdd_tools.commands.progress import Display
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import (
-    ClauseJudged,
-    ClauseSpec,
-    Manifest,
-    RunFinished,
-    ScenarioFinished,
-    ScenarioSpec,
-    SceneSpec,
-)
+from robbdd_tools.protocol.messages import ClauseJudged, RunFinished, ScenarioFinished
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 from robbdd_tools.run.report import margin, plain_sentence, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
 

@@ -12,13 +12,11 @@ from time import monotonic
 
 import pytest
 
-from agent.worlds import CUBE, SCENE, Steps, write_run
 from kit import make_fifo
-from robbdd_tools.run.manifest import read_manifest
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.messages import (
     ClauseJudged,
     LogLine,
-    Manifest,
     Output,
     RunFinished,
     RunMessage,
@@ -26,8 +24,10 @@ from robbdd_tools.run.protocol import (
     ScenarioFinished,
     ScenarioStarted,
 )
+from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import CANCELLED, STOPPED, Policy, Scheduler, no_watcher
+from world.worlds import CUBE, SCENE, Steps, write_run
 
 pytestmark = [pytest.mark.physics, pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")]
 HOLDS = ("given", f'"{CUBE}" is located at "env:bench_ws" before event "t:end"')
@@ -142,8 +142,9 @@ def test_output_of_shared_code_is_shown_once_whichever_process_is_ahead(
 
         pid = 0
 
-        def __init__(self, folder: Path, number: int, log_limit: int) -> None:
-            self.number = number
+        def __init__(self, *arguments: object, **options: object) -> None:
+            self.number = arguments[1]
+            assert "log_limit" in options
 
         def execute(self, index: int) -> None: ...
         def terminate(self) -> None: ...

@@ -10,11 +10,11 @@ from kit import EVENTS
 from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.gherkin.files import whole_plan
 from robbdd_tools.gherkin.render import sheet
-from robbdd_tools.graph.model import Execution, Iri
+from robbdd_tools.graph.acceptance_model import Execution, Iri
 from robbdd_tools.monitor.policy import Policy, Rule
-from robbdd_tools.run.manifest import read_manifest
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.run.prepare import lay_out
-from robbdd_tools.run.protocol import ScenarioSpec
 
 QUANTIFIED = (
     EVENTS

@@ -7,17 +7,8 @@ from dataclasses import replace
 import pytest
 
 from kit import schema_errors
-from robbdd_tools.run.protocol import (
-    ClauseJudged,
-    ClauseSpec,
-    Manifest,
-    MarginRanges,
-    RunMessage,
-    ScenarioSpec,
-    SceneSpec,
-    decode,
-    encode,
-)
+from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunMessage, decode, encode
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.vacuity import HELD_BEFORE
 

@@ -9,8 +9,8 @@ from kit import EVENTS, MODEL, SCENE, fixture
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.layout import lay_out
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.serialize import serialize
+from robbdd_tools.graph.rdf.serialize import serialize
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project
 from syntax.test_published import PUBLISHED, SCENE_IMPORT
 

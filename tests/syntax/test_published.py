@@ -9,8 +9,8 @@ import pytest
 from kit import EVENTS, MODEL, SCENE, TEMPLATE, assert_diagnostics, fixture
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.graph.build import build_graph
-from robbdd_tools.graph.serialize import serialize
+from robbdd_tools.graph.rdf.serialize import serialize
+from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.split import split

@@ -16,13 +16,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from mcap.reader import make_reader
 
-from agent.worlds import BIN_WS, CUBE, PANDA, execution, pick_place
-from robbdd_tools.agent.compare import difference
-from robbdd_tools.agent.views import views
+from robbdd_tools.agent.compare_traces import difference
 from robbdd_tools.catalog.api import Region
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.traces.codec import Evidence, pack, unpack
 from robbdd_tools.traces.mcap_file import SCHEMAS, UnreadableTrace, read_trace, write_trace
+from robbdd_tools.world.log_views import views
+from world.worlds import BIN_WS, CUBE, PANDA, execution, pick_place
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray

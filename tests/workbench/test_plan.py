@@ -8,7 +8,7 @@ import pytest
 
 from kit import EXAMPLES
 from robbdd_tools.gherkin.select import SelectionError
-from robbdd_tools.run.protocol import ScenarioSpec
+from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.workbench.model import Model, load
 from robbdd_tools.workbench.plan import Choice, Listed, NothingSelected, Plan, Selection
 

@@ -1,1 +1,1 @@
-"""The process that executes scenarios: the simulated world, the controllers, behave and its steps."""
+"""The process that executes scenarios: behave and its steps, the course of behaviours, messages to the parent."""

@@ -1,6 +1,6 @@
 """``python -m robbdd_tools.agent RUN_FOLDER``: executes scenarios of a prepared run.
 
-Which ones it reads on its standard input, as they come; it reports on its standard output (``run.protocol``).
+Which ones it reads on its standard input, as they come; it reports on its standard output (``protocol.messages``).
 """
 
 from __future__ import annotations

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.course import TIMEOUT, Call, Course, Timing
-from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.agent.sentences import AnyOf, Clause, Doing, fluents_of, read_doing
 from robbdd_tools.catalog.api import Kind
+from robbdd_tools.judging.sentences import AnyOf, Clause, Doing, fluents_of, read_doing
 from robbdd_tools.monitor.time import After, Before
+from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.protocol import ScenarioSpec
+    from robbdd_tools.protocol.specs import ScenarioSpec
 
 LEAD = 0.5
 """Seconds between the scenario's start and its first behaviour, at least."""

@@ -6,10 +6,10 @@ import os
 from threading import Lock
 from typing import TYPE_CHECKING
 
-from robbdd_tools.run.protocol import ScenarioFinished, ScenarioStarted, encode
+from robbdd_tools.protocol.messages import ScenarioFinished, ScenarioStarted, encode
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.protocol import RunMessage
+    from robbdd_tools.protocol.messages import RunMessage
 
 
 class Channel:

@@ -10,28 +10,28 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from robbdd_tools.agent.configuration import read_back
-from robbdd_tools.agent.engine import TICK
-from robbdd_tools.agent.errors import BehaviourError, SceneError, SimulationError, UserError
-from robbdd_tools.agent.frames import at
-from robbdd_tools.agent.outline import outline_of
-from robbdd_tools.agent.pick_place import PickPlace
-from robbdd_tools.agent.reach import ReachSampler
-from robbdd_tools.agent.scene import contents_of
-from robbdd_tools.agent.simulation import Simulation
-from robbdd_tools.agent.user_behaviour import AgentWorld, run_user_behaviour
-from robbdd_tools.agent.world import build_world
 from robbdd_tools.catalog.coordination import emitter
 from robbdd_tools.monitor.trace import EventStamp
+from robbdd_tools.world.composition import build_world
+from robbdd_tools.world.engine import TICK
+from robbdd_tools.world.errors import BehaviourError, SceneError, SimulationError, UserError
+from robbdd_tools.world.extent import outline_of
+from robbdd_tools.world.frames import at
+from robbdd_tools.world.pick_place import PickPlace
+from robbdd_tools.world.reaching import ReachSampler
+from robbdd_tools.world.scene import contents_of
+from robbdd_tools.world.scene_configuration import read_back
+from robbdd_tools.world.simulation import Simulation
+from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
 
 if TYPE_CHECKING:
-    from robbdd_tools.agent.behaviour_tree import TreeRun
+    from robbdd_tools.agent.tree_execution import TreeRun
     from robbdd_tools.catalog.api import Arguments
     from robbdd_tools.catalog.coordination import TreeSpec
     from robbdd_tools.catalog.executable import Implementation
     from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.monitor.judge import Regions
-    from robbdd_tools.run.protocol import ScenarioSpec
+    from robbdd_tools.protocol.specs import ScenarioSpec
 
 START, END = "scenario-start", "scenario-end"
 """What emits the events that delimit a scenario."""
@@ -267,7 +267,7 @@ class Course:
 
 
 def _tree_run(spec: TreeSpec, course: Course) -> TreeRun:
-    from robbdd_tools.agent.behaviour_tree import TreeRun
+    from robbdd_tools.agent.tree_execution import TreeRun
 
     return TreeRun(spec, lambda leaf: course.attempt(Call(leaf.behaviour, leaf.arguments)), course.stamp)
 

@@ -8,18 +8,18 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.course import Call, Course, Timing
-from robbdd_tools.agent.engine import TICK
-from robbdd_tools.agent.quantities import wanting
+from robbdd_tools.judging.quantities import wanting
 from robbdd_tools.monitor.time import Window, window
 from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.world.engine import TICK
 
 if TYPE_CHECKING:
-    from robbdd_tools.agent.sentences import Clause
-    from robbdd_tools.agent.simulation import Simulation
     from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.judging.sentences import Clause
     from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.monitor.judge import Regions
-    from robbdd_tools.run.protocol import ScenarioSpec
+    from robbdd_tools.protocol.specs import ScenarioSpec
+    from robbdd_tools.world.simulation import Simulation
 
 
 class Execution:

@@ -11,9 +11,9 @@ from typing import Any
 
 from robbdd_tools.agent.channel import current_channel
 from robbdd_tools.agent.session import Session
-from robbdd_tools.agent.user_code import fault_of, original
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
-from robbdd_tools.run.manifest import MANIFEST, read_manifest
+from robbdd_tools.protocol.manifest_file import MANIFEST, read_manifest
+from robbdd_tools.user_code.calls import fault_of, original
 
 __all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario"]
 EXECUTION = "robbdd.execution"

@@ -12,17 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.agent import hooks
 from robbdd_tools.agent.channel import Channel, Reports, use_channel
-from robbdd_tools.agent.engine import version
 from robbdd_tools.agent.hooks import EXECUTION
-from robbdd_tools.agent.output import Printed, finish_output
+from robbdd_tools.agent.printed_output import Printed, finish_output
 from robbdd_tools.agent.session import STRANGER
 from robbdd_tools.agent.steps import load_steps
-from robbdd_tools.agent.user_code import fault_of, original
-from robbdd_tools.agent.user_modules import folder_of, search
 from robbdd_tools.base.descendants import end_descendants
-from robbdd_tools.run.manifest import read_manifest
-from robbdd_tools.run.protocol import (
-    OWN_STEPS,
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.messages import (
     ClauseJudged,
     LogLine,
     RunFinished,
@@ -32,10 +28,14 @@ from robbdd_tools.run.protocol import (
     UserCodeFailed,
     decode_order,
 )
+from robbdd_tools.protocol.run_folder import OWN_STEPS
+from robbdd_tools.user_code.calls import fault_of, original
+from robbdd_tools.user_code.modules import folder_of, search
+from robbdd_tools.world.engine import version
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.coordination import TreeSpec
-    from robbdd_tools.run.protocol import Manifest
+    from robbdd_tools.protocol.specs import Manifest
 
 QUIET = ("--format=null", "--no-summary", "--no-capture", "--no-capture-stderr", "--no-logcapture", "--no-snippets")
 

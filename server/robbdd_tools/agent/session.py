@@ -10,21 +10,17 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.beginning import Courses, call_of, calls_of, timing_of
-from robbdd_tools.agent.clauses import decide, is_closed
-from robbdd_tools.agent.curves import behaviour_curves, curves, write_curves
-from robbdd_tools.agent.errors import SceneError
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
-from robbdd_tools.agent.output import finish_output
-from robbdd_tools.agent.sentences import Fluent, Unmatched, read_clause, read_doing, read_event
-from robbdd_tools.agent.stated import stated_clause, stated_iteration
-from robbdd_tools.agent.user_code import fault_of
-from robbdd_tools.agent.vacuity import margin_ranges
-from robbdd_tools.agent.viewer import NoViewer, Viewer
-from robbdd_tools.agent.views import verdict_views, views
+from robbdd_tools.agent.printed_output import finish_output
+from robbdd_tools.judging.clauses import decide, is_closed
+from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
+from robbdd_tools.judging.margin_ranges import margin_ranges
+from robbdd_tools.judging.scenario_clauses import stated_clause, stated_iteration
+from robbdd_tools.judging.sentences import Fluent, Unmatched, read_clause, read_doing, read_event
 from robbdd_tools.monitor.time import never_occurred
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.messages import (
     NO_STEP,
     VIEWER,
     ClauseJudged,
@@ -33,18 +29,21 @@ from robbdd_tools.run.protocol import (
     ScenarioFinished,
     ScenarioStarted,
     UserCodeFailed,
-    curves_file,
     judged,
-    trace_file,
 )
+from robbdd_tools.protocol.run_folder import curves_file, trace_file
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.traces.mcap_file import write_trace
+from robbdd_tools.user_code.calls import fault_of
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.log_views import verdict_views, views
+from robbdd_tools.world.viewer import NoViewer, Viewer
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.channel import Channel
     from robbdd_tools.monitor.curve import Curve
     from robbdd_tools.monitor.trace import Trace
-    from robbdd_tools.run.protocol import Manifest, ScenarioSpec
+    from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
 
 STRANGER = "the manifest of this run knows no such scenario; was the feature changed?"
 

@@ -8,10 +8,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.agent.errors import SceneError
-from robbdd_tools.agent.sentences import GROUP, NOT, OCCURS, fluent_pattern, sentence_pattern
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.judging.sentences import GROUP, NOT, OCCURS, fluent_pattern, sentence_pattern
 from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.session import ScenarioRun

@@ -8,10 +8,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.agent.engine import TICK
-from robbdd_tools.agent.picture import Camera
-from robbdd_tools.agent.scene import local_name
 from robbdd_tools.base.writing import replacing_bytes
+from robbdd_tools.world.engine import TICK
+from robbdd_tools.world.picture import Camera
+from robbdd_tools.world.scene import local_name
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.execution import Execution

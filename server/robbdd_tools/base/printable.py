@@ -56,3 +56,8 @@ def _shown(character: str) -> str:
 
 def _json_shown(character: str) -> str:
     return json.dumps(character)[1:-1] if _is_hidden(character) else character
+
+
+def encodable(text: str) -> str:
+    """Return a text that can be written as UTF-8: half characters are written as escapes."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Edit, Fix, Severity
 from robbdd_tools.catalog.executable import Law, law_fault, spherical
 from robbdd_tools.checks.finding import change, finding
-from robbdd_tools.graph.rotations import numbers_of
+from robbdd_tools.graph.write.rotations import numbers_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.checks.distribution import drawn
 from robbdd_tools.checks.finding import finding
-from robbdd_tools.graph.rotations import numbers_of, rotation_of
+from robbdd_tools.graph.write.rotations import numbers_of, rotation_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 

@@ -9,7 +9,7 @@ from robbdd_tools.base.processes import end_requests
 from robbdd_tools.commands.progress import Display
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.protocol import RunMessage
+    from robbdd_tools.protocol.messages import RunMessage
     from robbdd_tools.run.results import RunResults
     from robbdd_tools.workbench.run import Run
 

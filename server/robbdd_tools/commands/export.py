@@ -13,8 +13,8 @@ from robbdd_tools.commands.output import fail, print_document
 from robbdd_tools.commands.results import graph_with_results
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.built import BuiltGraph
-    from robbdd_tools.graph.source_map import Location
+    from robbdd_tools.graph.write.built import BuiltGraph
+    from robbdd_tools.graph.write.source_map import Location
     from robbdd_tools.names.project import Snapshot
 
 PICTURE = "svg"
@@ -23,7 +23,7 @@ PICTURE = "svg"
 
 def print_graph(path: Path, form: str, results: str | None) -> int:
     """Print the graph of a model and its imports, with the results of a run if any; returns the exit code."""
-    from robbdd_tools.graph.serialize import UnwritableGraph, serialize
+    from robbdd_tools.graph.rdf.serialize import UnwritableGraph, serialize
 
     model = sound_model(path)
     if model is None:
@@ -40,8 +40,8 @@ def print_graph(path: Path, form: str, results: str | None) -> int:
 
 def _picture(snapshot: Snapshot, built: BuiltGraph, path: Path) -> str:
     """Return the structure of a model as SVG, whose places name files from the model's folder."""
-    from robbdd_tools.graph.structure import structure_of
-    from robbdd_tools.graph.svg import draw
+    from robbdd_tools.graph.ask.structure import structure_of
+    from robbdd_tools.graph.ask.svg import draw
 
     def source(location: Location) -> str:
         file, analysis = uri_to_path(location.uri), snapshot.file(location.uri)

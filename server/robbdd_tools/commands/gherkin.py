@@ -36,7 +36,7 @@ def write_gherkin(options: GherkinOptions) -> int:
     """Write the features of a model with all that behave needs and print their paths; returns the exit code."""
     from robbdd_tools.gherkin.files import clause_origins, whole_plan
     from robbdd_tools.gherkin.render import TemplateProblem, sheet
-    from robbdd_tools.graph.serialize import serialize
+    from robbdd_tools.graph.rdf.serialize import serialize
 
     file = sound_model(options.path)
     if file is None:

@@ -13,17 +13,17 @@ from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.names.project import Project
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.built import BuiltGraph
-    from robbdd_tools.graph.losses import Losses
-    from robbdd_tools.graph.text import ModelText
+    from robbdd_tools.graph.text.losses import Losses
+    from robbdd_tools.graph.text.model_text import ModelText
+    from robbdd_tools.graph.write.built import BuiltGraph
 
 _MODEL = "model.bdd"
 
 
 def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     """Write a model as RobBDD text to ``output`` and, where it has scenes, to a ``.scene`` beside it."""
-    from robbdd_tools.graph.losses import compare
-    from robbdd_tools.graph.text import write_model
+    from robbdd_tools.graph.text.losses import compare
+    from robbdd_tools.graph.text.model_text import write_model
 
     if output.suffix != ".bdd":
         return fail(f"{output} cannot hold the text: its name must end in .bdd")
@@ -53,7 +53,7 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
 
 def graph_of(text: ModelText, scene_name: str, asked: str = _MODEL) -> BuiltGraph:
     """Return the graph that a text gives, without writing it anywhere: of the model, or of its scene by name."""
-    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.write.build import build_graph
 
     project = Project()
     folder = "file:///imported/"

@@ -10,7 +10,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import path_to_uri, read_text
 from robbdd_tools.base.user_settings import user_file
 from robbdd_tools.commands.output import fail, print_note
-from robbdd_tools.graph.foreign import graph_format
+from robbdd_tools.graph.write.foreign import graph_format
 from robbdd_tools.names.project import Project
 from robbdd_tools.workbench.findings import Finding, findings
 from robbdd_tools.workbench.model import ModelFile, NotAModel, load
@@ -58,9 +58,9 @@ def fetch_contexts(paths: Iterable[Path], hosts: Iterable[str]) -> str | None:
 
 
 def _fetch(path: Path, hosts: frozenset[str]) -> str | None:
-    from robbdd_tools.graph.configuration import nearest_setting, user_setting
-    from robbdd_tools.graph.contexts import ContextLoader
-    from robbdd_tools.graph.serialize import UnreadableGraph, parse
+    from robbdd_tools.graph.project_settings import nearest_setting, user_setting
+    from robbdd_tools.graph.rdf.contexts import ContextLoader
+    from robbdd_tools.graph.rdf.serialize import UnreadableGraph, parse
 
     setting = user_setting(HOSTS, HOSTS_FORM)
     for fault in setting.faults if setting else ():

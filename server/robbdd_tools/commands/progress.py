@@ -21,7 +21,7 @@ from rich.text import Text
 from robbdd_tools.base.printable import printable
 from robbdd_tools.commands.terminal import plain, terminal
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.messages import (
     ClauseJudged,
     LogLine,
     Output,

@@ -17,7 +17,7 @@ from robbdd_tools.commands.output import print_document, print_line, print_note
 from robbdd_tools.commands.results import graph_with_results
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.query import Rows, Term
+    from robbdd_tools.graph.ask.query import Rows, Term
 
 FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """How a cell begins that a spreadsheet takes for a formula, the full-width forms included."""
@@ -29,7 +29,7 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
 
     ``results`` of a run (see ``graph_with_results``) are asked together with the model.
     """
-    from robbdd_tools.graph.query import BadQuery, run_query
+    from robbdd_tools.graph.ask.query import BadQuery, run_query
 
     source = _source(text, file, name)
     if source is None:
@@ -53,7 +53,7 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
 
 def _source(text: str | None, file: Path | None, name: str | None) -> tuple[str, str] | None:
     """Return what to call the query and its text; says what is wrong when there is not exactly one."""
-    from robbdd_tools.graph.query import ready_queries, ready_query
+    from robbdd_tools.graph.ask.query import ready_queries, ready_query
 
     if sum(given is not None for given in (text, file, name)) != 1:
         print_note("robbdd: give one query: 'SELECT …', -f FILE, or --name with one of these")

@@ -12,7 +12,7 @@ from robbdd_tools.commands.runs import say_unfinished
 from robbdd_tools.run.store import LATEST, NoSuchRun, store_beside
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.built import BuiltGraph
+    from robbdd_tools.graph.write.built import BuiltGraph
     from robbdd_tools.workbench.model import ModelFile
 
 
@@ -21,7 +21,7 @@ def graph_with_results(model: ModelFile, path: Path, results: str | None) -> Bui
 
     Says what is wrong with the results, and returns ``None``, where they cannot be used.
     """
-    from robbdd_tools.graph.results import BadResults, add_results, read_results
+    from robbdd_tools.graph.write.run_results import BadResults, add_results, read_results
 
     built = model.graph
     if results is None:

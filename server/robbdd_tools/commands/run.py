@@ -18,8 +18,8 @@ from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.runs import say_unfinished
 from robbdd_tools.commands.selection import print_coverage
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.protocol.messages import VIEWER
 from robbdd_tools.run.pictures import NoPictures, no_display, render_moments, render_videos
-from robbdd_tools.run.protocol import VIEWER
 from robbdd_tools.run.scheduler import STOPPED, Policy
 from robbdd_tools.workbench.folder import Keeping, new_folder
 from robbdd_tools.workbench.model import ModelErrors, load

@@ -10,7 +10,7 @@ from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
 from robbdd_tools.workbench.plan import NO_SCENARIO_FITS, Coverage, coverage
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.model import AcceptanceModel, Variant
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel, Variant
 
 
 def selection(model: AcceptanceModel, variants: Sequence[Variant], wanted: Wanted) -> Selected | None:

@@ -15,7 +15,7 @@ from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.model import load
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.protocol import Manifest
+    from robbdd_tools.protocol.specs import Manifest
 
 
 def view(path: Path, name: str | None, seed: int | None, output: Path | None) -> int:

@@ -12,8 +12,8 @@ from robbdd_tools.checks.superseded import without_superseded
 from robbdd_tools.features.fixes import with_fixes
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.incremental import Validation
-    from robbdd_tools.graph.user_shapes import EditorShapes
+    from robbdd_tools.graph.shapes.incremental import Validation
+    from robbdd_tools.graph.shapes.project_shapes import EditorShapes
     from robbdd_tools.names.project import Snapshot
 
 
@@ -41,9 +41,9 @@ def shape_diagnostics(
     ``validation`` that knows an earlier revision looks only at what has changed since, and raises ``Superseded`` when
     it is no longer wanted.
     """
-    from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.user_shapes import project_shapes
-    from robbdd_tools.graph.validate import validate
+    from robbdd_tools.graph.shapes.project_shapes import project_shapes
+    from robbdd_tools.graph.shapes.validate import validate
+    from robbdd_tools.graph.write.build import build_graph
 
     if snapshot.file(uri) is None:
         return []

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.graph.source_map import Location
+from robbdd_tools.graph.write.source_map import Location
 from robbdd_tools.names.clauses import clauses_in
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.structure import Node
+    from robbdd_tools.graph.ask.structure import Node
     from robbdd_tools.names.project import Snapshot
 
 MOST_DRAWN = 600
@@ -39,10 +39,10 @@ def graph_picture(
 
     Of a graph of more than ``most`` nodes the story around ``offset`` is drawn, else the one with the node ``before``.
     """
-    from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.limits import limited
-    from robbdd_tools.graph.structure import structure_of
-    from robbdd_tools.graph.svg import draw
+    from robbdd_tools.graph.ask.excerpt import limited
+    from robbdd_tools.graph.ask.structure import structure_of
+    from robbdd_tools.graph.ask.svg import draw
+    from robbdd_tools.graph.write.build import build_graph
 
     structure = structure_of(build_graph(snapshot, uri))
     drawn = {node.iri for node in structure.nodes()}

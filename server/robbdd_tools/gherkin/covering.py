@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.gherkin.outline import variable_name
 from robbdd_tools.gherkin.variations import cells_of, size_of
-from robbdd_tools.graph.model import Cell, Product, Table
+from robbdd_tools.graph.acceptance_model import Cell, Product, Table
 
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.where import Condition

@@ -13,7 +13,7 @@ from robbdd_tools.gherkin.render import Sheet, our_sheet
 from robbdd_tools.gherkin.steps import Step, StepWriter
 from robbdd_tools.gherkin.tables import SceneTable, extra_elements, members, scene_tables, variable_table
 from robbdd_tools.gherkin.variations import Binding, bindings
-from robbdd_tools.graph.model import AcceptanceModel, Clause, Iri, Story, Variant
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Clause, Iri, Story, Variant
 
 Numbered = tuple[int, Binding]
 """The number of a scenario within its variation, from 1, and its values."""

@@ -13,11 +13,11 @@ from robbdd_tools.base.writing import replacing
 from robbdd_tools.gherkin.feature import Numbered, ScenarioText, every_scenario, feature_file_name, feature_pieces
 from robbdd_tools.gherkin.outline import variable_name
 from robbdd_tools.gherkin.render import Sheet, our_sheet
-from robbdd_tools.graph.model import AcceptanceModel, Cell, Clause, Iri, Story, Variant
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Iri, Story, Variant
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
-    from robbdd_tools.graph.build import BuiltGraph
+    from robbdd_tools.graph.write.build import BuiltGraph
     from robbdd_tools.names.project import Snapshot
 
 MAP_ENDING = ".map.json"

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.steps import Placeholder, Step, StepWriter, UnknownElements
 from robbdd_tools.gherkin.tables import SceneTable, elements_of
-from robbdd_tools.graph.model import Cell, Clause, Iri, Product, Selection, Table
+from robbdd_tools.graph.acceptance_model import Cell, Clause, Iri, Product, Selection, Table
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 from robbdd_tools.gherkin.feature import FeaturePiece, Numbered, ScenarioText, every_scenario, feature_pieces
 from robbdd_tools.gherkin.files import only
 from robbdd_tools.gherkin.variations import count
-from robbdd_tools.graph.source_map import Location
+from robbdd_tools.graph.write.source_map import Location
 from robbdd_tools.names.clauses import clauses_in
 from robbdd_tools.names.variants import variants_of
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.model import AcceptanceModel, Story, Variant
-    from robbdd_tools.graph.source_map import SourceMap
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel, Story, Variant
+    from robbdd_tools.graph.write.source_map import SourceMap
     from robbdd_tools.names.project import Snapshot
 
 MOST_SHOWN = 50
@@ -44,8 +44,8 @@ class Preview:
 
 def preview(snapshot: Snapshot, uri: str, variant: str | None = None, most: int = MOST_SHOWN) -> Preview:
     """Return the features of a file without errors, of one variant where given, with ``most`` scenarios at most."""
-    from robbdd_tools.graph.build import build_graph
-    from robbdd_tools.graph.read import read_model
+    from robbdd_tools.graph.read.acceptance import read_model
+    from robbdd_tools.graph.write.build import build_graph
 
     built = build_graph(snapshot, uri)
     model = read_model(built.graph)

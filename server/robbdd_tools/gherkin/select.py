@@ -12,7 +12,7 @@ from robbdd_tools.gherkin.covering import Cover, TooManyCombinations, cover
 from robbdd_tools.gherkin.feature import Numbered
 from robbdd_tools.gherkin.variations import at, bindings, count
 from robbdd_tools.gherkin.where import Condition, WhereError, check_where, condition, parse_where
-from robbdd_tools.graph.model import AcceptanceModel, Iri, Variant
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Iri, Variant
 
 
 @dataclass(frozen=True, slots=True)

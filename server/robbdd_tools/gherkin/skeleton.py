@@ -16,7 +16,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.steps import StepWriter
 from robbdd_tools.gherkin.tables import scene_tables
-from robbdd_tools.graph.model import (
+from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
     Clause,

@@ -10,7 +10,7 @@ from robbdd_tools.gherkin.steps import StepWriter
 from robbdd_tools.gherkin.variations import bindings
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.model import AcceptanceModel
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel
 
 
 def stated(model: AcceptanceModel, variant: str, variation: int) -> set[tuple[str, str]]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.gherkin import text
-from robbdd_tools.graph.model import (
+from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
     Cell,

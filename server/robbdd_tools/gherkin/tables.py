@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.steps import StepWriter
-from robbdd_tools.graph.model import Cell, Iri, SceneModel
+from robbdd_tools.graph.acceptance_model import Cell, Iri, SceneModel
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from math import prod
 
-from robbdd_tools.graph.model import Cell, Iri, Product, Selection, Table
+from robbdd_tools.graph.acceptance_model import Cell, Iri, Product, Selection, Table
 
 Binding = Mapping[Iri, Cell]
 """Variable → its value in one scenario."""

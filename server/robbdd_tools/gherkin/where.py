@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from robbdd_tools.gherkin.outline import variable_name
-from robbdd_tools.graph.model import AcceptanceModel, Cell, Iri, Value, Variant
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, Value, Variant
 
 Condition = Callable[[Sequence[Cell]], bool | None]
 """Judges the first values of a scenario, in the order of its variables; ``None`` while the others matter."""

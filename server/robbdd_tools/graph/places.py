@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.catalog.executable import Origin
-from robbdd_tools.graph.read import read_model
+from robbdd_tools.graph.read.acceptance import read_model
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.built import BuiltGraph
-    from robbdd_tools.graph.model import AcceptanceModel
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel
+    from robbdd_tools.graph.write.built import BuiltGraph
     from robbdd_tools.names.project import Snapshot
 
 

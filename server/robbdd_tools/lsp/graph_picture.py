@@ -14,8 +14,8 @@ from robbdd_tools.lsp.last_good import LastGood
 from robbdd_tools.lsp.parameters import Parameters
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.source_map import Location
-    from robbdd_tools.graph.structure import Node
+    from robbdd_tools.graph.ask.structure import Node
+    from robbdd_tools.graph.write.source_map import Location
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.names.project import Snapshot
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from robbdd_tools.base.files import file_state, load_bytes, path_to_uri
+from robbdd_tools.protocol.run_folder import thumbnail_file
 from robbdd_tools.run.pictures import NoPictures, render_thumbnails
 from robbdd_tools.run.plot import plot
-from robbdd_tools.run.protocol import thumbnail_file
 from robbdd_tools.run.shown import NoTrace, kept_curves
 from robbdd_tools.run.store import NoSuchRun
 

@@ -8,9 +8,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.messages import (
     ClauseJudged,
-    ClauseSpec,
     ClauseStarted,
     RunFinished,
     RunMessage,
@@ -18,6 +17,7 @@ from robbdd_tools.run.protocol import (
     ScenarioStarted,
     UserCodeFailed,
 )
+from robbdd_tools.protocol.specs import ClauseSpec
 from robbdd_tools.run.report import plain_sentence, values_words
 from robbdd_tools.run.scheduler import CANCELLED
 

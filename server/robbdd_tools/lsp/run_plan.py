@@ -19,11 +19,11 @@ from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest
 
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.feature import Numbered
-    from robbdd_tools.graph.built import BuiltGraph
-    from robbdd_tools.graph.model import AcceptanceModel, Execution, Variant
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Variant
+    from robbdd_tools.graph.write.built import BuiltGraph
     from robbdd_tools.lsp.convert import Converter
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.run.protocol import ScenarioSpec
+    from robbdd_tools.protocol.specs import ScenarioSpec
 
 Scenario = tuple[str, int]
 """The IRI of a variant and the number of one of its scenarios."""
@@ -145,7 +145,7 @@ class RunPlan:
 
 def plan_run(snapshot: Snapshot, convert: Converter, options: RunOptions, failed: Collection[Executed]) -> RunPlan:
     """Return the plan of a run; ``failed`` are the scenarios that did not hold. Raises ``ModelError``."""
-    from robbdd_tools.graph.digest import graph_digest, joint_digest
+    from robbdd_tools.graph.write.digest import graph_digest, joint_digest
 
     built = _sound_graph(snapshot, options.uri)
     model = _plan(built, snapshot).model
@@ -204,7 +204,7 @@ def feature_plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
 
 
 def _sound_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
-    from robbdd_tools.graph.build import build_graph
+    from robbdd_tools.graph.write.build import build_graph
 
     errors = [found for found in all_diagnostics(snapshot, uri) if found.severity is Severity.ERROR]
     if errors:

@@ -19,9 +19,7 @@ from robbdd_tools.lsp.run_plan import ModelError, NothingFailed, RunOptions, Run
 from robbdd_tools.lsp.run_progress import RunProgress
 from robbdd_tools.lsp.trust import refuse_run
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.pictures import NoPictures, render_moments
-from robbdd_tools.run.prepare import prepare_all
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.messages import (
     NO_STEP,
     ClauseJudged,
     RunFinished,
@@ -30,6 +28,8 @@ from robbdd_tools.run.protocol import (
     ScenarioStarted,
     UserCodeFailed,
 )
+from robbdd_tools.run.pictures import NoPictures, render_moments
+from robbdd_tools.run.prepare import prepare_all
 from robbdd_tools.run.recording import Recording, why
 from robbdd_tools.run.report import margin, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
@@ -40,7 +40,7 @@ from robbdd_tools.run.used_files import digests, prepared_digest
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.monitor.fault import Fault
-    from robbdd_tools.run.protocol import Manifest
+    from robbdd_tools.protocol.specs import Manifest
     from robbdd_tools.run.store import StoredRun
 
 PICTURES = "pictures"

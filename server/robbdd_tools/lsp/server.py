@@ -23,7 +23,7 @@ from robbdd_tools.features.results import NOTHING, Results
 from robbdd_tools.lsp.analysis import AnalysisThread
 from robbdd_tools.lsp.background import Background
 from robbdd_tools.lsp.convert import Converter, document_of
-from robbdd_tools.lsp.frames import Answer, Request
+from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.importers import Importers
 from robbdd_tools.lsp.kept_results import load_results
 from robbdd_tools.lsp.newest import Newest

@@ -11,7 +11,7 @@ from pygls.exceptions import JsonRpcException
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.limits import use_limits
-from robbdd_tools.graph.user_shapes import EditorShapes
+from robbdd_tools.graph.shapes.project_shapes import EditorShapes
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer

@@ -12,7 +12,7 @@ from robbdd_tools.lsp.convert import document_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from robbdd_tools.lsp.frames import Answer
+    from robbdd_tools.lsp.framing import Answer
     from robbdd_tools.names.project import Snapshot
 
 UNCHECKED = "the shapes were not checked, because of an internal error: {}; they will be after the next change"

@@ -12,7 +12,7 @@ from typing import Any
 
 from robbdd_tools.base.interpreter import start_worker
 from robbdd_tools.base.limits import VALIDATION_SECONDS
-from robbdd_tools.lsp.frames import LENGTH, Answer, Begun, Forget, Request, frame
+from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.lsp.requests import log_background_error
 
 PAUSE = 0.02

@@ -20,7 +20,7 @@ from robbdd_tools.lsp.shapes import ShapeValidator
 if TYPE_CHECKING:
     from lsprotocol import types
 
-    from robbdd_tools.lsp.frames import Answer
+    from robbdd_tools.lsp.framing import Answer
     from robbdd_tools.lsp.server import RobbddServer
 
 PAUSE = 1.0

@@ -117,7 +117,7 @@ def _ways(execution: PlacedExecution, count: int | None) -> Iterator[str]:
 
 def _scenarios(snapshot: Snapshot, convert: Converter, uri: str, variant: str, first: int, most: int) -> dict[str, Any]:
     """Answer with scenarios of a variant, or with why there are none."""
-    from robbdd_tools.graph.model import Iri
+    from robbdd_tools.graph.acceptance_model import Iri
 
     try:
         model = feature_plan(snapshot, uri).model

@@ -13,8 +13,8 @@ from robbdd_tools.base.files import read_text, uri_to_path
 from robbdd_tools.base.memory import collect_rarely, collect_recent
 from robbdd_tools.base.processes import lower_priority
 from robbdd_tools.features.diagnostics import fast_diagnostics, shape_diagnostics
-from robbdd_tools.graph.incremental import Superseded, Validation
-from robbdd_tools.lsp.frames import LENGTH, Answer, Begun, Forget, Request, frame
+from robbdd_tools.graph.shapes.incremental import Superseded, Validation
+from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.names.project import Project, Snapshot
 
 MOST_LEFT = 8

@@ -46,7 +46,7 @@ def clauses_in(snapshot: Snapshot, uri: str) -> Iterator[PlacedClause]:
 
 @dataclass(frozen=True, slots=True)
 class _Walk:
-    """Goes through the clauses of one owner; the paths are those of ``graph.clauses``."""
+    """Goes through the clauses of one owner; the paths are those of ``graph.write.clauses``."""
 
     namespace: str
     owner: str

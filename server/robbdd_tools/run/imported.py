@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, cast
 from xml.etree import ElementTree
 
-from robbdd_tools.run.protocol import ClauseJudged
+from robbdd_tools.protocol.messages import ClauseJudged
 from robbdd_tools.run.report import SIGNS, margin, plain_sentence, value_words, verdict_words
 
 _VERDICTS = tuple(str(outcome) for outcome in SIGNS)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from robbdd_tools.gherkin.steps import Scope, Step
-from robbdd_tools.graph.model import BehaviourClause
+from robbdd_tools.graph.acceptance_model import BehaviourClause
 
 
 def behaviour_scopes(steps: Iterable[Step]) -> list[Scope]:

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 from robbdd_tools.base.printable import printable
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import ClauseJudged
+from robbdd_tools.protocol.messages import ClauseJudged
 from robbdd_tools.run.report import plain_sentence, values_words, verdict_words
 from robbdd_tools.run.results import RunResults, ScenarioResult
 

@@ -16,8 +16,8 @@ from typing import BinaryIO, cast
 from robbdd_tools.base.descendants import MARK, end_marked
 from robbdd_tools.base.interpreter import start
 from robbdd_tools.base.processes import describe_exit, end_group, request_end
+from robbdd_tools.protocol.messages import Execute, LogLine, RunMessage, decode, encode
 from robbdd_tools.run.agent_log import LIMIT, BoundedLog
-from robbdd_tools.run.protocol import Execute, LogLine, RunMessage, decode, encode
 
 LOGS = "logs"
 WORK = "work"

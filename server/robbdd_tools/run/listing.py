@@ -14,7 +14,7 @@ from robbdd_tools.run.report import plain_sentence, value_words
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.feature import Numbered
     from robbdd_tools.gherkin.steps import Step
-    from robbdd_tools.graph.model import AcceptanceModel, Cell, Iri, Variant
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, Variant
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ def _clause(model: AcceptanceModel, step: Step) -> ListedClause:
 
 
 def _plain(model: AcceptanceModel, cell: Cell) -> object:
-    from robbdd_tools.graph.model import Iri
+    from robbdd_tools.graph.acceptance_model import Iri
 
     if isinstance(cell, tuple):
         return [_plain(model, value) for value in cell]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from robbdd_tools.run.protocol import RunMessage, ScenarioSpec
+from robbdd_tools.protocol.messages import RunMessage
+from robbdd_tools.protocol.specs import ScenarioSpec
 
 
 def misfit(message: RunMessage, specs: Sequence[ScenarioSpec], executed: int | None) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from robbdd_tools.protocol.manifest_file import MANIFEST
+from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.database import LOG, DatabaseProblem
-from robbdd_tools.run.manifest import MANIFEST
-from robbdd_tools.run.protocol import trace_file
 from robbdd_tools.run.store import RESULTS, StoredRun
 from robbdd_tools.run.stored_results import finished_executions
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator
 
-from robbdd_tools.run.protocol import RunMessage, ScenarioFinished
+from robbdd_tools.protocol.messages import RunMessage, ScenarioFinished
 
 
 class InOrder:

@@ -71,7 +71,7 @@ def _render(folder: Path, what: str, output: Path, more: Iterable[str] = ()) -> 
     arguments = (str(folder.absolute()), what, str(output.absolute()), *more)
     tried: list[str] = []
     for back_end in back_ends():
-        done = run("robbdd_tools.agent.render", *arguments, more={"MUJOCO_GL": back_end})
+        done = run("robbdd_tools.agent.render_run", *arguments, more={"MUJOCO_GL": back_end})
         if done.returncode == 0:
             return done.stdout.splitlines()
         said = (done.stderr.strip().splitlines() or [f"the rendering process ended with code {done.returncode}"])[-1]

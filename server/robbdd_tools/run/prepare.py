@@ -12,9 +12,10 @@ from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.gherkin.feature import Numbered, every_scenario
 from robbdd_tools.gherkin.files import FeaturePlan, only, whole_plan, written_scenarios
-from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri, Story, Variant
-from robbdd_tools.run.manifest import written_manifest
-from robbdd_tools.run.protocol import OWN_STEPS, Manifest, ScenarioSpec
+from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Iri, Story, Variant
+from robbdd_tools.protocol.manifest_file import written_manifest
+from robbdd_tools.protocol.run_folder import OWN_STEPS
+from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
 from robbdd_tools.run.related import Relations
 from robbdd_tools.run.specs import SpecWriter
 

@@ -15,23 +15,24 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.database import DatabaseProblem, explained, open_database, transaction
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.messages import (
     ClauseJudged,
     MarginRanges,
     RunFinished,
     RunStarted,
     ScenarioFinished,
     ScenarioStarted,
-    scenario_key,
 )
+from robbdd_tools.protocol.specs import scenario_key
+from robbdd_tools.run.database import DatabaseProblem, explained, open_database, transaction
 from robbdd_tools.run.results import RunResults, ScenarioResult
 from robbdd_tools.run.stored_results import FAILED, FINISHED, INTERRUPTED, RUNNING, STOPPED, restored
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from robbdd_tools.run.protocol import Manifest, RunMessage
+    from robbdd_tools.protocol.messages import RunMessage
+    from robbdd_tools.protocol.specs import Manifest
     from robbdd_tools.run.scheduler import Policy
     from robbdd_tools.run.store import RunRecord, StoredRun
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.gherkin.feature import every_scenario
-from robbdd_tools.graph.model import (
+from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
     BehaviourTree,

@@ -6,7 +6,8 @@ import re
 from typing import cast
 
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import ClauseJudged, ScenarioSpec
+from robbdd_tools.protocol.messages import ClauseJudged
+from robbdd_tools.protocol.specs import ScenarioSpec
 
 SIGNS = {Outcome.HOLDS: "✔", Outcome.VIOLATED: "✗", Outcome.UNKNOWN: "?"}
 MINUS = "−"

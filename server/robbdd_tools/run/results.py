@@ -8,16 +8,9 @@ from typing import Any
 
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import (
-    ClauseJudged,
-    ClauseSpec,
-    Manifest,
-    MarginRanges,
-    RunFinished,
-    RunMessage,
-    ScenarioSpec,
-)
-from robbdd_tools.run.protocol import ScenarioFinished as Finished
+from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, RunMessage
+from robbdd_tools.protocol.messages import ScenarioFinished as Finished
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
 from robbdd_tools.run.vacuity import Vacuity
 
 

@@ -17,15 +17,10 @@ from queue import Empty, SimpleQueue
 from time import monotonic
 
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.agent_log import LIMIT
-from robbdd_tools.run.launch import Agent, stop
-from robbdd_tools.run.misfit import misfit
-from robbdd_tools.run.order import InOrder
-from robbdd_tools.run.protocol import (
+from robbdd_tools.protocol.messages import (
     ClauseJudged,
     ClauseStarted,
     LogLine,
-    Manifest,
     MarginRanges,
     Output,
     RunFinished,
@@ -35,6 +30,11 @@ from robbdd_tools.run.protocol import (
     ScenarioStarted,
     UserCodeFailed,
 )
+from robbdd_tools.protocol.specs import Manifest
+from robbdd_tools.run.agent_log import LIMIT
+from robbdd_tools.run.launch import Agent, stop
+from robbdd_tools.run.misfit import misfit
+from robbdd_tools.run.order import InOrder
 
 TIMEOUT = 300.0
 """Seconds of wall time that a scenario has unless something else is said."""

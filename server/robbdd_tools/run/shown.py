@@ -10,7 +10,8 @@ from robbdd_tools.base import interpreter
 from robbdd_tools.base.files import load_text, path_to_uri
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.protocol import ScenarioSpec, curves_file, trace_file
+from robbdd_tools.protocol.run_folder import curves_file, trace_file
+from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.run.report import plain_sentence, values_words
 from robbdd_tools.run.results import finished_in
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun
@@ -116,7 +117,7 @@ def kept_curves(run: StoredRun, index: int) -> Mapping[str, Any]:
 
 
 def _seen(run: StoredRun, index: int) -> dict[str, Any]:
-    done = interpreter.run("robbdd_tools.agent.show", str(run.folder.absolute()), str(index))
+    done = interpreter.run("robbdd_tools.agent.show_trace", str(run.folder.absolute()), str(index))
     if done.returncode:
         said = (done.stderr.strip().splitlines() or [f"the reading process ended with code {done.returncode}"])[-1]
         raise NoTrace(said)

@@ -12,7 +12,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.feature import ScenarioText
 from robbdd_tools.gherkin.steps import AnyOf, Bound, Filler, Placeholder, Step, StepWriter
 from robbdd_tools.gherkin.tables import elements_of
-from robbdd_tools.graph.model import (
+from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
     Cell,
@@ -26,17 +26,10 @@ from robbdd_tools.graph.model import (
     SceneModel,
     Variant,
 )
-from robbdd_tools.graph.read_clauses import used_names
+from robbdd_tools.graph.read.clauses import used_names
 from robbdd_tools.monitor.policy import Observation, Policy
+from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec, plain_name
 from robbdd_tools.run.iterations import behaviour_scopes, iterations_of
-from robbdd_tools.run.protocol import (
-    ClauseSpec,
-    ConfigSpec,
-    ExecutionSpec,
-    ScenarioSpec,
-    SceneSpec,
-    plain_name,
-)
 from robbdd_tools.run.related import Linked, Relations
 from robbdd_tools.run.seeds import scenario_seed
 from robbdd_tools.run.tree_specs import TreeSpecWriter

@@ -24,9 +24,9 @@ from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.locks import Lock, hold, is_held
 from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.database import LOG, NAME, DatabaseProblem
-from robbdd_tools.run.manifest import read_manifest
-from robbdd_tools.run.protocol import Manifest
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.stored_results import (
     FINISHED,

@@ -9,8 +9,9 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
+from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, ScenarioFinished
+from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.database import explained, read_database
-from robbdd_tools.run.protocol import ClauseJudged, Manifest, MarginRanges, RunFinished, ScenarioFinished
 from robbdd_tools.run.results import RunResults
 
 RUNNING, FINISHED, STOPPED, INTERRUPTED, FAILED = "running", "finished", "stopped", "interrupted", "failed"

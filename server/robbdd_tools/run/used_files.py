@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import load_bytes, uri_to_path
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.model_includes import model_files
-from robbdd_tools.run.manifest import MANIFEST
+from robbdd_tools.protocol.manifest_file import MANIFEST
 from robbdd_tools.run.prepare import FEATURES
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource, Origin
-    from robbdd_tools.run.protocol import ExecutionSpec, Manifest
+    from robbdd_tools.protocol.specs import ExecutionSpec, Manifest
 
 
 def digests(manifest: Manifest, folder: Path) -> dict[str, str]:

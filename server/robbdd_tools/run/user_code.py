@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.isolation import NO_USER_CODE, UNTRUSTED
-from robbdd_tools.run.protocol import OWN_STEPS
+from robbdd_tools.protocol.run_folder import OWN_STEPS
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.protocol import ExecutionSpec, Manifest, ScenarioSpec
+    from robbdd_tools.protocol.specs import ExecutionSpec, Manifest, ScenarioSpec
 
 _FIX = "leave out --no-user-code if you trust this code, or run what does without it"
 _FIX_TRUST = "trust the workspace if you trust this code"

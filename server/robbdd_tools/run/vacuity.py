@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.monitor.vacuity import Range, is_constant, joined
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.protocol import ClauseJudged, ClauseSpec
+    from robbdd_tools.protocol.messages import ClauseJudged
+    from robbdd_tools.protocol.specs import ClauseSpec
 
 HELD_BEFORE = "its predicate already held before the behaviour began, in every execution"
 

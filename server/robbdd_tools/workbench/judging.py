@@ -9,21 +9,23 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.protocol.manifest_file import STORED_RESULTS
+from robbdd_tools.protocol.messages import LogLine, ScenarioStarted
+from robbdd_tools.protocol.specs import scenario_key
 from robbdd_tools.run.launch import Agent, stop
-from robbdd_tools.run.manifest import STORED_RESULTS
 from robbdd_tools.run.misfit import misfit
-from robbdd_tools.run.protocol import LogLine, ScenarioStarted, scenario_key
 from robbdd_tools.run.results import RunResults, finished_in
 from robbdd_tools.run.scheduler import CANCELLED
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.plan import NothingSelected, Plan, Selection
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.protocol import Manifest, RunMessage
+    from robbdd_tools.protocol.messages import RunMessage
+    from robbdd_tools.protocol.specs import Manifest
     from robbdd_tools.run.store import StoredRun
     from robbdd_tools.workbench.model import Model
 
-JUDGE = "robbdd_tools.agent.judge"
+JUDGE = "robbdd_tools.agent.rejudge"
 
 
 class NothingToJudge(RobbddError):

@@ -13,15 +13,15 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.diagnostics import all_diagnostics
-from robbdd_tools.graph.foreign import GRAPH_FORMATS, graph_format
+from robbdd_tools.graph.write.foreign import GRAPH_FORMATS, graph_format
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.syntax.parse import LANGUAGES
 from robbdd_tools.workbench.findings import Finding, Place, findings
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.built import BuiltGraph
-    from robbdd_tools.graph.model import AcceptanceModel
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel
+    from robbdd_tools.graph.write.built import BuiltGraph
     from robbdd_tools.workbench.plan import Plan
 
 NO_SCENARIO = "the model has no scenario to run"
@@ -59,7 +59,7 @@ class ModelFile:
     @cached_property
     def graph(self) -> BuiltGraph:
         """The knowledge graph of the file and its imports; raises ``ModelErrors``."""
-        from robbdd_tools.graph.build import build_graph
+        from robbdd_tools.graph.write.build import build_graph
 
         errors = [one for one in self.diagnostics if one.severity is Severity.ERROR]
         if errors:
@@ -76,7 +76,7 @@ class ModelFile:
     @cached_property
     def digest(self) -> str:
         """The SHA-256 of the graph; raises ``ModelErrors``."""
-        from robbdd_tools.graph.digest import graph_digest
+        from robbdd_tools.graph.write.digest import graph_digest
 
         return graph_digest(self.graph)
 
@@ -130,7 +130,7 @@ class Model:
     @property
     def digest(self) -> str:
         """The digest of all graphs that can be run; raises as ``runnable``."""
-        from robbdd_tools.graph.digest import joint_digest
+        from robbdd_tools.graph.write.digest import joint_digest
 
         return joint_digest(file.digest for file in self.runnable)
 
@@ -139,7 +139,7 @@ class Model:
 
         Raises ``ModelErrors``, and ``ValueError`` for several files.
         """
-        from robbdd_tools.graph.serialize import serialize
+        from robbdd_tools.graph.rdf.serialize import serialize
 
         if len(self.files) != 1:
             raise ValueError(f"{self.path} has {len(self.files)} models, each with its own graph: load one of them")

@@ -16,8 +16,8 @@ from robbdd_tools.run.scheduler import Policy
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.covering import Cover
     from robbdd_tools.gherkin.feature import Numbered
-    from robbdd_tools.graph.model import AcceptanceModel, Execution, Iri, Variant
-    from robbdd_tools.run.protocol import Manifest, ScenarioSpec
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Iri, Variant
+    from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
     from robbdd_tools.workbench.folder import Keeping
     from robbdd_tools.workbench.model import Model, ModelFile
     from robbdd_tools.workbench.run import Run
@@ -150,7 +150,7 @@ class Plan:
     @cached_property
     def digest(self) -> str:
         """The joint digest of the models' graphs."""
-        from robbdd_tools.graph.digest import joint_digest
+        from robbdd_tools.graph.write.digest import joint_digest
 
         return joint_digest(file.digest for file in self.files)
 

@@ -14,19 +14,21 @@ from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.interpreter import run as run_module
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.run.manifest import MANIFEST
+from robbdd_tools.protocol.manifest_file import MANIFEST
+from robbdd_tools.protocol.messages import RunStarted
+from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.prepare import FEATURES
-from robbdd_tools.run.protocol import RunStarted, trace_file
 from robbdd_tools.run.results import RunResults, finished_in
 from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.unchanged import model_now, refusal
 
 if TYPE_CHECKING:
-    from robbdd_tools.run.protocol import Manifest, RunMessage, ScenarioSpec
+    from robbdd_tools.protocol.messages import RunMessage
+    from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
     from robbdd_tools.run.store import StoredRun
 
-COMPARE = "robbdd_tools.agent.compare"
+COMPARE = "robbdd_tools.agent.compare_traces"
 
 
 class CannotReplay(RobbddError):

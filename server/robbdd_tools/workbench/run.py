@@ -9,7 +9,7 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING, Self
 
 from robbdd_tools import __version__
-from robbdd_tools.run.protocol import ScenarioFinished
+from robbdd_tools.protocol.messages import ScenarioFinished
 from robbdd_tools.run.recording import OtherSimulator, Recording, why
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
@@ -22,7 +22,8 @@ from robbdd_tools.workbench.stored import Recorded
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from robbdd_tools.run.protocol import Manifest, RunMessage
+    from robbdd_tools.protocol.messages import RunMessage
+    from robbdd_tools.protocol.specs import Manifest
     from robbdd_tools.run.store import StoredRun
     from robbdd_tools.workbench.plan import Plan
 

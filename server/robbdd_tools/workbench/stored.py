@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.run.protocol import trace_file
+from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.store import LATEST, RunStore, StoredRun, store_beside
 from robbdd_tools.workbench.executions import ExecutionResult, execution_results, rows_of
 

@@ -1,0 +1,163 @@
+"""``python -m robbdd_tools.agent.rejudge FOLDER RUN``: judges stored traces against other clauses, without simulating.
+
+FOLDER is a run folder whose scenarios are to be judged, with the results of the stored run RUN, which has the traces.
+Reports as the agent does.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from robbdd_tools.agent.channel import Reports
+from robbdd_tools.agent.printed_output import Printed, finish_output
+from robbdd_tools.agent.standard_streams import reserve_channel
+from robbdd_tools.base.files import load_text
+from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.judging.clauses import decide
+from robbdd_tools.judging.margin_ranges import margin_ranges
+from robbdd_tools.judging.scenario_clauses import stated_clause, stated_iteration
+from robbdd_tools.judging.sentences import fluents_of, read_event
+from robbdd_tools.monitor.time import never_occurred, occurrences
+from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.protocol.manifest_file import STORED_RESULTS, read_manifest
+from robbdd_tools.protocol.messages import (
+    LogLine,
+    MarginRanges,
+    RunFinished,
+    RunMessage,
+    RunStarted,
+    ScenarioFinished,
+    ScenarioStarted,
+    UserCodeFailed,
+    judged,
+)
+from robbdd_tools.protocol.run_folder import trace_file
+from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, scenario_key
+from robbdd_tools.traces.codec import Evidence
+from robbdd_tools.traces.mcap_file import UnreadableTrace, read_trace
+
+STRANGER = "the stored run has no scenario with these values"
+CHANGED = "{} changed since the run: only a new run can tell"
+
+
+class StoredTraces:
+    """The traces of a run, and the verdicts on its behaviours; raises ``OSError``, ``ValueError`` or ``KeyError``."""
+
+    def __init__(self, folder: Path, results: Path) -> None:
+        self._folder = folder
+        manifest = read_manifest(folder)
+        self._specs = {scenario_key(spec): (index, spec) for index, spec in enumerate(manifest.scenarios)}
+        self._results: list[Mapping[str, Any]] = json.loads(load_text(results, RESULT_SIZE))["scenarios"]
+
+    def judged(self, spec: ScenarioSpec) -> Iterator[tuple[ClauseSpec, Verdict]]:
+        """Yield the verdicts on the clauses of a scenario."""
+        index, stored = self._specs.get(scenario_key(spec), (0, None))
+        try:
+            evidence = None if stored is None else read_trace(trace_file(self._folder, index))
+            reason = STRANGER if stored is None else _change(spec, stored)
+        except UnreadableTrace as error:
+            evidence, reason = None, str(error)
+        for clause in spec.clauses:
+            if stored is None or evidence is None or reason:
+                yield clause, unknown(reason)
+            elif clause.role == "when":
+                yield clause, self._done(clause, evidence, index, spec)
+            else:
+                yield clause, _decided(clause, evidence, spec, stored)
+
+    def ranges(self, number: int, spec: ScenarioSpec) -> Iterator[MarginRanges]:
+        """Yield what the trace of a scenario says of clauses that prove little; ``number`` is the scenario's."""
+        index, stored = self._specs.get(scenario_key(spec), (0, None))
+        if stored is None or _change(spec, stored):
+            return
+        try:
+            evidence = read_trace(trace_file(self._folder, index))
+        except UnreadableTrace:
+            return
+        for clause in (clause for clause in spec.clauses if clause.role != "when"):
+            read = stated_clause(clause.sentence, clause, spec)
+            found = margin_ranges(number, read, clause, spec, evidence.trace, evidence.regions)
+            if found is not None:
+                yield found
+
+    def _done(self, clause: ClauseSpec, evidence: Evidence, index: int, spec: ScenarioSpec) -> Verdict:
+        """Return the verdict on a When clause: an event of the trace, or what the run said of the behaviour."""
+        event = read_event(clause.sentence)
+        if event is not None:
+            trace, iteration = evidence.trace, stated_iteration(clause)
+            time = trace.event_time(event, iteration)
+            if time is None:
+                return unknown(trace.unreached or never_occurred(trace, event, iteration))
+            return Verdict(Outcome.HOLDS, at=time)
+        # Iterations may state one behaviour several times.
+        same = [one for one in spec.clauses if one.sentence == clause.sentence]
+        found = [entry for entry in self._results[index]["clauses"] if entry["sentence"] == clause.sentence]
+        if len(same) != len(found):
+            return unknown(CHANGED.format("the behaviour"))
+        entry = found[same.index(clause)]
+        return Verdict(Outcome(entry["verdict"]), entry["robustness"], entry["unit"], entry["at"], entry["reason"])
+
+
+def _change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
+    """Say why a trace is no evidence for a scenario any more."""
+    if spec.scene != stored.scene:
+        return CHANGED.format("the scene")
+    if (spec.tree, spec.node) != (stored.tree, stored.node):
+        return CHANGED.format("the behaviour tree")
+    if _behaviours(spec) != _behaviours(stored):
+        return CHANGED.format("the behaviour")
+    return ""
+
+
+def _behaviours(spec: ScenarioSpec) -> list[str]:
+    return [one.sentence for one in spec.clauses if one.role == "when" and read_event(one.sentence) is None]
+
+
+def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored: ScenarioSpec) -> Verdict:
+    read, trace = stated_clause(clause.sentence, clause, spec), evidence.trace
+    for fluent in fluents_of(read):
+        for event, iteration in occurrences(fluent.time):
+            if event in spec.events and spec.events[event] != stored.events.get(event):
+                return unknown(f"the stored trace has no record of event {event}")
+            # The run went no further than its own clauses asked for.
+            if event in spec.events and not trace.finished and trace.event_time(event, iteration) is None:
+                return unknown(f"the stored trace ends at {trace.end:.2f} s, before event {event}")
+    return decide(read, trace, evidence.regions, spec.events.keys())
+
+
+def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
+    yield RunStarted(len(manifest.scenarios), "stored traces")
+    for index, spec in enumerate(manifest.scenarios):
+        yield ScenarioStarted(index)
+        faults: set[str] = set()
+        for clause, verdict in traces.judged(spec):
+            if verdict.fault is not None and verdict.fault.id not in faults:
+                faults.add(verdict.fault.id)
+                yield UserCodeFailed(index, verdict.fault)
+            yield judged(index, clause.line, verdict)
+        yield from traces.ranges(index, spec)
+        finish_output()
+        yield ScenarioFinished(index, 0.0, 0.0, 0.0)
+    yield RunFinished(True)
+
+
+def _main() -> int:
+    channel = Reports(reserve_channel()[1])
+    sys.stdout = Printed(channel, sys.stdout)
+    folder, run = map(Path, sys.argv[1:])
+    try:
+        for message in _messages(read_manifest(folder), StoredTraces(run, folder / STORED_RESULTS)):
+            channel.send(message)
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        channel.send(LogLine("error", f"{run} cannot be judged: {error}"))
+        channel.send(RunFinished(False))
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main())

@@ -1,0 +1,81 @@
+"""``python -m robbdd_tools.agent.show_trace RUN INDEX``: prints what a stored trace shows as one JSON object.
+
+It is what of ``docs/schemas/trace.schema.json`` only the trace knows: shapes, meshes, bodies, frames, workspaces.
+Exit codes: 0 done; 2 the trace cannot be read, which standard error explains.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robbdd_tools.protocol.run_folder import trace_file
+from robbdd_tools.traces.mcap_file import UnreadableTrace, read_views
+from robbdd_tools.world.arrays import array
+
+FAILED = 2
+FRAMES = 4000
+"""Instants of an answer; of longer executions it has every second one, every third …"""
+
+
+def show(path: Path) -> dict[str, Any]:
+    """Return what is to be seen in a trace; raises ``UnreadableTrace``."""
+    seen = read_views(path, ("/geometry", "/tf"))
+    transforms = [message["transforms"] for _, message in seen["/tf"]]
+    if not transforms or not seen["/geometry"]:
+        raise UnreadableTrace(f"{path} was stored by an older version and tells no shapes: run the scenario again")
+    geometry = seen["/geometry"][0][1]
+    start = {frame["child_frame_id"]: _pose(frame) for frame in transforms[0]}
+    numbers = {name: number for number, name in enumerate(start)}
+    moving = [frame["child_frame_id"] for frame in transforms[-1]] if len(transforms) > 1 else []
+    every = -(-len(transforms) // FRAMES)
+    times = [time for time, _ in seen["/tf"]][::every]
+    return {
+        "shapes": [{**shape, "body": numbers[shape["body"]]} for shape in geometry["shapes"]],
+        "meshes": geometry["meshes"],
+        "bodies": [_body(name, pose) for name, pose in start.items()],
+        "frames": {
+            "times": array(np.array(times), "float32"),
+            "bodies": [numbers[name] for name in moving],
+            "poses": array(_poses(transforms[::every], moving), "float32"),
+        },
+        "workspaces": [{**space, "body": numbers.get(space["body"])} for space in geometry["workspaces"]],
+    }
+
+
+def _body(name: str, pose: Sequence[float]) -> dict[str, Any]:
+    return {"name": name.removesuffix("/solid"), "position": pose[:3], "orientation": pose[3:]}
+
+
+def _poses(transforms: Sequence[Sequence[Mapping[str, Any]]], moving: Sequence[str]) -> np.ndarray[Any, Any]:
+    found = np.empty((len(transforms), len(moving), 7))
+    column = {name: index for index, name in enumerate(moving)}
+    for row, frames in enumerate(transforms):
+        for frame in frames:
+            if frame["child_frame_id"] in column:
+                found[row, column[frame["child_frame_id"]]] = _pose(frame)
+    return found
+
+
+def _pose(frame: Mapping[str, Any]) -> list[float]:
+    place, turn = frame["translation"], frame["rotation"]
+    return [place["x"], place["y"], place["z"], turn["w"], turn["x"], turn["y"], turn["z"]]
+
+
+def _main() -> int:
+    folder, index = sys.argv[1:]
+    try:
+        print(json.dumps(show(trace_file(Path(folder), int(index))), ensure_ascii=False))
+    except UnreadableTrace as error:
+        print(error, file=sys.stderr)
+        return FAILED
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main())

@@ -1,0 +1,214 @@
+"""Executes behaviour trees: the only user of py_trees."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.composites import Selector, Sequence
+
+from robbdd_tools.catalog.coordination import END, START, emitter
+from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
+from robbdd_tools.world.errors import SceneError, SimulationError, UserError
+from robbdd_tools.world.frames import at
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
+
+Attempt = Callable[["NodeSpec"], Generator[None, None, str]]
+"""Executes the behaviour of a leaf, one control tick after the other; returns why it failed, else nothing."""
+COMPOSITES: dict[str, type[Selector | Sequence]] = {"sequence": Sequence, "selector": Selector}
+NOT_REACHED = "precondition not reached"
+
+
+class TreeRun:
+    """A behaviour tree in execution.
+
+    ``stamp`` is told ``<node> start`` and ``<node> end`` (the node has succeeded) when they happen; ``active`` are the
+    nodes, by IRI, whose behaviour is at work, innermost first. Raises ``SceneError`` when the tree cannot be made.
+    """
+
+    def __init__(self, spec: TreeSpec, attempt: Attempt, stamp: Callable[[str], None]) -> None:
+        self._attempt = attempt
+        self._stamp = stamp
+        self._spec = spec
+        self._root = _made(spec, self._leaf) if spec.source is not None else self._declared(spec.nodes[0])
+        self._nodes = {node.iri: _find(self._root, node.name, spec) for node in _every(spec.nodes)}
+        self._iris = {behaviour.id: iri for iri, behaviour in self._nodes.items()}
+        self._begun: set[object] = set()
+        self._succeeded: set[object] = set()
+        self._is_over = False
+        self._failures: list[tuple[Behaviour, str]] = []
+        self.active: tuple[str, ...] = ()
+
+    def steps(self) -> Iterator[None]:
+        """Tick the tree once per control tick until it is over; raises ``UserError`` and ``SimulationError``."""
+        while True:
+            self._tick()
+            self._take_note()
+            if self._root.status is not Status.RUNNING:
+                self._is_over = True
+                return
+            yield
+
+    def has_begun(self, node: str) -> bool:
+        """Tell whether a node has been ticked."""
+        return self._nodes[node].id in self._begun
+
+    def is_over(self, node: str) -> bool:
+        """Tell whether a node has succeeded, or will not any more: one that has failed may be tried again."""
+        return self._is_over or self.has_succeeded(node)
+
+    def has_succeeded(self, node: str) -> bool:
+        """Tell whether a node has succeeded."""
+        return self._nodes[node].id in self._succeeded
+
+    def failure(self, node: str) -> str:
+        """Return why a node failed: the reason of its last part that did; nothing where none has."""
+        return self._failure(self._nodes[node])[1]
+
+    def unreached(self, node: str, remark: str) -> str:
+        """Say why a node was never ticked in a tree that is over; ``remark`` is the last word on what went wrong."""
+        found = self._nodes[node]
+        while found.parent is not None and found.parent.id not in self._begun:
+            found = found.parent
+        siblings = [] if found.parent is None else found.parent.children
+        before = [one for one in siblings[: siblings.index(found)] if one.id in self._begun] if siblings else []
+        if before and before[-1].id in self._succeeded:
+            return f"not reached: {before[-1].name} succeeded before, so nothing else was tried"
+        name, reason = self._failure(before[-1]) if before else ("", "")
+        if name:
+            return f"{NOT_REACHED}: {name} failed: {reason}"
+        return f"{NOT_REACHED}: {remark or 'the behaviour tree was over before'}"
+
+    def _failure(self, node: Behaviour) -> tuple[str, str]:
+        for leaf, reason in reversed(self._failures):
+            if any(one is node for one in _upwards(leaf)):
+                return leaf.name, reason
+        return "", ""
+
+    def _declared(self, node: NodeSpec) -> Behaviour:
+        if node.kind == "leaf":
+            return _Leaf(node, self._run)
+        children = [self._declared(child) for child in node.children]
+        return COMPOSITES[node.kind](name=node.name, memory=True, children=children)
+
+    def _leaf(self, name: str) -> Behaviour:
+        """Make the leaf that executes what is linked to a node; raises ``ValueError`` for an unknown one."""
+        known = {node.name: node for node in self._spec.nodes}
+        if name not in known:
+            raise ValueError(f"the model declares no node '{name}' of this tree; it has {', '.join(known)}")
+        return _Leaf(known[name], self._run)
+
+    def _run(self, leaf: Behaviour, node: NodeSpec) -> Generator[None, None, str]:
+        if node.problem:
+            raise UserError(node.problem)
+        steps = self._attempt(node)
+        chain = tuple(self._iris[one.id] for one in _upwards(leaf) if one.id in self._iris)
+        while True:
+            self.active = chain
+            try:
+                next(steps)
+            except StopIteration as end:
+                if end.value:
+                    self._failures.append((leaf, end.value))
+                return end.value
+            finally:
+                self.active = ()
+            yield
+
+    def _tick(self) -> None:
+        source = self._spec.source
+        if source is None:
+            self._root.tick_once()
+            return
+        try:
+            called(source.name, self._root.tick_once)
+        except UserCodeError as error:
+            if isinstance(error.__cause__, UserError | SimulationError):
+                raise error.__cause__ from None
+            raise UserError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
+
+    def _take_note(self) -> None:
+        """Stamp what has begun or ended with this tick."""
+        for behaviour in _preorder(self._root):
+            if behaviour.status is Status.INVALID:
+                continue
+            iri = self._iris.get(behaviour.id)
+            if behaviour.id not in self._begun:
+                self._begun.add(behaviour.id)
+                if iri is not None:
+                    self._stamp(emitter(iri, START))
+            if behaviour.status is Status.SUCCESS and behaviour.id not in self._succeeded:
+                self._succeeded.add(behaviour.id)
+                if iri is not None:
+                    self._stamp(emitter(iri, END))
+
+
+class _Leaf(Behaviour):
+    """Executes one behaviour, a control tick with each tick of the tree."""
+
+    def __init__(self, node: NodeSpec, run: Callable[[Behaviour, NodeSpec], Generator[None, None, str]]) -> None:
+        super().__init__(node.name)
+        self._node = node
+        self._run = run
+        self._steps: Generator[None, None, str] | None = None
+
+    def initialise(self) -> None:
+        """Begin anew."""
+        self._steps = self._run(self, self._node)
+
+    def update(self) -> Status:
+        """Execute the next control tick."""
+        assert self._steps is not None
+        try:
+            next(self._steps)
+        except StopIteration as end:
+            return Status.FAILURE if end.value else Status.SUCCESS
+        return Status.RUNNING
+
+
+def _made(spec: TreeSpec, leaf: Callable[[str], Behaviour]) -> Behaviour:
+    """Let the user's function put a tree together from leaves; raises ``SceneError``."""
+    source = spec.source
+    assert source is not None
+    place, model = at(source.origin), "" if source.origin is None else source.origin.file
+    try:
+        make = load_attribute(source.name, model)
+        root: object = called(source.name, make, leaf)
+        if not isinstance(root, Behaviour):
+            message = f"'{source.name}' returned a {type(root).__name__}, not a behaviour of py_trees"
+            raise refused(source.name, message, definition_of(make))
+    except UserCodeError as error:
+        raise SceneError(f"{place}{error}", replace(error.fault, origin=source.iri)) from error
+    return root
+
+
+def _find(root: Behaviour, name: str, spec: TreeSpec) -> Behaviour:
+    found = [behaviour for behaviour in _preorder(root) if behaviour.name == name]
+    if len(found) != 1:
+        place = at(None if spec.source is None else spec.source.origin)
+        raise SceneError(f"{place}the behaviour tree has {len(found)} nodes called '{name}': it must have one")
+    return found[0]
+
+
+def _preorder(node: Behaviour) -> Iterator[Behaviour]:
+    yield node
+    for child in node.children:
+        yield from _preorder(child)
+
+
+def _upwards(node: Behaviour) -> Iterator[Behaviour]:
+    above: Behaviour | None = node
+    while above is not None:
+        yield above
+        above = above.parent
+
+
+def _every(nodes: tuple[NodeSpec, ...]) -> Iterator[NodeSpec]:
+    for node in nodes:
+        yield node
+        yield from _every(node.children)

@@ -1,0 +1,166 @@
+"""SPARQL over a graph: all prefixes are declared, nothing is fetched, rows come in a fixed order.
+
+rdflib reads the query and says where it is wrong; Oxigraph, where the extra ``fast-queries`` is installed, answers it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from decimal import Decimal
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, cast
+
+from robbdd_tools.base.data import data_file, data_folder
+from robbdd_tools.base.files import load_text
+from robbdd_tools.graph.rdf.prefixes import bind_prefixes, user_prefixes
+from robbdd_tools.graph.rdf.vocabulary import expand
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+    from rdflib.term import Node
+
+FOLDER = "queries"
+_MORE_PREFIXES = {
+    "rdfs": "http://www.w3.org/2000/01/rdf-schema#",
+    "owl": "http://www.w3.org/2002/07/owl#",
+    "sh": "http://www.w3.org/ns/shacl#",
+}
+
+
+class BadQuery(Exception):
+    """A query cannot be answered; ``offset`` is the place in its text where it goes wrong."""
+
+    def __init__(self, message: str, offset: int = 0) -> None:
+        super().__init__(message)
+        self.offset = offset
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A node of a graph as plain data: ``kind`` is ``uri``, ``bnode`` or ``literal``; plain text has no datatype."""
+
+    kind: str
+    value: str
+    datatype: str = ""
+    language: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """The answer to SELECT: one term or ``None`` per column; to ASK: one cell of the column ``answer``.
+
+    CONSTRUCT and DESCRIBE answer with the triples of a graph: subject, predicate, object. ``prefixes`` maps prefixes
+    to namespaces, for whoever shows names.
+    """
+
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Term | None, ...], ...]
+    prefixes: dict[str, str]
+
+
+def run_query(graph: Graph, text: str) -> Rows:
+    """Answer a query; raises ``BadQuery``. Rows are sorted unless the query orders them itself."""
+    from rdflib import Graph
+
+    prefixes = bind_prefixes(Graph(bind_namespaces="none"), user_prefixes(graph))
+    known = {**_MORE_PREFIXES, **prefixes}
+    query = _prepared(text, known)
+    engine = _fast_copy(graph)
+    try:
+        # rdflib's results are only loosely typed.
+        result = cast(Any, graph.query(query) if engine is graph else engine.query(text, initNs=known))
+        if result.type == "ASK":
+            truth = Term("literal", str(bool(result.askAnswer)).lower(), expand("xsd:boolean"))
+            return Rows(("answer",), ((truth,),), known)
+        is_select = result.type == "SELECT"
+        rows = cast("list[tuple[Node | None, ...]]", list(result if is_select else result.graph))
+    except Exception as error:  # evaluation raises whatever a function of the query runs into
+        raise BadQuery(f"the query cannot be answered: {error}") from error
+    terms = [tuple(map(_term, row)) for row in rows]
+    if not any(part.name == "OrderBy" for part in _parts(query.algebra)):
+        terms.sort(key=_row_order)
+    columns = tuple(str(name) for name in result.vars) if is_select else ("subject", "predicate", "object")
+    return Rows(columns, tuple(terms), known)
+
+
+def ready_queries() -> dict[str, str]:
+    """Return the names of the queries that come with us and what each tells."""
+    paths = sorted(data_folder("metamodels", FOLDER).glob("*.rq"))
+    return {path.stem: load_text(path).partition("\n")[0].lstrip("# ") for path in paths}
+
+
+def ready_query(name: str) -> str | None:
+    """Return the text of a query that comes with us, ``None`` when there is none of this name."""
+    if name not in ready_queries():
+        return None
+    return load_text(data_file("metamodels", f"{FOLDER}/{name}.rq"))
+
+
+def _fast_copy(graph: Graph) -> Graph:
+    """Return a copy that Oxigraph answers for; the graph itself where that is not installed."""
+    from rdflib import Graph
+
+    if find_spec("oxrdflib") is None:
+        return graph
+    copy = Graph(store="Oxigraph", bind_namespaces="none")
+    copy.addN((*triple, copy) for triple in graph)
+    return copy
+
+
+def _prepared(text: str, prefixes: dict[str, str]) -> Any:
+    from pyparsing import ParseBaseException
+    from rdflib.plugins.sparql import prepareQuery
+
+    try:
+        query = cast(Any, prepareQuery(text, initNs=prefixes))
+    except ParseBaseException as error:
+        raise BadQuery("the query cannot be read from here on", error.loc) from error
+    except Exception as error:  # rdflib raises a bare Exception for an unknown prefix
+        unknown = re.search(r"Unknown namespace prefix : (\S*)", str(error))
+        found = re.search(rf"(?<![\w.\-]){re.escape(unknown[1])}:", text) if unknown else None
+        message = (
+            f"the prefix '{unknown[1]}' is not declared; there are {', '.join(prefixes)}" if unknown else str(error)
+        )
+        raise BadQuery(message, found.start() if found else 0) from error
+    if query.algebra.get("datasetClause") or any(part.name == "ServiceGraphPattern" for part in _parts(query.algebra)):
+        word = re.search(r"\b(SERVICE|FROM)\b", text, re.IGNORECASE)
+        raise BadQuery("a query asks this model only: SERVICE and FROM are not followed", word.start() if word else 0)
+    return query
+
+
+def _parts(algebra: Any) -> Iterator[Any]:
+    """Yield all operators of a query."""
+    waiting: list[Any] = [algebra]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, dict):
+            fields = cast("dict[str, Any]", part)
+            if hasattr(fields, "name"):
+                yield fields
+            waiting += fields.values()
+        elif isinstance(part, list | tuple):
+            waiting += cast("list[Any]", part)
+
+
+def _term(node: Node | None) -> Term | None:
+    from rdflib import XSD, BNode, Literal
+
+    if node is None or not isinstance(node, Literal):
+        return None if node is None else Term("bnode" if isinstance(node, BNode) else "uri", str(node))
+    datatype = "" if node.datatype == XSD.string else str(node.datatype or "")
+    return Term("literal", _lexical(node.value, str(node)), datatype, node.language or "")
+
+
+def _lexical(value: object, text: str) -> str:
+    """Return how a number is written, whichever engine computed it: 1.50 as 1.5; other text as it is."""
+    if isinstance(value, Decimal) and value.is_finite():
+        return format(value.normalize() if value else Decimal(0), "f")
+    return repr(value) if isinstance(value, float) else text
+
+
+def _row_order(row: tuple[Term | None, ...]) -> tuple[tuple[str, str, str, str], ...]:
+    return tuple(
+        ("", "", "", "") if term is None else (term.kind, term.value, term.datatype, term.language) for term in row
+    )

@@ -1,0 +1,101 @@
+"""The only place where the loosely typed graph libraries are called; everything beyond it is fully typed."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, cast
+
+from robbdd_tools.graph.rdf.contexts import ContextLoader, Json, UnknownContext
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+
+def compact(expanded: list[Json], context: Json) -> Json:
+    """Compact expanded JSON-LD with a context; raises ``UnknownContext`` when the context names another by URL."""
+    jsonld = _jsonld()
+    options = {"documentLoader": ContextLoader(), "graph": True, "compactArrays": True}
+    return cast(Json, jsonld.compact(expanded, {"@context": context}, options))
+
+
+def frame(expanded: list[Json], context: Json, kind: str) -> list[Json]:
+    """Return the nodes of a class (a CURIE of the context), each with all that it leads to inside it, once."""
+    jsonld = _jsonld()
+    options = {"documentLoader": ContextLoader(), "omitGraph": False, "omitDefault": True}
+    framed = jsonld.frame(expanded, {"@context": context, "@type": kind, "@embed": "@once"}, options)
+    return cast("list[Json]", framed["@graph"])
+
+
+def triples(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[Json, Json, Json]]:
+    """Yield the triples of a JSON-LD document, of all its graphs, as ``{type, value, datatype, language}`` objects.
+
+    Relative names are resolved against ``base``. Raises ``UnknownContext`` or ``ValueError``.
+    """
+    jsonld = _jsonld()
+    try:
+        options = {"documentLoader": loader, "base": base}
+        dataset = cast("dict[str, list[Json]]", jsonld.to_rdf(document, options))
+    except jsonld.JsonLdError as error:
+        cause = _unknown_context(error)
+        if cause is not None:
+            raise cause from error
+        raise ValueError(str(error).partition("\n")[0]) from error
+    for graph in dataset.values():
+        yield from ((triple["subject"], triple["predicate"], triple["object"]) for triple in graph)
+
+
+class UnusableShapes(Exception):
+    """pyshacl cannot make sense of some shapes; ``message`` is the reason that it gives."""
+
+
+def shacl_report(graph: Graph, shapes: Graph) -> Graph:
+    """Return the SHACL validation report of a graph, without inference; the graph is left as it is.
+
+    Raises ``UnusableShapes``.
+    """
+    import pyshacl
+
+    _keep_sparql_off_the_network()
+    # It prints what it raises as well.
+    logging.getLogger("pyshacl-validate").disabled = True
+    try:
+        outcome = cast(Any, pyshacl).validate(graph, shacl_graph=shapes, inference="none", inplace=True)
+    except Exception as error:  # shapes may hold anything, and pyshacl raises whatever it runs into
+        raise UnusableShapes(str(getattr(error, "message", "") or error)) from error
+    if not hasattr(outcome[1], "triples"):
+        raise UnusableShapes(str(outcome[2]).strip() or repr(outcome[1]))
+    return cast("Graph", outcome[1])
+
+
+def _keep_sparql_off_the_network() -> None:
+    """Let no SPARQL of shapes ask a server, however it writes ``SERVICE`` or ``FROM``."""
+    from rdflib.plugins import sparql
+
+    def refuse_service(_context: object, part: Any) -> Any:
+        if part.name == "ServiceGraphPattern":
+            raise UnusableShapes("the SPARQL of a shape asks this model only: SERVICE is not followed")
+        raise NotImplementedError
+
+    loose: Any = sparql
+    loose.SPARQL_LOAD_GRAPHS = False
+    loose.CUSTOM_EVALS["robbdd"] = refuse_service
+
+
+def json_object(value: Any) -> Json:
+    """Return a JSON value if it is an object, else an empty one."""
+    return cast(Json, value) if isinstance(value, dict) else {}
+
+
+def _jsonld() -> Any:
+    from pyld import jsonld  # pyright: ignore[reportMissingTypeStubs] -- pyld has no types
+
+    return jsonld
+
+
+def _unknown_context(error: BaseException | None) -> UnknownContext | None:
+    while error is not None:
+        if isinstance(error, UnknownContext):
+            return error
+        error = getattr(error, "cause", None) or error.__cause__
+    return None

@@ -1,0 +1,59 @@
+"""Prefixes of a graph: the user's names first, the vocabulary's where they are still free."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.rdf.vocabulary import PREFIXES, expand
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+
+def prefix_for(name: str, taken: Collection[str]) -> str:
+    """Return a prefix that every format allows, ``name`` itself if it can be, with a number if it is taken."""
+    legal = name if name[:1].isalpha() and all(_is_legal(sign) for sign in name) else "ns"
+    candidates = (legal if number == 1 else f"{legal}-{number}" for number in range(1, len(taken) + 2))
+    return next(candidate for candidate in candidates if candidate not in taken)
+
+
+def bind_prefixes(graph: Graph, user: Mapping[str, str]) -> dict[str, str]:
+    """Bind the user's prefixes and the vocabulary's to a graph and return them all."""
+    taken: dict[str, str] = {}
+    for name, namespace in [*user.items(), *PREFIXES.items()]:
+        if namespace not in taken.values():
+            taken[prefix_for(name, taken)] = namespace
+    for prefix, namespace in taken.items():
+        graph.bind(prefix, namespace, override=True, replace=True)
+    return taken
+
+
+def user_prefixes(graph: Graph) -> dict[str, str]:
+    """Return the prefixes that a graph states or, where it states none, those it was read with."""
+    from rdflib import URIRef
+
+    stated = {str(name): str(namespace) for namespace, name in graph.subject_objects(URIRef(expand("rbw:prefix")))}
+    if not stated:
+        known = set(PREFIXES.values())
+        stated = {name: str(namespace) for name, namespace in graph.namespaces() if str(namespace) not in known}
+    return dict(sorted(stated.items()))
+
+
+def reading_prefixes(graph: Graph) -> dict[str, str]:
+    """Return the graph's prefixes, with invented ones for namespaces that have none: names are then short everywhere.
+
+    What a model's elements are called by itself decides which catalog model simulates them.
+    """
+    from rdflib import URIRef
+
+    prefixes = user_prefixes(graph)
+    for iri in sorted(str(subject) for subject in set(graph.subjects()) if isinstance(subject, URIRef)):
+        namespace = iri[: max(iri.rfind("#"), iri.rfind("/")) + 1]
+        if namespace and namespace != iri and not iri.startswith(tuple(prefixes.values())):
+            prefixes[prefix_for("ns", prefixes)] = namespace
+    return prefixes
+
+
+def _is_legal(sign: str) -> bool:
+    return sign in "-_" or (sign.isascii() and sign.isalnum()) or (sign >= "\u00c0" and sign.isalpha())

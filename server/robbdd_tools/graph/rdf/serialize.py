@@ -1,0 +1,207 @@
+"""Graphs to text and back: Turtle, JSON-LD, N-Triples, RDF/XML. One graph gives one text, byte for byte."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, cast
+from urllib.parse import urljoin
+
+from robbdd_tools.base.printable import printable, printable_json, printable_terms
+from robbdd_tools.graph.rdf.canonical import canonical
+from robbdd_tools.graph.rdf.contexts import ContextLoader, Json, UnknownContext
+from robbdd_tools.graph.rdf.json_ld import context_for, expanded
+from robbdd_tools.graph.rdf.libraries import compact, frame, json_object, triples
+from robbdd_tools.graph.rdf.lists import Lists
+from robbdd_tools.graph.rdf.prefixes import bind_prefixes, user_prefixes
+from robbdd_tools.graph.rdf.vocabulary import expand
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+    from rdflib.term import Node
+
+FORMATS = {"ttl": "turtle", "json-ld": "json-ld", "json-ld-expanded": "json-ld", "nt": "nt", "xml": "xml"}
+"""Our name of a format → rdflib's."""
+_SURROGATE = re.compile("[\ud800-\udfff]")
+_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What XML 1.0 has no way to write."""
+
+
+class UnreadableGraph(Exception):
+    """A text is not a graph in the format it is said to be in; ``offset`` is where it breaks off, 0 if unknown."""
+
+    def __init__(self, message: str, offset: int = 0) -> None:
+        super().__init__(message)
+        self.offset = offset
+
+
+class UnwritableGraph(Exception):
+    """A text of the graph cannot be said in a format; the message names the character and the formats that can."""
+
+
+def serialize(graph: Graph, format: str) -> str:
+    """Return a graph as text (a key of ``FORMATS``, else ``ValueError``) with all its prefixes.
+
+    Equal graphs give equal texts: blank nodes are numbered anew and everything is written in order. Raises
+    ``UnwritableGraph`` for characters that the format cannot say.
+    """
+    _check_format(format)
+    if not format.startswith("json"):
+        _check_characters(graph, _NOT_XML if format == "xml" else _SURROGATE, format)
+    ordered = canonical(graph)
+    prefixes = bind_prefixes(ordered, user_prefixes(graph))
+    if format == "json-ld":
+        context = context_for(prefixes)
+        document = {"@context": context, "@graph": _by_story(expanded(ordered), context)}
+        return printable_json(document, indent=2) + "\n"
+    if format == "json-ld-expanded":
+        return printable_json(expanded(ordered), indent=2) + "\n"
+    if format == "nt":
+        # Not by splitlines, which takes control characters within a text for line ends.
+        lines = ordered.serialize(format="nt").rstrip("\n").split("\n")
+        return printable_terms("".join(sorted(f"{line}\n" for line in lines if line)))
+    text = printable_terms(_turtle(ordered)) if format == "ttl" else ordered.serialize(format=FORMATS[format])
+    return text.strip("\n") + "\n"
+
+
+def _check_characters(graph: Graph, refused: re.Pattern[str], format: str) -> None:
+    for triple in graph:
+        for term in triple:
+            found = refused.search(str(term))
+            if found is not None:
+                others = "ttl, nt and json-ld" if refused is _NOT_XML and not _SURROGATE.search(found[0]) else "json-ld"
+                text = printable(str(term)[:80])
+                raise UnwritableGraph(f"{format} cannot hold {printable(found[0])} of '{text}'; {others} can")
+
+
+def _turtle(graph: Graph) -> str:
+    """Return a graph as Turtle.
+
+    With every digit of its numbers, of which rdflib writes six; lists that lead back into themselves, which rdflib
+    would follow for ever, are written cell by cell.
+    """
+    from io import BytesIO
+
+    from rdflib import Literal
+    from rdflib.namespace import RDF, XSD
+    from rdflib.plugins.serializers.turtle import TurtleSerializer
+
+    lists = Lists(graph)
+
+    class Exact(TurtleSerializer):
+        def isValidList(self, l_: Node) -> bool:
+            return l_ != RDF.nil and lists.items(l_) is not None
+
+        def label(self, node: Node, position: int) -> str:
+            short: str = super().label(node, position)
+            if isinstance(node, Literal) and node.datatype == XSD.double and isinstance(node.value, float):
+                exact = repr(node.value)
+                return short if float(short) == node.value else exact if "e" in exact else f"{exact}e0"
+            return short
+
+    stream = BytesIO()
+    Exact(graph).serialize(stream, encoding="utf-8")
+    return stream.getvalue().decode()
+
+
+def _by_story(nodes: list[Json], context: Json) -> list[Json]:
+    """Return each story with all that belongs to it inside, then the nodes that belong to none.
+
+    A graph with blank nodes beside its lists is left flat: what their labels join must not come apart.
+    """
+    compacted: list[Json] = compact(nodes, context).get("@graph", [])
+    stories = [node for node in nodes if expand("bdd:UserStory") in node.get("@type", ())]
+    if not stories or any(str(node["@id"]).startswith("_:") for node in nodes):
+        return compacted
+    described: set[str] = set()
+    framed = [_once(story, described) for story in frame(nodes, context, expand("bdd:UserStory"))]
+    return [*framed, *(node for node in compacted if node["@id"] not in described)]
+
+
+def _once(value: Any, described: set[str]) -> Any:
+    """Replace what was described before by its name: a list that is written twice would be two lists."""
+    if isinstance(value, list):
+        return [_once(item, described) for item in cast("list[Any]", value)]
+    fields = json_object(value)
+    if len(fields) > 1 and "@id" in fields:
+        if fields["@id"] in described:
+            return {"@id": fields["@id"]}
+        described.add(fields["@id"])
+    return {key: _once(item, described) for key, item in fields.items()} if fields else value
+
+
+def parse(text: str, format: str, base: str = "", loader: ContextLoader | None = None) -> Graph:
+    """Return the graph that a text says; raises ``UnreadableGraph``, and ``ValueError`` for an unknown format.
+
+    Relative names are resolved against ``base``. Contexts that JSON-LD names by URL come from ``loader``, by default
+    one that fetches nothing.
+    """
+    from rdflib import Graph
+
+    _check_format(format)
+    graph = Graph(bind_namespaces="none")
+    loader = loader or ContextLoader()
+    try:
+        if FORMATS[format] == "json-ld":
+            document: Any = json.loads(text)
+            for subject, predicate, value in triples(document, base, loader):
+                graph.add((_node(subject), _node(predicate), _node(value)))
+            for name, namespace in context_prefixes(document, base, loader):
+                graph.bind(name, namespace, override=True, replace=True)
+        else:
+            graph.parse(data=text, format=FORMATS[format], publicID=base or None)
+    except UnknownContext as error:
+        raise UnreadableGraph(str(error)) from error
+    except Exception as error:  # every rdflib parser has exceptions of its own
+        reason, offset = _fault(error)
+        raise UnreadableGraph(f"this is no graph in the format {format}: {reason}", offset) from error
+    return graph
+
+
+def context_prefixes(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[str, str]]:
+    """Yield the prefixes that the contexts of a JSON-LD document declare."""
+    waiting: list[Any] = [json_object(document).get("@context")]
+    seen: set[str] = set()
+    while waiting:
+        context = waiting.pop(0)
+        if isinstance(context, list):
+            waiting += context
+        elif isinstance(context, str):
+            url = urljoin(base, context)
+            if url not in seen:
+                seen.add(url)
+                waiting.append(json_object(loader.document(url)).get("@context"))
+        for name, definition in json_object(context).items():
+            namespace = json_object(definition).get("@id") if isinstance(definition, dict) else definition
+            if isinstance(namespace, str) and namespace[-1:] in {"/", "#", ":"} and not name.startswith("@"):
+                yield name, namespace
+
+
+def _fault(error: Exception) -> tuple[str, int]:
+    """Return why and where a parser gave up; each has its own way of telling."""
+    if isinstance(error, json.JSONDecodeError):
+        return error.msg, error.pos
+    why, offset = getattr(error, "_why", None), getattr(error, "_i", None)
+    if isinstance(why, str) and isinstance(offset, int):
+        return why, offset
+    return str(error).strip() or repr(error), 0
+
+
+def _check_format(format: str) -> None:
+    if format not in FORMATS:
+        raise ValueError(f"'{format}' is no graph format; there are {', '.join(FORMATS)}")
+
+
+def _node(term: Json) -> Node:
+    from rdflib import BNode, Literal, URIRef
+
+    value = str(term["value"])
+    if term["type"] == "blank node":
+        return BNode(value.removeprefix("_:"))
+    if term["type"] == "IRI":
+        return URIRef(value)
+    datatype = term.get("datatype")
+    if term.get("language"):
+        return Literal(value, lang=term["language"])
+    return Literal(value) if datatype in (None, expand("xsd:string")) else Literal(value, datatype=URIRef(datatype))

@@ -1,0 +1,1 @@
+"""From RDF to plain data: acceptance criteria, executions, scenes, variations."""

@@ -1,0 +1,164 @@
+"""A graph, wherever it came from, as plain acceptance criteria. What is incomplete is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.acceptance_model import (
+    AcceptanceModel,
+    Clause,
+    Iri,
+    SceneModel,
+    Story,
+    Template,
+    Value,
+    Variant,
+)
+from robbdd_tools.graph.rdf.prefixes import reading_prefixes
+from robbdd_tools.graph.rdf.records import Incomplete, Records
+from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
+from robbdd_tools.graph.read.behaviour_trees import read_trees
+from robbdd_tools.graph.read.clauses import ClauseReader, used_names
+from robbdd_tools.graph.read.executions import read_executions
+from robbdd_tools.graph.read.instances import InstanceReader, Places
+from robbdd_tools.graph.read.variations import VariationReader
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+
+def _nowhere(_: str) -> None:
+    """Say that it is not known where something is written."""
+
+
+def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
+    """Return the acceptance criteria that a graph states, in written order where the graph tells it.
+
+    ``places`` tells where nodes are written. A variant that lacks something (a template, a value of a variable, a
+    known predicate …) is left out.
+    """
+    records = Records(graph)
+    sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
+    kinds = {node: kind for kind, type_ in ELEMENT_TYPES.items() for node in records.instances(type_)}
+    stories = story_order(records)
+    reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
+    every = tuple(reader.story(node) for node in stories)
+    executions = read_executions(records, InstanceReader(records, sets, places), places)
+    trees = read_trees(records, places)
+    return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees)
+
+
+def incomplete_variants(graph: Graph) -> dict[Iri, str]:
+    """Return the variants that ``read_model`` leaves out, each with what it lacks."""
+    records = Records(graph)
+    sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
+    reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
+    found: dict[Iri, str] = {}
+    for node in records.instances("bdd:ScenarioVariant"):
+        try:
+            reader.variant(node)
+        except Incomplete as error:
+            found[node] = str(error)
+    return found
+
+
+def read_set(records: Records, node: str) -> tuple[Value, ...]:
+    """Return the elements of a set in written order, repeated ones repeated."""
+    listed = records.all(node, "rbw:element-list")
+    items = records.items(listed[0]) if listed else None
+    elements = records.all(node, "bdd:elements")
+    if items is None or set(items) != set(elements):
+        items = elements
+    return tuple(records.value(item) for item in items)
+
+
+def story_order(records: Records) -> list[Iri]:
+    """Return the stories of a graph in written order where it tells it."""
+    return sorted(records.instances("bdd:UserStory"), key=lambda node: (_position(records, node), node))
+
+
+def _position(records: Records, node: str) -> float:
+    position = records.literal(node, "rbw:position")
+    return position if isinstance(position, int | float) else float("inf")
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    records: Records
+    clauses: ClauseReader
+    variations: VariationReader
+
+    def story(self, node: Iri) -> Story:
+        criteria = self.records.iris(self.records.ordered(node, "bdd:has-criteria", "rbw:criteria-list"))
+        role, feature, benefit = (self.records.text(node, f"rbw:{part}") for part in ("role", "feature", "benefit"))
+        return Story(node, role, feature, benefit, tuple(self._complete(criteria)))
+
+    def _complete(self, criteria: Iterable[Iri]) -> Iterator[Variant]:
+        for node in criteria:
+            try:
+                yield self.variant(node)
+            except Incomplete:
+                continue
+
+    def variant(self, node: Iri) -> Variant:
+        """Return a scenario variant; raises ``Incomplete``."""
+        template = self._template(self.records.one(node, "bdd:of-template"))
+        extra = self._extra_clauses(node)
+        variation = self.variations.variation(self.records.one(node, "bdd:has-variation"))
+        for name in used_names((*template.clauses, *extra)):
+            if self.records.is_a(name, "bdd:ScenarioVariable") and name not in variation.variables:
+                raise Incomplete(f"{node} gives {name} no value")
+        return Variant(node, template, extra, self._scene(node), variation)
+
+    def _extra_clauses(self, node: Iri) -> tuple[Clause, ...]:
+        stated = self.records.all(node, "bdd:has-clause")
+        # A published graph of a variant without own clauses has an empty node in place of the list.
+        if not stated or self.records.is_blank(stated[0]):
+            return ()
+        return self.clauses.clauses(node)
+
+    def _template(self, node: Iri) -> Template:
+        start, end = (self.records.one(node, f"time:{side}-event") for side in ("after", "before"))
+        return Template(node, self.clauses.clauses(node), start, end)
+
+    def _scene(self, variant: Iri) -> SceneModel:
+        members: dict[str, dict[Iri, None]] = {kind: {} for kind in MEMBERSHIPS}
+        for node in self.records.iris(self.records.all(variant, "bdd:has-scene")):
+            for kind, (_, term, _) in MEMBERSHIPS.items():
+                found = self.records.iris(self.records.ordered(node, term, "rbw:member-list"))
+                members[kind].update(dict.fromkeys(found))
+        workspaces = tuple(members["workspace"])
+        carriers: dict[Iri, dict[Iri, None]] = {}
+        contains: dict[Iri, dict[Iri, None]] = {}
+        for node in self._compositions(variant, workspaces):
+            workspace = self.records.one(node, "env:of-workspace")
+            for target, term in ((carriers, "env:has-object"), (contains, "env:has-workspace")):
+                inner = self.records.iris(self.records.ordered(node, term, "rbw:entries"))
+                if inner:
+                    target.setdefault(workspace, {}).update(dict.fromkeys(inner))
+        return SceneModel(
+            tuple(members["object"]),
+            workspaces,
+            tuple(members["agent"]),
+            {workspace: tuple(objects) for workspace, objects in carriers.items()},
+            {workspace: tuple(inner) for workspace, inner in contains.items()},
+        )
+
+    def _compositions(self, variant: Iri, workspaces: tuple[Iri, ...]) -> tuple[Iri, ...]:
+        """Return the compositions of a variant's scene; of a graph that does not tell, those of its workspaces."""
+        scenes = self.records.iris(self.records.all(variant, "rbw:scene"))
+        if not scenes:
+            every = self.records.subjects("env:of-workspace")
+            return tuple(node for node in every if self.records.one(node, "env:of-workspace") in workspaces)
+        found: dict[Iri, None] = {}
+        waiting = list(scenes)
+        while waiting:
+            node = waiting.pop(0)
+            if self.records.all(node, "env:of-workspace"):
+                found[node] = None
+            listed = self.records.all(node, "rbw:entries")
+            entries = self.records.iris((self.records.items(listed[0]) if listed else None) or ())
+            waiting += [entry for entry in entries if entry not in found]
+        return tuple(found)

@@ -1,0 +1,140 @@
+"""Clauses of a graph as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.graph.acceptance_model import (
+    BehaviourClause,
+    Clause,
+    EventClause,
+    Exists,
+    Fluent,
+    ForAll,
+    Iri,
+    Junction,
+    TextClause,
+    TextFluent,
+)
+from robbdd_tools.graph.rdf.records import Incomplete, Records
+from robbdd_tools.graph.rdf.vocabulary import JUNCTIONS, expand
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+
+if TYPE_CHECKING:
+    from rdflib.term import Node
+
+    from robbdd_tools.catalog.api import Slot
+
+ROLES = {"bdd:Given": "given", "bdd:When": "when", "bdd:Then": "then"}
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseReader:
+    """Reads clauses; raises ``Incomplete`` for one that lacks something or contains itself."""
+
+    records: Records
+
+    def clauses(self, owner: str, term: str = "bdd:has-clause", inside: tuple[str, ...] = ()) -> tuple[Clause, ...]:
+        """Return the clauses of an owner in order."""
+        return tuple(self.clause(node, (*inside, owner)) for node in self.records.list_of(owner, term))
+
+    def clause(self, node: Node, inside: tuple[str, ...] = ()) -> Clause:
+        """Return one clause; ``inside`` are the nodes that hold it, outermost first."""
+        iri = Iri(node)
+        if iri in inside:
+            raise Incomplete(f"{iri} contains itself")
+        records = self.records
+        if records.is_a(iri, "bdd:ForAll"):
+            return ForAll(iri, *self._quantified(iri), self.clauses(iri, inside=inside))
+        if records.is_a(iri, "bdd:WhenBehaviour"):
+            return self._behaviour(iri)
+        if records.is_a(iri, "rbw:WhenEvent"):
+            return EventClause(iri, records.one(iri, "rbw:event"))
+        role = self._role(iri)
+        if records.is_a(iri, "bdd:ThereExists"):
+            return Exists(iri, role, *self._quantified(iri), self.clauses(iri, inside=inside))
+        if records.is_a(iri, "rbw:TextClause"):
+            return TextClause(iri, role, records.text(iri, "rbw:text"), self.time(iri))
+        for operator, kind in JUNCTIONS.items():
+            if records.is_a(iri, kind):
+                return Junction(iri, role, operator, self.clauses(iri, "rbw:operands", inside))
+        return self._fluent(iri, role)
+
+    def _quantified(self, iri: Iri) -> tuple[Iri, Iri]:
+        return self.records.one(iri, "bdd:ref-variable"), self.records.one(iri, "bdd:in-set")
+
+    def _role(self, iri: Iri) -> str:
+        owner = self.records.one(iri, "bdd:clause-of")
+        for kind, role in ROLES.items():
+            if self.records.is_a(owner, kind):
+                return role
+        raise Incomplete(f"{owner} is neither Given nor When nor Then")
+
+    def _fluent(self, iri: Iri, role: str) -> Fluent | TextFluent:
+        if self.records.is_a(iri, "bdd:StringTemplatePredicate"):
+            return self._text_fluent(iri, role)
+        for word in load_catalog().predicates.values():
+            if self.records.is_a(iri, word.rdf_type):
+                return Fluent(iri, role, word.name, self._arguments(iri, word.slots), self.time(iri))
+        raise Incomplete(f"{iri} has no predicate that this installation knows")
+
+    def _text_fluent(self, iri: Iri, role: str) -> TextFluent:
+        names = [str(name) for name in self.records.list_of(iri, "bdd:argument-names")]
+        variables = self.records.iris(self.records.list_of(iri, "bdd:argument-variables"))
+        if len(names) != len(variables):
+            raise Incomplete(f"{iri} has {len(names)} argument names for {len(variables)} variables")
+        template = self.records.text(iri, "bdd:template-string")
+        return TextFluent(iri, role, template, dict(zip(names, variables, strict=True)), self.time(iri))
+
+    def _behaviour(self, iri: Iri) -> BehaviourClause:
+        records = self.records
+        behaviour = records.one(iri, "bhv:of-behaviour")
+        types = records.types(behaviour)
+        fitting = [word for word in load_catalog().behaviours.values() if types.issuperset(map(expand, word.rdf_types))]
+        if not fitting:
+            raise Incomplete(f"{behaviour} is no behaviour that this installation knows")
+        word = max(fitting, key=lambda candidate: len(candidate.rdf_types))
+        time = self.time(iri)
+        if not isinstance(time, During):
+            raise Incomplete(f"{iri} has no start and end")
+        nodes = records.iris(records.all(behaviour, "rbw:coordination-node"))
+        node = nodes[0] if len(nodes) == 1 else None
+        return BehaviourClause(iri, word.name, self._arguments(iri, word.slots), Iri(time.start), Iri(time.end), node)
+
+    def _arguments(self, iri: Iri, slots: Iterable[Slot]) -> Mapping[str, Iri | str]:
+        return {
+            slot.name: self.records.text(iri, slot.property)
+            if slot.kind is Kind.NAME
+            else self.records.one(iri, slot.property)
+            for slot in slots
+        }
+
+    def time(self, iri: Iri) -> TimeConstraint:
+        """Return the time constraint on a node."""
+        before, after = (self.records.all(iri, f"time:{side}-event") for side in ("before", "after"))
+        horizon = self.records.literal(iri, "time:horizon-seconds")
+        seconds = float(horizon) if isinstance(horizon, int | float) else None
+        if before and after:
+            return During(self.records.one(iri, "time:after-event"), self.records.one(iri, "time:before-event"))
+        if before:
+            return Before(self.records.one(iri, "time:before-event"), seconds)
+        return After(self.records.one(iri, "time:after-event"), seconds)
+
+
+def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:
+    """Yield what the arguments of clauses refer to, quantified variables apart."""
+    for clause in clauses:
+        match clause:
+            case Fluent() | TextFluent() | BehaviourClause():
+                yield from (argument for argument in clause.arguments.values() if isinstance(argument, Iri))
+            case Junction():
+                yield from used_names(clause.operands)
+            case ForAll() | Exists():
+                yield clause.in_set
+                yield from (name for name in used_names(clause.clauses) if name != clause.variable)
+            case TextClause() | EventClause():
+                pass

@@ -1,0 +1,203 @@
+"""Executable scenes of a graph as plain data. What is incomplete is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.executable import (
+    ArmModel,
+    Body,
+    Law,
+    Link,
+    ModelSource,
+    Origin,
+    Realisation,
+    SceneInstance,
+    spherical,
+)
+from robbdd_tools.graph.acceptance_model import Iri
+from robbdd_tools.graph.rdf.records import Incomplete, Records
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from robbdd_tools.graph.acceptance_model import Value
+
+Places = Callable[[str], Origin | None]
+"""Where a node is written, ``None`` where that is not known."""
+_LAWS = {
+    "rbw:UniformRotation": "uniform-rotation",
+    "rbw:UniformDistribution": "uniform",
+    "rbw:NormalDistribution": "normal",
+}
+_POSE_TERMS = ("rbw:with-respect-to", "rbw:position-sample", "rbw:orientation-sample")
+_JOINTS = {"rbw:FixedJoint": "fixed", "rbw:RevoluteJoint": "revolute"}
+
+
+def python_name(records: Records, node: str) -> str:
+    """Return ``module:attribute`` of a node that is an attribute of a Python module; raises ``Incomplete``."""
+    module, attribute = records.text(node, "py:module-name"), records.text(node, "py:attribute-name")
+    if not (module and attribute):
+        raise Incomplete(f"{node} names no Python code")
+    return f"{module}:{attribute}"
+
+
+def number(records: Records, node: str, term: str) -> float | None:
+    """Return a property as a number, ``None`` when it is missing or none."""
+    value = records.literal(node, term)
+    return value if isinstance(value, int | float) else None
+
+
+class InstanceReader:
+    """Reads scene instances; ``sets`` are the constant sets of the graph."""
+
+    def __init__(self, records: Records, sets: Mapping[Iri, tuple[Value, ...]], places: Places) -> None:
+        self._records = records
+        self._sets = sets
+        self._places = places
+
+    def instance(self, node: Iri) -> SceneInstance:
+        """Return a scene instance with everything that its graphs are made of."""
+        records = self._records
+        parts = list(self._parts(self._list(node, "rbw:graphs"), set()))
+        bodies = [part for part in parts if records.is_a(part, "rbw:Body")]
+        frames = [frame for body in bodies for frame in self._list(body, "rbw:frames")]
+        poses = [(frame, pose) for frame in frames for pose in self._list(frame, "rbw:poses")]
+        links = [self._pose(frame, pose) for frame, pose in poses]
+        joints = [(part, kind) for part in parts for term, kind in _JOINTS.items() if records.is_a(part, term)]
+        links += [link for part, kind in joints for link in self._joint(part, kind)]
+        roots = [
+            root for graph in self._list(node, "rbw:graphs") for root in records.iris(records.all(graph, "rbw:root"))
+        ]
+        placed = {link.frame for link in links}
+        return SceneInstance(
+            node,
+            tuple(self._models(node)),
+            tuple(self._elements(node)),
+            tuple(Body(body, tuple(self._list(body, "rbw:frames")), self._places(body)) for body in bodies),
+            tuple(links),
+            tuple(self._laws({law for link in links for law in (link.position_law, link.rotation_law) if law})),
+            next(iter([*roots, *(frame for frame in frames if frame not in placed)]), ""),
+            self._places(node),
+        )
+
+    def _list(self, node: str, term: str) -> tuple[Iri, ...]:
+        records = self._records
+        try:
+            return records.iris(records.list_of(node, term))
+        except Incomplete:
+            return ()
+
+    def _numbers(self, node: str, term: str) -> tuple[float, ...]:
+        records = self._records
+        try:
+            values = [records.value(entry) for entry in records.list_of(node, term)]
+        except Incomplete:
+            return ()
+        return tuple(float(value) for value in values if isinstance(value, int | float))
+
+    def _parts(self, owners: tuple[Iri, ...], seen: set[str]) -> Iterator[Iri]:
+        """Yield bodies and joints of graphs, with those of the trees in them, in written order."""
+        for owner in owners:
+            if owner in seen:
+                continue
+            seen.add(owner)
+            if self._records.all(owner, "rbw:parts"):
+                yield from self._parts(self._list(owner, "rbw:parts"), seen)
+            else:
+                yield owner
+
+    def _pose(self, frame: Iri, pose: Iri) -> Link:
+        records = self._records
+        one = {term: next(iter(records.iris(records.all(pose, term))), "") for term in _POSE_TERMS}
+        return Link(
+            frame,
+            one["rbw:with-respect-to"],
+            "pose",
+            self._numbers(pose, "rbw:position"),
+            self._numbers(pose, "rbw:orientation"),
+            one["rbw:position-sample"],
+            one["rbw:orientation-sample"],
+            number(records, pose, "rbw:unit-metres") or 1.0,
+            origin=self._places(pose),
+        )
+
+    def _joint(self, joint: Iri, kind: str) -> Iterator[Link]:
+        records = self._records
+        try:
+            parent, child = records.one(joint, "rbw:parent"), records.one(joint, "rbw:child")
+        except Incomplete:
+            return
+        axes = (records.text(joint, "rbw:parent-axis"), records.text(joint, "rbw:child-axis"))
+        position = self._numbers(joint, "rbw:position")
+        origin = self._places(joint)
+        yield Link(child, parent, kind, position, axes=axes if all(axes) else (), origin=origin)
+
+    def _laws(self, used: set[str]) -> Iterator[Law]:
+        for node in sorted(used):
+            kind = next((kind for term, kind in _LAWS.items() if self._records.is_a(node, term)), "")
+            if not kind:
+                continue
+            mean, covariance = self._numbers(node, "rbw:mean"), self._numbers(node, "rbw:covariance")
+            deviation = self._numbers(node, "rbw:standard-deviation")
+            if deviation:
+                covariance = spherical(deviation[0], len(mean))
+            low, high = self._numbers(node, "rbw:lower"), self._numbers(node, "rbw:upper")
+            yield Law(node, kind, low, high, mean, covariance, self._places(node))
+
+    def _elements(self, node: Iri) -> Iterator[Realisation]:
+        """Yield elements with their models: what is said of an element goes before what is said of its set."""
+        found: dict[Iri, Realisation] = {}
+        for part in self._list(node, "rbw:realisations"):
+            models, origin = tuple(self._models(part)), self._places(part)
+            for target in self._records.iris(self._records.all(part, "rbw:realises")):
+                if target not in self._sets:
+                    if models:
+                        found[target] = Realisation(target, models, origin)
+                    continue
+                members = (entry for entry in self._sets[target] if isinstance(entry, Iri))
+                if models:
+                    found = {entry: Realisation(entry, models, origin) for entry in members} | found
+        yield from found.values()
+
+    def _models(self, owner: Iri) -> Iterator[ModelSource]:
+        records = self._records
+        for node in self._list(owner, "rbw:models"):
+            try:
+                kind, name = self._source(node)
+                arm = self._arm(node)
+            except Incomplete:
+                continue
+            bodies, trees = self._mappings(node, "rbw:Body"), self._mappings(node, "rbw:KinematicTree")
+            form, package = records.text(node, "rbw:format"), records.text(node, "rbw:ros-package")
+            yield ModelSource(node, form, kind, name, package, bodies, trees, arm, self._places(node))
+
+    def _source(self, node: Iri) -> tuple[str, str]:
+        records = self._records
+        catalog, path = records.text(node, "rbw:catalog-name"), records.text(node, "rbw:path")
+        if catalog:
+            return "catalog", catalog
+        if path:
+            return ("ros" if records.text(node, "rbw:ros-package") else "file"), path
+        return "python", python_name(records, node)
+
+    def _mappings(self, node: Iri, kind: str) -> tuple[tuple[str, str], ...]:
+        records = self._records
+        found: list[tuple[str, str]] = []
+        for mapping in self._list(node, "rbw:mappings"):
+            targets = records.iris(records.all(mapping, "rbw:stands-for"))
+            found += [(target, records.text(mapping, "rbw:name")) for target in targets if records.is_a(target, kind)]
+        return tuple(found)
+
+    def _arm(self, node: Iri) -> ArmModel | None:
+        records = self._records
+        tool = records.text(node, "rbw:tool")
+        if not tool:
+            return None
+        pads = tuple(str(records.value(pad)) for pad in records.list_of(node, "rbw:gripper-pads"))
+        terms = ("rbw:gripper-open", "rbw:gripper-closed", "rbw:stroke-metres")
+        opened, closed, stroke = (number(records, node, term) or 0.0 for term in terms)
+        home, velocity = self._numbers(node, "rbw:home"), self._numbers(node, "rbw:velocity-limits")
+        actuator = records.text(node, "rbw:gripper-actuator")
+        return ArmModel(tool, actuator, opened, closed, pads, stroke, home, velocity)

@@ -1,0 +1,79 @@
+"""What each variable stands for, told from the clauses that use it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from robbdd_tools.catalog.api import Behaviour, Kind, Predicate
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.graph.acceptance_model import Iri
+from robbdd_tools.graph.rdf.records import Records
+from robbdd_tools.graph.rdf.vocabulary import expand
+
+ELEMENT_OF_KIND = {
+    Kind.OBJECT: "object",
+    Kind.OBJECT_SET: "object",
+    Kind.WORKSPACE: "workspace",
+    Kind.WORKSPACE_SET: "workspace",
+    Kind.AGENT: "agent",
+    Kind.ANY: "element",
+}
+"""Kind of a slot → kind of element that its variable, or each element of its set, must be."""
+
+
+@dataclass(slots=True)
+class Roles:
+    """Variable or set → the kinds of element it stands for; quantifiers in the order they nest."""
+
+    kinds: dict[str, dict[str, None]] = field(default_factory=dict[str, dict[str, None]])
+    quantifiers: list[Iri] = field(default_factory=list[Iri])
+
+    def add(self, variable: str, kinds: Iterable[str]) -> None:
+        """Note that a variable stands for elements of some kinds."""
+        self.kinds.setdefault(variable, {}).update(dict.fromkeys(kinds))
+
+
+def clauses_below(records: Records, owners: Iterable[str]) -> Iterator[Iri]:
+    """Yield all clauses of some owners, also those inside groups and quantifiers, outer ones first, each once."""
+    seen: set[str] = set()
+    waiting = list(owners)
+    while waiting:
+        owner = waiting.pop(0)
+        for term in ("bdd:has-clause", "rbw:operands"):
+            heads = records.all(owner, term)
+            for clause in records.iris((records.items(heads[0]) if heads else None) or ()):
+                if clause not in seen:
+                    seen.add(clause)
+                    waiting.append(clause)
+                    yield clause
+
+
+def words_of(records: Records, clause: str) -> tuple[Predicate | Behaviour, ...]:
+    """Return the catalog words that a clause is an instance of."""
+    types = records.types(clause)
+    catalog = load_catalog()
+    if expand("bdd:WhenBehaviour") in types:
+        behaviours = records.iris(records.all(clause, "bhv:of-behaviour"))
+        types = frozenset[str]().union(*(records.types(behaviour) for behaviour in behaviours))
+        fitting = [word for word in catalog.behaviours.values() if types.issuperset(map(expand, word.rdf_types))]
+        return tuple(sorted(fitting, key=lambda word: -len(word.rdf_types))[:1])
+    return tuple(word for word in catalog.predicates.values() if expand(word.rdf_type) in types)
+
+
+def roles_in(records: Records, clauses: Iterable[Iri]) -> Roles:
+    """Return what variables stand for; what a quantified variable stands for, its set's elements do too."""
+    roles = Roles()
+    for clause in clauses:
+        for word in words_of(records, clause):
+            for slot in word.slots:
+                if slot.kind in ELEMENT_OF_KIND:
+                    for variable in records.iris(records.all(clause, slot.property)):
+                        roles.add(variable, [ELEMENT_OF_KIND[slot.kind]])
+        if records.all(clause, "bdd:in-set"):
+            roles.quantifiers.append(clause)
+    for quantifier in reversed(roles.quantifiers):
+        for variable in records.iris(records.all(quantifier, "bdd:ref-variable")):
+            for set_ in records.iris(records.all(quantifier, "bdd:in-set")):
+                roles.add(set_, roles.kinds.get(variable, {}))
+    return roles

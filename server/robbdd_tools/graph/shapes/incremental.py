@@ -1,0 +1,156 @@
+"""SHACL only where an edit can have changed what it says.
+
+What the shapes find in a declaration is a function of its *neighbourhood*: the declaration, all that it uses directly
+or through others, whoever contests one of these nodes with it, and for a composition those of the workspaces in it.
+The shapes follow properties forwards only (``locality``), and every node that a declaration leads to is described by
+one that it uses. So the findings of a declaration are kept while its neighbourhood stays as it was; the graph of the
+others' neighbourhoods together is built and validated anew. Differential tests hold this to whole-graph validation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.rdf.libraries import UnusableShapes, shacl_report
+from robbdd_tools.graph.shapes.derive import derive
+from robbdd_tools.graph.shapes.findings import FindingWriter, clash_finding, merged, results
+from robbdd_tools.graph.shapes.installed import load_shapes
+from robbdd_tools.graph.shapes.locality import is_local
+from robbdd_tools.graph.shapes.neighbourhood import Fingerprint, Identity, Neighbourhoods
+from robbdd_tools.graph.shapes.project_shapes import ProjectShapes, ShapeFile
+from robbdd_tools.graph.shapes.validate import NO_SHAPES, project_findings, together, validate
+from robbdd_tools.graph.write.build import build_declarations, build_graph
+from robbdd_tools.graph.write.foreign import graph_format
+from robbdd_tools.names.anchors import Anchored, Anchors
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.graph.shapes.findings import Result
+    from robbdd_tools.graph.write.declarations import Key, Reached
+    from robbdd_tools.names.project import Snapshot
+
+AT_ONCE = 60
+"""Declarations that are validated together; between two such groups newer work may take over."""
+
+
+class Superseded(Exception):
+    """A newer revision waits; what was found so far is kept for it."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    fingerprint: Fingerprint
+    findings: tuple[Anchored, ...]
+
+
+class Validation:
+    """The validation of one file, revision after revision.
+
+    ``looked_at`` counts the declarations that were validated the last time.
+    """
+
+    def __init__(self) -> None:
+        self.looked_at = 0
+        self._kept: dict[Identity, _Kept] = {}
+        self._files: tuple[ShapeFile, ...] = ()
+        self._unusable: set[str] = set()
+
+    def run(
+        self,
+        snapshot: Snapshot,
+        uri: str,
+        project: ProjectShapes = NO_SHAPES,
+        is_superseded: Callable[[], bool] = lambda: False,
+    ) -> list[Diagnostic]:
+        """Return what ``validate`` finds in the graph of a file; raises ``Superseded`` when something newer waits."""
+        self.looked_at = 0
+        if graph_format(uri):
+            return validate(build_graph(snapshot, uri), project=project)
+        local = self._local_files(project)
+        around = Neighbourhoods(snapshot, uri)
+        self._forget(around)
+        waiting = [entry for entry in around.reached if around.identity(entry) not in self._kept]
+        for start in range(0, len(waiting), AT_ONCE):
+            if is_superseded():
+                raise Superseded
+            self._look_at(snapshot, uri, around, waiting[start : start + AT_ONCE], local)
+        found = list(self._findings(snapshot, around))
+        rest = tuple(file for file in project.files if file not in local or file.uri in self._unusable)
+        if rest or project.faults:
+            built = build_graph(snapshot, uri)
+            writer = FindingWriter(built, derive(built.graph))
+            found += project_findings(writer, ProjectShapes(rest, project.faults))
+        return merged([*found, *project.remarks])
+
+    def _local_files(self, project: ProjectShapes) -> tuple[ShapeFile, ...]:
+        """Return the project's shape files that need no whole graph; with others than before nothing kept counts."""
+        files = tuple(file for file in project.files if not file.faults and is_local(file.graph))
+        if files != self._files:
+            self._files = files
+            self._kept.clear()
+            self._unusable.clear()
+        return tuple(file for file in files if file.uri not in self._unusable)
+
+    def _forget(self, around: Neighbourhoods) -> None:
+        """Drop what is kept of declarations in whose neighbourhood something is not as it was."""
+        now = {around.identity(entry): entry for entry in around.reached}
+        changed = [entry for identity, entry in now.items() if not self._holds(around, identity, entry)]
+        outdated = {around.identity(entry) for entry in around.touched_by(changed)}
+        self._kept = {
+            identity: kept for identity, kept in self._kept.items() if identity in now and identity not in outdated
+        }
+
+    def _holds(self, around: Neighbourhoods, identity: Identity, entry: Reached) -> bool:
+        kept = self._kept.get(identity)
+        if kept is None or kept.fingerprint != around.fingerprint(entry):
+            return False
+        return all(around.holds(anchor) for finding in kept.findings for anchor in finding.anchors)
+
+    def _look_at(
+        self,
+        snapshot: Snapshot,
+        uri: str,
+        around: Neighbourhoods,
+        entries: Collection[Reached],
+        local: tuple[ShapeFile, ...],
+    ) -> None:
+        part = around.complete(entries)
+        built = build_declarations(uri, around.uses, part, around.known)
+        writer = FindingWriter(built, derive(built.graph))
+        found: dict[Key, list[Diagnostic]] = {entry.key: [] for entry in entries}
+
+        def take(authors: Iterable[Key], diagnostics: Iterable[Diagnostic]) -> None:
+            told = list(diagnostics)
+            for author in authors:
+                if author in found:
+                    found[author] += told
+
+        for result in results(shacl_report(writer.derived.graph, load_shapes())):
+            take(writer.authors(result.focus), writer.diagnostics(result))
+        for result in self._project_results(writer, local):
+            take(writer.authors(result.focus), writer.diagnostics(result, local))
+        for clash in built.clashes:
+            take((entry.key for entry in part if entry.covers(clash.location)), [clash_finding(built, clash)])
+        anchors = Anchors(snapshot)
+        for entry in entries:
+            findings = tuple(anchors.loosened(one, entry.uri, entry.placed) for one in found[entry.key])
+            self._kept[around.identity(entry)] = _Kept(around.fingerprint(entry), findings)
+        self.looked_at += len(entries)
+
+    def _project_results(self, writer: FindingWriter, local: tuple[ShapeFile, ...]) -> list[Result]:
+        if not local or self._unusable:
+            return []
+        try:
+            return list(results(shacl_report(writer.derived.graph, together(local))))
+        except UnusableShapes:
+            # Which of them is at fault, and what the others find, the whole graph tells.
+            self._unusable = {file.uri for file in local}
+            return []
+
+    def _findings(self, snapshot: Snapshot, around: Neighbourhoods) -> Iterator[Diagnostic]:
+        anchors = Anchors(snapshot)
+        for entry in around.reached:
+            for finding in self._kept[around.identity(entry)].findings:
+                yield anchors.fixed(finding, entry.uri, entry.placed)

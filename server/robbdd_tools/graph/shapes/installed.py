@@ -1,0 +1,43 @@
+"""The shapes of the installation: the written ones and those of the catalog's words."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.data import data_file
+from robbdd_tools.graph.shapes.catalog_words import add_word_shapes
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+SHAPE_FILES = ("bdd", "time", "behaviour", "scene", "story", "variation", "execution")
+
+
+@cache
+def load_shapes() -> Graph:
+    """Return all shapes, read once per process."""
+    from rdflib import Graph
+
+    shapes = Graph(bind_namespaces="none")
+    for name in SHAPE_FILES:
+        shapes.parse(data_file("metamodels", f"shapes/{name}.ttl"), format="turtle")
+    add_word_shapes(shapes)
+    aim_property_shapes(shapes)
+    return shapes
+
+
+def aim_property_shapes(shapes: Graph) -> None:
+    """Give every property shape the targets of the node shapes that have it, which then let go of it.
+
+    This says the same. pyshacl takes a nested shape up anew for each focus node, but one that has targets of its
+    own once for all of them, which makes validation several times as fast.
+    """
+    from rdflib.namespace import SH
+
+    targets = (SH.targetClass, SH.targetSubjectsOf, SH.targetObjectsOf)
+    for node, shape in list(shapes.subject_objects(SH.property)):
+        for kind in targets:
+            for target in shapes.objects(node, kind):
+                shapes.add((shape, kind, target))
+        shapes.remove((node, SH.property, shape))

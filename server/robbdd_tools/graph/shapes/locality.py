@@ -1,0 +1,45 @@
+"""Which shapes say the same of a declaration whatever stands elsewhere, so that a part of a graph is enough for them.
+
+Such a shape begins at the nodes of a class and follows properties forwards. Whatever it meets belongs to what the
+declaration uses. One that goes against the direction of a property, asks in SPARQL or names its nodes itself needs
+the whole graph, as does one about nodes that several declarations have in common.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.rdf.vocabulary import MEMBERSHIPS, METAMODELS, expand
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+_SH = "http://www.w3.org/ns/shacl#"
+_FORWARDS = """
+targetClass path alternativePath zeroOrMorePath oneOrMorePath zeroOrOnePath property node and or not xone
+qualifiedValueShape qualifiedMinCount qualifiedMaxCount qualifiedValueShapesDisjoint class datatype nodeKind minCount
+maxCount minExclusive minInclusive maxExclusive maxInclusive minLength maxLength pattern flags languageIn uniqueLang
+equals disjoint lessThan lessThanOrEquals closed ignoredProperties hasValue in severity message name description
+deactivated order group defaultValue
+"""
+_COMMON = frozenset(
+    [expand(term) for term in ("bdd:ScenarioVariable", "bdd:Set", "bhv:Behaviour")]
+    + [expand(type_) for type_, _, _ in MEMBERSHIPS.values()]
+)
+_CLASSES = ("http://www.w3.org/2000/01/rdf-schema#Class", "http://www.w3.org/2002/07/owl#Class")
+
+
+def is_local(shapes: Graph) -> bool:
+    """Tell whether what some shapes find in a declaration depends only on what the declaration uses."""
+    from rdflib import URIRef
+    from rdflib.namespace import RDF, SH
+
+    terms = {str(term).removeprefix(_SH) for term in shapes.predicates() if str(term).startswith(_SH)}
+    classes = {str(target) for target in shapes.objects(None, SH.targetClass)}
+    is_implicit = any((None, RDF.type, URIRef(kind)) in shapes for kind in _CLASSES)
+    return terms.issubset(_FORWARDS.split()) and not is_implicit and not any(_is_common(name) for name in classes)
+
+
+def _is_common(name: str) -> bool:
+    """Tell whether instances of a class may be described by several declarations, or be none of the user's at all."""
+    return name in _COMMON or not name.startswith(METAMODELS)

@@ -1,0 +1,1 @@
+"""From RDF to RobBDD text, and what that text cannot say."""

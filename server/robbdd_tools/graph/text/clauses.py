@@ -1,0 +1,190 @@
+"""Templates and clauses of a graph as RobBDD text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.graph.acceptance_model import (
+    BehaviourClause,
+    Clause,
+    EventClause,
+    Exists,
+    Fluent,
+    ForAll,
+    Iri,
+    Junction,
+    TextClause,
+    TextFluent,
+)
+from robbdd_tools.graph.rdf.records import Incomplete
+from robbdd_tools.graph.read.clauses import ClauseReader
+from robbdd_tools.graph.text.names import NAME, Names, indented, quoted
+from robbdd_tools.monitor.time import Before, During, TimeConstraint
+
+_SLOT = re.compile(r"<(\w+)>|\$(\w+)")
+
+
+@dataclass(slots=True)
+class ClauseText:
+    """Writes the clauses of one owner, a template or a variant, whose qualified name is ``owner``.
+
+    ``variables`` maps the variables that can be named to their references. Nodes that the text gives no name get
+    the IRI of the path to them, as a graph that is built from the text has it.
+    """
+
+    names: Names
+    owner: str
+    namespace: str
+    variables: dict[str, str] = field(default_factory=dict[str, str])
+
+    def body(self, clauses: Sequence[Clause], path: str = "") -> str:
+        """Return Given, When or for all, and Then; raises ``Incomplete`` without anything in When."""
+        loops = [clause for clause in clauses if isinstance(clause, ForAll)]
+        behaviours = [clause for clause in clauses if isinstance(clause, BehaviourClause)]
+        events = [clause for clause in clauses if isinstance(clause, EventClause)]
+        given = self.conditions(clauses, "given", path)
+        if len(loops) == 1 and not behaviours and not events:
+            middle = self._for_all(loops[0], f"{path}.all")
+        elif len(behaviours) == 1 and not loops:
+            inner = [*self.events(events, path), self._behaviour(behaviours[0], path)]
+            middle = "When:\n" + indented("\n".join(inner))
+        else:
+            raise Incomplete("its When has not exactly one behaviour or one 'for all'")
+        return "".join(f"{part}\n" for part in (given, middle, self.conditions(clauses, "then", path)) if part)
+
+    def conditions(self, clauses: Iterable[Clause], role: str, path: str = "") -> str:
+        """Return ``Given: …`` or ``Then: …``, nothing when there is no clause of the role."""
+        silent = (ForAll, BehaviourClause, EventClause)
+        chosen = [clause for clause in clauses if not isinstance(clause, silent) and clause.role == role]
+        while len(chosen) == 1 and isinstance(chosen[0], Junction) and chosen[0].operator == "and":
+            chosen = list(chosen[0].operands)
+        if not chosen:
+            return ""
+        return f"{role.capitalize()}:\n{indented(self._joined('and', self._each(chosen, f'{path}.{role}')))}"
+
+    def events(self, events: Iterable[EventClause], path: str = "") -> list[str]:
+        """Return ``event <e> occurs`` for each event in When."""
+        lines: list[str] = []
+        for index, clause in enumerate(events):
+            self._named(clause.iri, "when-evt", f"{path}.when.{index}")
+            lines.append(f"event {self.names.lazily(clause.event, 'event')} occurs")
+        return lines
+
+    def time(self, time: TimeConstraint) -> str:
+        """Return the words of a time constraint."""
+        if isinstance(time, During):
+            return f"from {self._event(time.start)} until {self._event(time.end)}"
+        horizon = "" if time.horizon is None else f"{str(time.horizon).removesuffix('.0')} seconds "
+        return f"{horizon}{'before' if isinstance(time, Before) else 'after'} {self._event(time.event)}"
+
+    def _event(self, event: str) -> str:
+        return self.names.lazily(event, "event")
+
+    def _each(self, clauses: Iterable[Clause], path: str) -> list[str]:
+        return [self._expression(clause, f"{path}.{index}") for index, clause in enumerate(clauses)]
+
+    def _joined(self, operator: str, parts: list[str]) -> str:
+        if len(parts) == 1:
+            return parts[0]
+        return "(\n" + indented(f"\n{operator} ".join(parts)) + "\n)"
+
+    def _expression(self, clause: Clause, path: str) -> str:
+        match clause:
+            case Fluent() | TextFluent():
+                name = self.names.declare(clause.iri, "clause", owner=self.owner, namespace=self.namespace)
+                return f"{name}: holds({self._predicate(clause)}, {self.time(clause.time)})"
+            case TextClause():
+                self._named(clause.iri, "text", path)
+                return f"{quoted(clause.text)} {self.time(clause.time)}"
+            case Junction(operator="not"):
+                self._named(clause.iri, "not", path)
+                return f"( not {self._joined('and', self._each(clause.operands, path))} )"
+            case Junction():
+                self._named(clause.iri, clause.operator, path)
+                return self._joined(clause.operator, self._each(clause.operands, path))
+            case Exists():
+                self._named(clause.iri, "exists", path)
+                in_set = self._set(clause.in_set)
+                name = self._bind(clause.variable)
+                inner = self._joined("and", self._each(clause.clauses, path))
+                return f"( var {name} exists in {in_set} ) such that {{\n{indented(inner)}\n}}"
+            case _:
+                raise Incomplete(f"{clause.iri} cannot stand in Given or Then")
+
+    def _predicate(self, clause: Fluent | TextFluent) -> str:
+        if isinstance(clause, Fluent):
+            return self._phrase(load_catalog().predicates[clause.predicate].phrase, clause.arguments)
+        for name in clause.arguments:
+            if not NAME.fullmatch(name):
+                raise Incomplete(f"{clause.iri} has a placeholder '{name}', which is no name")
+        arguments = "".join(f", {name}={self._variable(value)}" for name, value in clause.arguments.items())
+        return f"pred({quoted(clause.template)}{arguments})"
+
+    def _phrase(self, phrase: str, arguments: Mapping[str, Iri | str]) -> str:
+        return _SLOT.sub(lambda match: self._argument(arguments[match[1] or match[2]]), phrase)
+
+    def _argument(self, value: Iri | str) -> str:
+        if isinstance(value, Iri):
+            return self._variable(value)
+        if not NAME.fullmatch(value):
+            raise Incomplete(f"'{value}' is no name")
+        return value
+
+    def _variable(self, variable: str) -> str:
+        return self.variables.get(variable) or self.names.reference(variable)
+
+    def _set(self, node: str) -> str:
+        return self.variables.get(node) or self.names.reference(node)
+
+    def _bind(self, variable: Iri) -> str:
+        """Declare the variable of a quantifier."""
+        name = self.names.declare(variable, "each", owner=self.owner, namespace=self.namespace, before="var-")
+        self.variables[variable] = f"<{name}>"
+        return name
+
+    def _for_all(self, loop: ForAll, path: str) -> str:
+        self._named(loop.iri, "forall", path)
+        in_set = self._set(loop.in_set)
+        name = self._bind(loop.variable)
+        return f"for all ( var {name} in {in_set} ) {{\n{indented(self.body(loop.clauses, path).rstrip())}\n}}"
+
+    def _behaviour(self, clause: BehaviourClause, path: str) -> str:
+        names = self.names
+        self._named(clause.iri, "when-bhv", f"{path}.when")
+        node = names.records.one(clause.iri, "bhv:of-behaviour")
+        namespace, local = names.split(node)
+        name = local or "behaviour"
+        action = self._phrase(load_catalog().behaviours[clause.behaviour].phrase, clause.arguments)
+        duration = self.time(During(clause.start, clause.end))
+        head = f"Behaviour (ns={names.prefix(namespace)}) {name}"
+        link = "" if clause.node is None else f"\n    node: {names.reference(clause.node)}"
+        return f"{head} {{\n    duration: {duration}\n    {action}{link}\n}}"
+
+    def _named(self, node: Iri, kind: str, path: str) -> None:
+        made = f"{self.namespace}{kind}-{self.owner}{path}"
+        if made != node:
+            self.names.renamed[node] = made
+
+
+def template_text(names: Names, reader: ClauseReader, template: Iri, variables: Sequence[Iri]) -> str:
+    """Return a template with the variables that it declares; raises ``Incomplete``."""
+    records = names.records
+    namespace = names.split(template)[0]
+    name = names.paths[template]
+    writer = ClauseText(names, name, namespace)
+    lines: list[str] = []
+    for variable in variables:
+        own = names.declare(variable, "variable", owner=name, namespace=namespace, before="var-")
+        writer.variables[variable] = f"<{own}>"
+        lines.append(f"{'set ' if records.is_a(variable, 'bdd:Set') else ''}var {own}\n")
+    start, end = (records.one(template, f"time:{side}-event") for side in ("after", "before"))
+    head = f"duration: {writer.time(During(start, end))}\n"
+    for scenario in records.iris(records.all(template, "bdd:of-scenario")):
+        for task in records.iris(records.all(scenario, "task:of-task"))[:1]:
+            head += f"task: {names.lazily(task, 'task')}\n"
+    body = writer.body(reader.clauses(template))
+    inner = indented((head + "".join(lines) + body).rstrip())
+    return f"Scenario Template (ns={names.prefix(namespace)}) {name} {{\n{inner}\n}}"

@@ -1,0 +1,123 @@
+"""A graph as RobBDD text: the way back from knowledge to what a person can read and edit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.acceptance_model import ForAll, Iri
+from robbdd_tools.graph.rdf.prefixes import user_prefixes
+from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
+from robbdd_tools.graph.read.acceptance import story_order
+from robbdd_tools.graph.read.clauses import ClauseReader, used_names
+from robbdd_tools.graph.text.behaviour_trees import tree_text
+from robbdd_tools.graph.text.clauses import template_text
+from robbdd_tools.graph.text.names import Names, quoted
+from robbdd_tools.graph.text.scenes import SceneText
+from robbdd_tools.graph.text.stories import StoryText
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+
+OWL_INSTANT = "http://www.w3.org/2006/time#Instant"
+"""What some models type their events as."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelText:
+    """A model as text. ``scene`` is what its scene file holds, empty when it needs none.
+
+    ``renamed`` maps nodes to the IRIs that the text gives them instead; ``left_out`` nodes to the reason why they
+    cannot be written.
+    """
+
+    criteria: str
+    scene: str
+    renamed: Mapping[str, str]
+    left_out: Mapping[str, str]
+
+
+def write_model(graph: Graph, scene_name: str) -> ModelText:
+    """Return a graph as text; ``scene_name`` is how the criteria import the file with the scenes."""
+    records = Records(graph)
+    stated = {namespace: prefix for prefix, namespace in user_prefixes(graph).items()}
+    names = Names(records, stated)
+    scenes = SceneText(names)
+    scene_blocks = scenes.text()
+    scene_spaces = dict(names.used)
+    criteria = _criteria(names, scenes)
+    head = [f"import {quoted(scene_name)}\n"] if scene_blocks else []
+    kept = stated if records.subjects("rbw:prefix") else {}
+    for namespace in kept:
+        names.prefix(namespace)
+    own = {namespace: prefix for namespace, prefix in names.used.items() if namespace not in scene_spaces}
+    text = "\n".join([*head, *_namespaces(own), *criteria.blocks])
+    scene = "\n".join([*_namespaces(scene_spaces), *(f"{block}\n" for block in scene_blocks)])
+    return ModelText(text, scene if scene_blocks else "", names.renamed, criteria.left_out)
+
+
+@dataclass(frozen=True, slots=True)
+class _Criteria:
+    blocks: list[str]
+    left_out: dict[str, str]
+
+
+def _namespaces(spaces: Mapping[str, str]) -> list[str]:
+    lines = [f"ns {prefix} = {quoted(namespace)}" for namespace, prefix in sorted(spaces.items(), key=lambda s: s[1])]
+    return [*lines, ""] if lines else []
+
+
+def _criteria(names: Names, scenes: SceneText) -> _Criteria:
+    records = names.records
+    left_out: dict[str, str] = {}
+    for kind, types in (("task", ("task:Task",)), ("event", ("time:Event", OWL_INSTANT))):
+        for node in sorted({node for type_ in types for node in records.instances(type_)}):
+            names.lazily(node, kind)
+    templates, stories = records.instances("bdd:ScenarioTemplate"), story_order(records)
+    for node in templates:
+        names.declare(node, "template")
+    for node in stories:
+        names.declare(node, "story")
+    reader = ClauseReader(records)
+    blocks: list[str] = []
+    for node in records.instances("bt:BehaviourTree"):
+        try:
+            blocks.append(tree_text(names, node) + "\n")
+        except Incomplete as error:
+            left_out[node] = str(error)
+    outside: dict[str, dict[str, str]] = {}
+    for node in templates:
+        try:
+            variables = _variables(records, reader, node)
+            blocks.append(template_text(names, reader, node, variables) + "\n")
+            outside[node] = {variable: names.reference(variable) for variable in variables}
+        except Incomplete as error:
+            left_out[node] = str(error)
+    writer = StoryText(names, scenes, reader, outside, left_out)
+    for node in stories:
+        try:
+            blocks.append(writer.text(node) + "\n")
+        except Incomplete as error:
+            left_out[node] = str(error)
+    sets = [scenes.constant_set(node) for node in scenes.constant_sets]
+    simple = [
+        f"{word} {names.scope_of(node)} {names.paths[node]}"
+        for kind, word in (("task", "Task"), ("event", "Event"))
+        for node in names.declared.get(kind, ())
+    ]
+    return _Criteria([*simple, *sets, "", *blocks], left_out)
+
+
+def _variables(records: Records, reader: ClauseReader, template: Iri) -> list[Iri]:
+    """Return the variables that a template declares; of a graph that does not tell, those that it leaves open."""
+    if records.all(template, "rbw:variables"):
+        return list(records.iris(items_of(records, template, "rbw:variables")))
+    clauses = reader.clauses(template)
+    bound = {clause.variable for clause in clauses if isinstance(clause, ForAll)}
+    used: dict[Iri, None] = dict.fromkeys(used_names(clauses))
+    for variant in records.instances("bdd:ScenarioVariant"):
+        if template in records.iris(records.all(variant, "bdd:of-template")):
+            for variation in records.iris(records.all(variant, "bdd:has-variation")):
+                used |= dict.fromkeys(records.iris(items_of(records, variation, "bdd:variable-list")))
+    return [node for node in used if node not in bound and records.is_a(node, "bdd:ScenarioVariable")]

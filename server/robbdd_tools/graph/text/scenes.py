@@ -1,0 +1,174 @@
+"""Sets, compositions and scenes of a graph as RobBDD text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.rdf.records import Incomplete, elements_of, items_of
+from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS
+from robbdd_tools.graph.text.names import NAME, Names, braces, indented
+
+if TYPE_CHECKING:
+    from robbdd_tools.graph.acceptance_model import Iri
+
+WORDS = {"object": "obj", "workspace": "ws", "agent": "agn"}
+_MEMBERSHIP = re.compile(r"-scene-has-(?:obj|ws|agn)(?:-\d+)?\Z")
+
+
+@dataclass(slots=True)
+class SceneText:
+    """Writes what scenes consist of. ``kinds`` tells the kind of each set that declares elements."""
+
+    names: Names
+    kinds: dict[str, str] = field(default_factory=dict[str, str])
+    constant_sets: list[Iri] = field(default_factory=list["Iri"])
+    scenes: dict[str, str] = field(default_factory=dict[str, str])
+    _members: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    _elements: dict[str, str] = field(default_factory=dict[str, str])
+    _compositions: tuple[Iri, ...] = ()
+    _inferred: dict[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
+
+    def text(self) -> list[str]:
+        """Declare everything and return the declarations of a scene file."""
+        records = self.names.records
+        for kind, type_ in ELEMENT_TYPES.items():
+            for node in records.instances(type_):
+                self._elements.setdefault(node, kind)
+        self._choose_sets()
+        blocks = [self._set(node) for node in self._members]
+        self._compositions = records.subjects("env:of-workspace")
+        for node in self._compositions:
+            self.names.declare(node, "composition")
+        blocks += [block for node in self._compositions for block in self._composition(node)]
+        stated = [node for node in records.subjects("rbw:entries") if records.is_a(node, "bdd:Scene")]
+        blocks += [self._scene(node, items_of(records, node, "rbw:entries")) for node in stated]
+        blocks += [block for variant in records.instances("bdd:ScenarioVariant") for block in self._of(variant)]
+        return blocks
+
+    def link(self, node: str) -> str:
+        """Return a set as it is named in a variation or scene: ``obj set <…>``, ``set <…>``."""
+        kind = self.kinds.get(node)
+        return f"{WORDS[kind]} set {self.names.reference(node)}" if kind else f"set {self.names.reference(node)}"
+
+    def constant_set(self, node: Iri) -> str:
+        """Return the declaration of a set that lists values."""
+        values: list[str] = []
+        for item in elements_of(self.names.records, node):
+            try:
+                values.append(self.names.value(item))
+            except Incomplete:
+                continue
+        return f"const set {self.names.scope_of(node)} {self.names.paths[node]} {braces(values)}"
+
+    def _choose_sets(self) -> None:
+        """Decide which sets declare elements: those that scenes name, then the larger ones; each element once."""
+        records = self.names.records
+        in_scenes = {
+            str(item) for node in records.subjects("rbw:entries") for item in items_of(records, node, "rbw:entries")
+        }
+        sets = {node: tuple(map(str, elements_of(records, node))) for node in records.instances("bdd:ConstantSet")}
+        taken: set[str] = set()
+        for node in sorted(sets, key=lambda entry: (entry not in in_scenes, -len(sets[entry]), entry)):
+            members = sets[node]
+            kinds = {self._elements.get(member, "") for member in members} or {"object"}
+            is_uniform = len(kinds) == 1 and "" not in kinds
+            if is_uniform and taken.isdisjoint(members) and self._declares(node, members, in_scenes):
+                taken.update(members)
+                self._declare_set(node, kinds.pop(), members)
+            else:
+                self.constant_sets.append(node)
+        self._declare_rest([node for node in self._elements if node not in taken])
+        for node in self.constant_sets:
+            self.names.declare(node, "values")
+
+    def _declares(self, node: str, members: tuple[str, ...], in_scenes: set[str]) -> bool:
+        namespace = self.names.split(node)[0]
+        if len(set(members)) < len(members):
+            return False
+        if not members:
+            return node in in_scenes or bool(self.names.records.all(node, "rbw:count"))
+        return all(m.startswith(namespace) and NAME.fullmatch(m[len(namespace) :]) for m in members)
+
+    def _declare_set(self, node: str, kind: str, members: tuple[str, ...]) -> None:
+        name = self.names.declare(node, f"{kind}s")
+        self.kinds[node] = kind
+        self._members[node] = members
+        for member in members:
+            self.names.declare(member, kind, owner=name, namespace=self.names.split(node)[0])
+
+    def _declare_rest(self, elements: list[str]) -> None:
+        """Put elements that no set declares into sets of our own, one for each kind and namespace."""
+        groups: dict[tuple[str, str], list[str]] = {}
+        for element in sorted(elements):
+            groups.setdefault((self._elements[element], self.names.split(element)[0]), []).append(element)
+        for (kind, namespace), members in groups.items():
+            self._declare_set(f"{namespace}{kind}s", kind, tuple(members))
+
+    def _set(self, node: str) -> str:
+        kind, members = self.kinds[node], self._members[node]
+        head = f"{WORDS[kind]} set {self.names.scope_of(node)} {self.names.paths[node]}"
+        names = [self.names.paths[member].rpartition(".")[2] for member in members]
+        count = self.names.records.literal(node, "rbw:count")
+        base = names[0].removesuffix("0") if names else kind
+        if count == len(names) and names == [f"{base}{index}" for index in range(len(names))]:
+            return f"similar {head} {{ base name: {base}  count: {count} }}"
+        return f"{head} {braces(f'{kind} {name}' for name in names)}"
+
+    def _composition(self, node: Iri) -> Iterator[str]:
+        records, names = self.names.records, self.names
+        listed = items_of(records, node, "rbw:entries")
+        entries = listed or (*records.all(node, "env:has-object"), *records.all(node, "env:has-workspace"))
+        try:
+            workspace = names.reference(records.one(node, "env:of-workspace"))
+            inner = "".join(f"    {self._entry(str(entry))}\n" for entry in entries)
+        except Incomplete:
+            return
+        yield f"comp {names.scope_of(node)} {names.paths[node]} of ws {workspace} {{\n{inner}}}"
+
+    def _entry(self, node: str) -> str:
+        if node in self._compositions:
+            return f"ws comp {self.names.reference(node)}"
+        if node in self._elements:
+            return f"{WORDS[self._elements[node]]} {self.names.reference(node)}"
+        return self.link(node)
+
+    def _scene(self, node: str, entries: tuple[object, ...]) -> str:
+        self.names.declare(node, "scene")
+        self.scenes[node] = self.names.reference(node)
+        lines = "\n".join(self._entry(str(entry)) for entry in entries)
+        body = f"\n{indented(lines)}\n" if lines else " "
+        return f"scene {self.names.scope_of(node)} {self.names.paths[node]} {{{body}}}"
+
+    def _of(self, variant: Iri) -> Iterator[str]:
+        """Yield a scene for a variant of a graph that does not tell which scene it is."""
+        records = self.names.records
+        stated = records.all(variant, "rbw:scene")
+        if stated:
+            self.scenes[variant] = self.names.reference(str(stated[0]))
+            return
+        nodes = records.iris(records.all(variant, "bdd:has-scene"))
+        terms = [term for _, term, _ in MEMBERSHIPS.values()]
+        members = frozenset(str(m) for node in nodes for term in terms for m in records.all(node, term))
+        named = sorted({_MEMBERSHIP.sub("", node) for node in nodes if _MEMBERSHIP.search(node)})
+        node = named[0] if len(named) == 1 else f"{variant}-scene"
+        if self._inferred.get(node, members) != members:
+            node = f"{variant}-scene"
+        if node not in self._inferred:
+            self._inferred[node] = members
+            yield self._scene(node, tuple(self._parts(members)))
+        self.scenes[variant] = self.scenes[node]
+
+    def _parts(self, members: frozenset[str]) -> Iterator[str]:
+        """Yield sets and compositions that bring the members of a scene, a whole set where a part of it is needed."""
+        missing = set(members)
+        for node in self._compositions:
+            workspaces = set(map(str, self.names.records.all(node, "env:of-workspace")))
+            if workspaces & members:
+                missing -= workspaces | {str(o) for o in self.names.records.all(node, "env:has-object")}
+                yield node
+        for node, inner in self._members.items():
+            if missing.intersection(inner) or (inner and members.issuperset(inner)):
+                yield node

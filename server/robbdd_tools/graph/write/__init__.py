@@ -1,0 +1,1 @@
+"""From declarations to RDF, with the place in the text of every node; graphs by others; results of runs."""

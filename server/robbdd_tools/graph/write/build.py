@@ -1,0 +1,223 @@
+"""A file with what it uses of its imports becomes one graph.
+
+The file's own declarations are all stated; of the files it imports, those that it leads to. Nothing here raises on
+what a user wrote: a broken declaration, a name that leads nowhere or an IRI that is none states nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.rdf.prefixes import bind_prefixes, prefix_for
+from robbdd_tools.graph.write.behaviour_trees import add_behaviour_tree
+from robbdd_tools.graph.write.built import BuiltGraph as BuiltGraph
+from robbdd_tools.graph.write.built import Clash
+from robbdd_tools.graph.write.clauses import ClauseWriter, add_time
+from robbdd_tools.graph.write.declarations import Reached, Uses, doubtful, reach
+from robbdd_tools.graph.write.executions import add_execution
+from robbdd_tools.graph.write.foreign import graph_format, read_graph_file
+from robbdd_tools.graph.write.identities import SHARED, Identities, identities
+from robbdd_tools.graph.write.instances import add_instances
+from robbdd_tools.graph.write.scenes import (
+    Memberships,
+    Scenes,
+    add_composition,
+    add_composition_contents,
+    add_element_set,
+    add_scene,
+    add_set,
+    add_similar_set,
+)
+from robbdd_tools.graph.write.sink import Frame, Sink, namespace_of
+from robbdd_tools.graph.write.source_map import Location
+from robbdd_tools.graph.write.stories import Known, add_story
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from rdflib import URIRef
+    from rdflib.term import Node
+
+    from robbdd_tools.names.project import Snapshot
+
+TEMPLATE_PARTS = ("-scene", "-scenario", "-scenario-given", "-scenario-when", "-scenario-then")
+SCENARIO_PARTS = {"given": "bdd:Given", "when": "bdd:When", "then": "bdd:Then"}
+
+
+def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
+    """Return the graph of a file of a snapshot (an empty one when the file cannot be read).
+
+    A file that is a graph itself, by its ending, is read.
+    """
+    file = snapshot.file(uri) if graph_format(uri) else None
+    if file is not None:
+        return read_graph_file(file.document)
+    uses = Uses(snapshot.closure(uri))
+    reached = reach(uses)
+    return build_declarations(uri, uses, reached, identities(snapshot, reached))
+
+
+def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: Identities) -> BuiltGraph:
+    """Return the graph of some declarations: of a file with all that it leads to, or of a part that is complete.
+
+    A part is complete when it holds all that its declarations use and who contests a node with one of them.
+    ``known`` are the nodes of all of the file's declarations.
+    """
+    sink = Sink()
+    for node, declarers in known.shared.items():
+        sink.sources.mark([(node,)], declarers[0].location)
+    _add_foundations(sink, reached)
+    bind_prefixes(sink.graph, _add_prefixes(sink, reached))
+    clashes = tuple(Clash(str(node), location, first) for node, location, first in sink.clashes)
+    uncertain = doubtful(uses, reached, [clash.location for clash in clashes])
+    return BuiltGraph(
+        uri,
+        sink.graph,
+        sink.sources.build(),
+        known.names,
+        clashes,
+        tuple(Location(entry.uri, entry.placed.span) for entry in uncertain),
+        frozenset(node for entry in uncertain for node in _nodes_of(entry)),
+        authors=sink.authors,
+    )
+
+
+def _nodes_of(entry: Reached) -> Iterator[str]:
+    """Yield what a declaration alone stands for in the graph, the parts of a template included.
+
+    Templates of one namespace share variables and behaviours, so that an error in one says nothing of another.
+    """
+    for definition in entry.file.definitions.values():
+        if definition.iri is not None and definition.kind not in SHARED and entry.holds(definition):
+            yield definition.iri
+            if definition.kind is SymbolKind.TEMPLATE:
+                yield from (definition.iri + part for part in TEMPLATE_PARTS)
+
+
+def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
+    """State all declarations: first what stands alone, then compositions, which nest, then stories."""
+    scenes = Scenes()
+    tasks: dict[URIRef, URIRef] = {}
+    placed = [(entry.tree, Frame(sink, entry.file, entry.placed)) for entry in reached]
+    for root, frame in placed:
+        frame.begin()
+        if isinstance(root, tree.Template):
+            _add_template(frame, root, tasks)
+        elif root is not None:
+            _add_simple(frame, scenes, root)
+    for root, frame in placed:
+        if isinstance(root, tree.Composition):
+            frame.begin()
+            add_composition_contents(frame, scenes, root)
+    known = Known(scenes, Memberships(sink), tasks)
+    stories = [(root, frame) for root, frame in placed if isinstance(root, tree.Story)]
+    for position, (story, frame) in enumerate(stories):
+        frame.begin()
+        add_story(frame, known, story, position)
+    add_instances(placed)
+    for position, (root, frame) in enumerate(placed):
+        frame.begin()
+        add_execution(frame, root, position)
+
+
+def _add_simple(frame: Frame, scenes: Scenes, root: tree.ChunkTree) -> None:
+    match root:
+        case tree.Event() | tree.Task():
+            node = frame.claimed(root.name.text, root.name)
+            if node is not None:
+                kind = "time:Event" if isinstance(root, tree.Event) else "task:Task"
+                frame.sink.add_types(node, [kind], frame.at(root.name))
+        case tree.ConstantSet():
+            _add_constant_set(frame, root)
+        case tree.BehaviourTree():
+            add_behaviour_tree(frame, root)
+        case tree.ElementSet():
+            add_element_set(frame, scenes, root)
+        case tree.SimilarSet():
+            add_similar_set(frame, scenes, root)
+        case tree.Composition():
+            add_composition(frame, scenes, root)
+        case tree.Scene():
+            add_scene(frame, scenes, root)
+        case _:
+            pass
+
+
+def _add_constant_set(frame: Frame, declared: tree.ConstantSet) -> None:
+    node = frame.claimed(declared.name.text, declared.name)
+    if node is None:
+        return
+    elements: list[Node] = []
+    for value in declared.values:
+        target = frame.target(value) if isinstance(value, tree.Ref) else frame.sink.literal(value.value)
+        if target is not None:
+            frame.sink.mark(node, "bdd:elements", target, frame.at(value))
+            elements.append(target)
+    add_set(frame, node, declared.name, elements)
+
+
+def _add_template(frame: Frame, template: tree.Template, tasks: dict[URIRef, URIRef]) -> None:
+    node = frame.claimed(template.name.text, template.name)
+    if node is None:
+        return
+    sink, place = frame.sink, frame.at(template.name)
+    scenario, scene = sink.iri(f"{node}-scenario"), sink.iri(f"{node}-scene")
+    if scenario is None or scene is None:
+        return
+    sink.add_types(node, ["bdd:ScenarioTemplate"], place)
+    if template.duration is not None:
+        add_time(frame, node, template.duration)
+    sink.add(node, "bdd:of-scenario", scenario)
+    sink.add(node, "bdd:has-scene", scene)
+    sink.add_types(scene, ["bdd:Scene"], place)
+    _add_scenario(sink, scenario, place)
+    task = None if template.task is None else frame.target(template.task)
+    if template.task is not None and task is not None:
+        sink.add(scenario, "task:of-task", task, frame.at(template.task))
+        tasks[node] = task
+    _add_variables(frame, node, template)
+    writer = ClauseWriter(frame, namespace_of(node, template.name.text), template.name.text, scenario)
+    sink.add(node, "bdd:has-clause", sink.make_list(writer.body(template.body)))
+
+
+def _add_scenario(sink: Sink, scenario: URIRef, place: Location) -> None:
+    sink.add_types(scenario, ["bdd:Scenario"], place)
+    for role, kind in SCENARIO_PARTS.items():
+        part = sink.iri(f"{scenario}-{role}")
+        if part is not None:
+            sink.add(scenario, f"bdd:{role}", part)
+            sink.add_types(part, [kind], place)
+
+
+def _add_variables(frame: Frame, node: URIRef, template: tree.Template) -> None:
+    variables: list[URIRef] = []
+    for variable in template.variables:
+        declared = frame.node(f"{template.name.text}.{variable.name.text}")
+        if declared is not None:
+            types = ["bdd:ScenarioVariable", "bdd:Set"] if variable.is_set else ["bdd:ScenarioVariable"]
+            frame.sink.add_types(declared, types, frame.at(variable.name))
+            frame.sink.mark(node, "rbw:variables", declared, frame.at(variable.name))
+            variables.append(declared)
+    frame.sink.add(node, "rbw:variables", frame.sink.make_list(variables))
+
+
+def _add_prefixes(sink: Sink, reached: Iterable[Reached]) -> dict[str, str]:
+    """State the prefix of each namespace, so that names can be shortened however the graph is stored.
+
+    The file's own prefixes come first; a prefix that means something else already gets a number.
+    """
+    prefixes: dict[str, str] = {}
+    for root in _namespaces(reached):
+        namespace = sink.iri(root.iri.value)
+        if namespace is None or str(namespace) in prefixes.values():
+            continue
+        prefix = prefix_for(root.name.text, prefixes)
+        prefixes[prefix] = str(namespace)
+        sink.add(namespace, "rbw:prefix", sink.literal(prefix))
+    return prefixes
+
+
+def _namespaces(reached: Iterable[Reached]) -> Iterator[tree.Namespace]:
+    own_first = sorted(reached, key=lambda entry: not entry.own)
+    return (entry.tree for entry in own_first if isinstance(entry.tree, tree.Namespace))

@@ -1,0 +1,220 @@
+"""Given, When and Then as triples: fluents, groups, quantifiers, behaviours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.graph.rdf.vocabulary import JUNCTIONS, TIME_TYPES
+from robbdd_tools.graph.write.behaviour_trees import link_behaviour
+from robbdd_tools.graph.write.sink import Frame, Sink
+from robbdd_tools.graph.write.source_map import Location
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from rdflib import URIRef
+    from rdflib.term import Node
+
+    from robbdd_tools.catalog.api import Slot
+
+MOST_NESTED = 100
+"""Parentheses in parentheses; deeper ones are left out rather than exhausting the stack."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseWriter:
+    """Writes the clauses of one owner, a template or a variant.
+
+    ``namespace`` is that of the owner, ``owner`` its qualified name (``story.variant``), ``scenario`` the node of
+    the template's scenario. Nodes without a name of their own are called after the path to them:
+    kind, owner, then the steps, joined by points, which no name contains.
+    """
+
+    frame: Frame
+    namespace: str
+    owner: str
+    scenario: str
+
+    @property
+    def _sink(self) -> Sink:
+        return self.frame.sink
+
+    def body(self, body: tree.Body, path: str = "") -> list[Node]:
+        """Write Given, When or for all, Then and return their clauses in order."""
+        nodes = self.top(body.given, "given", path)
+        if body.when is not None:
+            nodes += self.occurrences(body.when.events, path)
+            nodes += self._behaviour(body.when.behaviour, path)
+        if body.for_all is not None:
+            nodes += self._for_all(body.for_all, f"{path}.all")
+        return nodes + self.top(body.then, "then", path)
+
+    def top(self, expression: tree.Expression | None, role: str, path: str = "") -> list[Node]:
+        """Write the clauses of one role; an *and* around them is the list itself."""
+        if expression is None:
+            return []
+        path = f"{path}.{role}"
+        expression = tree.bare(expression)
+        if isinstance(expression, tree.Conjunction):
+            return self._each(expression.operands, role, path)
+        return self._each([expression], role, path)
+
+    def occurrences(self, events: Sequence[tree.Occurrence], path: str = "") -> list[Node]:
+        """Write ``event <e> occurs``."""
+        nodes: list[Node] = []
+        for index, occurrence in enumerate(events):
+            node = self._generated("when-evt", f"{path}.when.{index}")
+            if node is not None:
+                self._start(node, ["rbw:WhenEvent"], "when", self.frame.at(occurrence))
+                event = self.frame.target(occurrence.event)
+                self._sink.add(node, "rbw:event", event, self.frame.at(occurrence.event))
+                nodes.append(node)
+        return nodes
+
+    def _each(self, expressions: Iterable[tree.Expression], role: str, path: str) -> list[Node]:
+        if path.count(".") > MOST_NESTED:
+            return []
+        written = [
+            self._clause(tree.bare(expression), role, f"{path}.{index}") for index, expression in enumerate(expressions)
+        ]
+        return [node for node in written if node is not None]
+
+    def _clause(self, expression: tree.Expression, role: str, path: str) -> URIRef | None:
+        match expression:
+            case tree.Fluent():
+                return self._fluent(expression, role)
+            case tree.TextClause():
+                return self._text(expression, role, path)
+            case tree.Exists():
+                return self._exists(expression, role, path)
+            case tree.Negation():
+                return self._junction(expression, "not", [expression.operand], role, path)
+            case tree.Conjunction():
+                return self._junction(expression, "and", expression.operands, role, path)
+            case tree.Disjunction():
+                return self._junction(expression, "or", expression.operands, role, path)
+
+    def _fluent(self, fluent: tree.Fluent, role: str) -> URIRef | None:
+        node = self.frame.claimed(f"{self.owner}.{fluent.name.text}", fluent.name)
+        if node is None:
+            return None
+        self._start(node, ["bdd:FluentClause"], role, self.frame.at(fluent.name))
+        if isinstance(fluent.predicate, tree.TextPredicate):
+            self._text_predicate(node, fluent.predicate)
+        else:
+            word = load_catalog().predicates[fluent.predicate.word]
+            self._sink.add_types(node, [word.rdf_type], self.frame.at(fluent.name))
+            self._arguments(node, word.slots, fluent.predicate)
+        self._time(node, fluent.time)
+        return node
+
+    def _text_predicate(self, node: URIRef, predicate: tree.TextPredicate) -> None:
+        sink, at = self._sink, self.frame.at
+        sink.add_types(node, ["bdd:StringTemplatePredicate"], at(predicate))
+        template = sink.literal(predicate.template.value)
+        sink.add(node, "bdd:template-string", template, at(predicate.template))
+        resolved = [(argument, self.frame.target(argument.value)) for argument in predicate.arguments]
+        known = [(argument, target) for argument, target in resolved if target is not None]
+        names = sink.make_list(sink.literal(argument.name.text) for argument, _ in known)
+        sink.add(node, "bdd:argument-names", names, at(predicate))
+        sink.add(node, "bdd:argument-variables", sink.make_list(target for _, target in known), at(predicate))
+        for argument, target in known:
+            sink.mark(node, "bdd:argument-names", sink.literal(argument.name.text), at(argument.name))
+            sink.mark(node, "bdd:argument-variables", target, at(argument.value))
+
+    def _text(self, clause: tree.TextClause, role: str, path: str) -> URIRef | None:
+        node = self._generated("text", path)
+        if node is not None:
+            self._start(node, ["rbw:TextClause"], role, self.frame.at(clause.text))
+            self._sink.add(node, "rbw:text", self._sink.literal(clause.text.value), self.frame.at(clause.text))
+            self._time(node, clause.time)
+        return node
+
+    def _junction(
+        self, written: tree.Node, operator: str, operands: Iterable[tree.Expression], role: str, path: str
+    ) -> URIRef | None:
+        node = self._generated(operator, path)
+        if node is not None:
+            self._start(node, [JUNCTIONS[operator]], role, self.frame.at(written))
+            self._sink.add(node, "rbw:operands", self._sink.make_list(self._each(operands, role, path)))
+        return node
+
+    def _exists(self, exists: tree.Exists, role: str, path: str) -> URIRef | None:
+        node = self._generated("exists", path)
+        if node is not None:
+            self._start(node, ["bdd:ThereExists"], role, self.frame.at(exists.variable))
+            self._quantified(node, exists.variable, exists.in_set)
+            body = tree.bare(exists.body)
+            operands = body.operands if isinstance(body, tree.Conjunction) else (body,)
+            self._sink.add(node, "bdd:has-clause", self._sink.make_list(self._each(operands, role, path)))
+        return node
+
+    def _for_all(self, for_all: tree.ForAll, path: str) -> list[Node]:
+        node = self._generated("forall", path)
+        if node is None or path.count(".") > MOST_NESTED:
+            return []
+        self._start(node, ["bdd:ForAll"], "when", self.frame.at(for_all.variable))
+        self._quantified(node, for_all.variable, for_all.in_set)
+        self._sink.add(node, "bdd:has-clause", self._sink.make_list(self.body(for_all.body, path)))
+        return [node]
+
+    def _quantified(self, node: URIRef, name: tree.Name, in_set: tree.Ref) -> None:
+        variable = self.frame.node(f"{self.owner}.{name.text}")
+        if variable is not None:
+            self._sink.add_types(variable, ["bdd:ScenarioVariable"], self.frame.at(name))
+        self._sink.add(node, "bdd:ref-variable", variable, self.frame.at(name))
+        self._sink.add(node, "bdd:in-set", self.frame.target(in_set), self.frame.at(in_set))
+
+    def _behaviour(self, use: tree.BehaviourUse, path: str) -> list[Node]:
+        behaviour = self.frame.node(f"{self.owner}.{use.name.text}")
+        node = self._generated("when-bhv", f"{path}.when")
+        scenario = self._sink.iri(self.scenario)
+        if behaviour is None or node is None or scenario is None:
+            return []
+        word = load_catalog().behaviours[use.action.word]
+        if self._sink.claim_behaviour(behaviour, word.name, self.frame.at(use.name)):
+            self._sink.add_types(behaviour, ["bhv:Behaviour", *word.rdf_types], self.frame.at(use.name))
+        self._sink.add(scenario, "bhv:of-behaviour", behaviour, self.frame.at(use.name))
+        link_behaviour(self.frame, behaviour, use)
+        self._start(node, ["bdd:WhenBehaviour"], "when", self.frame.at(use.name))
+        self._sink.add(node, "bhv:of-behaviour", behaviour, self.frame.at(use.name))
+        self._arguments(node, word.slots, use.action)
+        if use.duration is not None:
+            self._time(node, use.duration)
+        return [node]
+
+    def _arguments(self, node: URIRef, slots: Iterable[Slot], phrase: tree.PhraseUse) -> None:
+        written = dict(phrase.arguments)
+        for slot in slots:
+            argument = written.get(slot.name)
+            if isinstance(argument, tree.Name):
+                self._sink.add(node, slot.property, self._sink.literal(argument.text), self.frame.at(argument))
+            elif argument is not None:
+                self._sink.add(node, slot.property, self.frame.target(argument), self.frame.at(argument))
+
+    def _time(self, node: URIRef, time: tree.TimeConstraint) -> None:
+        add_time(self.frame, node, time)
+
+    def _start(self, node: URIRef, types: Iterable[str], role: str, location: Location) -> None:
+        self._sink.add_types(node, types, location)
+        self._sink.add(node, "bdd:clause-of", self._sink.iri(f"{self.scenario}-{role}"))
+
+    def _generated(self, kind: str, path: str) -> URIRef | None:
+        return self._sink.iri(f"{self.namespace}{kind}-{self.owner}{path}")
+
+
+def add_time(frame: Frame, node: URIRef, time: tree.TimeConstraint) -> None:
+    """State a time constraint on the node that it constrains."""
+    kind = type(time).__name__.lower()
+    sink = frame.sink
+    sink.add_types(node, ["time:TimeConstraint", TIME_TYPES[kind]], frame.at(time))
+    if isinstance(time, tree.During):
+        sink.add(node, "time:after-event", frame.target(time.start), frame.at(time.start))
+        sink.add(node, "time:before-event", frame.target(time.end), frame.at(time.end))
+        return
+    sink.add(node, f"time:{kind}-event", frame.target(time.event), frame.at(time.event))
+    if time.horizon is not None:
+        horizon = sink.literal(float(time.horizon.value))
+        sink.add(node, "time:horizon-seconds", horizon, frame.at(time.horizon))

@@ -1,0 +1,139 @@
+"""Which declarations belong to a file's graph, and which of them are in doubt because of errors."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.graph.write.source_map import Location
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import FILE_NAMESPACE
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import Definition, FileAnalysis, PlacedDeclaration
+    from robbdd_tools.syntax.declaration import Declaration
+
+Key = tuple[str, int]
+"""What identifies a declaration among all of one revision: its document and its offset."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """A declaration that belongs to a graph; ``own`` when it stands in the file the graph is made of.
+
+    ``key`` identifies it among all declarations of the revision.
+    """
+
+    file: FileAnalysis
+    placed: PlacedDeclaration
+    own: bool
+    key: Key
+
+    @property
+    def uri(self) -> str:
+        """The document it stands in."""
+        return self.key[0]
+
+    @property
+    def tree(self) -> tree.ChunkTree | None:
+        """Its tree, ``None`` when it is broken."""
+        return self.placed.declaration.tree
+
+    def holds(self, definition: Definition) -> bool:
+        """Tell whether a definition is part of it."""
+        return self.covers(Location(definition.uri, definition.span))
+
+    def covers(self, location: Location) -> bool:
+        """Tell whether a place is inside it."""
+        span = self.placed.span
+        return location.uri == self.uri and span.start <= location.span.start < span.end
+
+
+class Uses:
+    """Which declarations lead to which, among all of a file and its imports (``closure``, the file first)."""
+
+    def __init__(self, closure: Sequence[FileAnalysis]) -> None:
+        self._files = {
+            file.document.uri: tuple(
+                Reached(file, placed, file is closure[0], (file.document.uri, placed.offset))
+                for placed in file.declarations
+            )
+            for file in reversed(closure)
+        }
+        self._found: dict[Key, list[Reached]] = {}
+        self._errors: dict[str, list[int]] = {}
+
+    def __iter__(self) -> Iterator[Reached]:
+        """Yield all declarations, imports before their importers, each file's in the order of the text."""
+        return (entry for entries in self._files.values() for entry in entries)
+
+    def of(self, entry: Reached) -> list[Reached]:
+        """Return the declarations that the references of one lead to, in the order of the references.
+
+        One that gives no namespace leads to that of its file as well.
+        """
+        key = entry.key
+        if key not in self._found:
+            places = entry.placed.targets.declarations()
+            found = [self._files[uri][position] for uri, position in places]
+            if any(symbol.namespace == FILE_NAMESPACE for symbol in entry.placed.declaration.symbols):
+                found += [other for other in self._files[entry.uri] if isinstance(other.tree, tree.Namespace)]
+            self._found[key] = found
+        return self._found[key]
+
+    def has_error(self, entry: Reached) -> bool:
+        """Tell whether an error stands in a declaration or one of its references leads nowhere."""
+        if entry.tree is None or len(entry.placed.targets) < _distinct_references(entry.placed.declaration):
+            return True
+        if entry.uri not in self._errors:
+            faults = (fault for fault in entry.file.diagnostics if fault.severity is Severity.ERROR)
+            self._errors[entry.uri] = sorted(fault.span.start for fault in faults)
+        starts, span = self._errors[entry.uri], entry.placed.span
+        first = bisect_left(starts, span.start)
+        return first < len(starts) and starts[first] < span.end
+
+
+def reach(uses: Uses) -> tuple[Reached, ...]:
+    """Return all declarations of the first file and those it leads to, imports before their importers."""
+    every = tuple(uses)
+    waiting = [entry for entry in every if entry.own]
+    found = {entry.key for entry in waiting}
+    while waiting:
+        for used in uses.of(waiting.pop()):
+            if used.key not in found:
+                found.add(used.key)
+                waiting.append(used)
+    return tuple(entry for entry in every if entry.key in found)
+
+
+def doubtful(uses: Uses, reached: Sequence[Reached], left_out: Iterable[Location]) -> tuple[Reached, ...]:
+    """Return the declarations about which no further finding can be trusted.
+
+    These are the ones with an error or of which something was left out, and those that use one of which something
+    is missing: a broken one, or a set, composition or scene with an error. An error inside a template or story says
+    nothing about its users.
+    """
+    places = tuple(left_out)
+    suspect = [entry for entry in reached if uses.has_error(entry) or any(map(entry.covers, places))]
+    spreading = [entry for entry in suspect if not isinstance(entry.tree, tree.Template | tree.Story)]
+    users: dict[Key, list[Reached]] = {}
+    for entry in reached if spreading else ():
+        for used in uses.of(entry):
+            users.setdefault(used.key, []).append(entry)
+    found = {entry.key for entry in suspect}
+    reaching = {entry.key for entry in spreading}
+    while spreading:
+        for user in users.get(spreading.pop().key, ()):
+            if user.key not in reaching:
+                reaching.add(user.key)
+                spreading.append(user)
+    return tuple(entry for entry in reached if entry.key in found | reaching)
+
+
+@kept_with_key
+def _distinct_references(declaration: Declaration) -> int:
+    return len({reference.ref for reference in declaration.references})

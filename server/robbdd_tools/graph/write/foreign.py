@@ -1,0 +1,121 @@
+"""Models that are graphs already: read from Turtle or JSON-LD, whoever wrote them, each node with its place."""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.document import Span
+from robbdd_tools.graph.rdf.prefixes import bind_prefixes, user_prefixes
+from robbdd_tools.graph.rdf.serialize import UnreadableGraph, parse
+from robbdd_tools.graph.rdf.vocabulary import PREFIXES
+from robbdd_tools.graph.read.acceptance import incomplete_variants
+from robbdd_tools.graph.write.built import BuiltGraph
+from robbdd_tools.graph.write.node_positions import json_occurrences, turtle_occurrences
+from robbdd_tools.graph.write.source_map import Location, SourceMap, SourceMapBuilder
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+    from rdflib.term import Node
+
+    from robbdd_tools.base.document import Document
+
+GRAPH_FORMATS = {"ttl": "ttl", "json": "json-ld", "jsonld": "json-ld"}
+"""Ending of a model that is a graph → its format."""
+
+
+def graph_format(uri: str) -> str:
+    """Return the format of a file that is a graph by its ending; ``""`` for any other file."""
+    return GRAPH_FORMATS.get(PurePosixPath(uri).suffix.removeprefix(".").lower(), "")
+
+
+def read_graph_file(document: Document) -> BuiltGraph:
+    """Return the graph that a document is; an empty one with a fault when it cannot be read."""
+    from rdflib import Graph
+
+    uri = document.uri
+    try:
+        graph = parse(document.text, graph_format(uri), uri)
+    except UnreadableGraph as error:
+        fault = Diagnostic(uri, Span(error.offset, error.offset), Severity.ERROR, "graph-syntax", str(error))
+        return BuiltGraph(uri, Graph(), SourceMap({}), {}, (), (), frozenset(), (fault,), True)
+    places = graph_places(document, graph)
+    names = node_names(graph)
+    faults = (*_strangers(uri, graph), *_left_out(uri, graph, places, names))
+    return BuiltGraph(uri, graph, places, names, (), (), frozenset(), faults, True)
+
+
+def node_names(graph: Graph) -> dict[str, str]:
+    """Return what findings call the nodes: CURIEs; a blank node is called after the node that it belongs to."""
+    from rdflib import BNode, Graph, URIRef
+
+    short = Graph(bind_namespaces="none")
+    prefixes = bind_prefixes(short, user_prefixes(graph))
+    ordered = sorted(prefixes.items(), key=lambda pair: -len(pair[1]))
+    nodes = {node for triple in graph for node in triple if isinstance(node, URIRef)}
+    names: dict[str, str] = {}
+    for node in nodes:
+        fitting = next(((p, ns) for p, ns in ordered if node.startswith(ns) and len(node) > len(ns)), None)
+        names[str(node)] = str(node) if fitting is None else f"{fitting[0]}:{node[len(fitting[1]) :]}"
+    for owner, node in _blank_owners(graph):
+        if isinstance(node, BNode) and str(owner) in names:
+            names.setdefault(str(node), f"a node of {names[str(owner)]}")
+    return names
+
+
+def _blank_owners(graph: Graph) -> list[tuple[Node, Node]]:
+    """Return each blank node behind the named node that leads to it."""
+    from rdflib import BNode
+
+    inner: dict[Node, list[Node]] = {}
+    for subject, _, value in graph:
+        if isinstance(value, BNode):
+            inner.setdefault(subject, []).append(value)
+    found: list[tuple[Node, Node]] = []
+    seen: set[Node] = set()
+    for root in sorted((subject for subject in inner if not isinstance(subject, BNode)), key=str):
+        waiting = list(inner[root])
+        while waiting:
+            node = waiting.pop()
+            if node not in seen:
+                seen.add(node)
+                found.append((root, node))
+                waiting += inner.get(node, ())
+    return found
+
+
+def graph_places(document: Document, graph: Graph) -> SourceMap:
+    """Return where the nodes of a graph stand in its text; a blank one where the node stands that it belongs to."""
+    namespaces = {prefix: str(namespace) for prefix, namespace in graph.namespaces()}
+    find = json_occurrences if graph_format(document.uri) == "json-ld" else turtle_occurrences
+    spans = find(document.text, namespaces, document.uri)
+    builder = SourceMapBuilder()
+    for node, span in spans.items():
+        builder.mark([(node,)], Location(document.uri, span))
+    for owner, node in _blank_owners(graph):
+        if str(owner) in spans:
+            builder.mark([(str(node),)], Location(document.uri, spans[str(owner)]))
+    return builder.build()
+
+
+def _strangers(uri: str, graph: Graph) -> list[Diagnostic]:
+    from rdflib.namespace import RDF
+
+    own = tuple(PREFIXES[prefix] for prefix in ("bdd", "time", "task", "bhv", "env", "agn", "obs", "rbw"))
+    if any(str(kind).startswith(own) for kind in graph.objects(None, RDF.type)):
+        return []
+    message = "nothing in this graph is of the vocabulary of acceptance criteria: is it the right file?"
+    return [Diagnostic(uri, Span(0, 0), Severity.WARNING, "no-criteria", message)]
+
+
+def _left_out(uri: str, graph: Graph, places: SourceMap, names: dict[str, str]) -> list[Diagnostic]:
+    """Report the scenario variants that a run would silently lack."""
+    found: list[Diagnostic] = []
+    for variant, reason in incomplete_variants(graph).items():
+        place = places.node(variant) or Location(uri, Span(0, 0))
+        for node in sorted({word for word in reason.split() if word in names}, key=len, reverse=True):
+            reason = reason.replace(node, f"'{names[node]}'")
+        message = f"'{names.get(variant, variant)}' cannot become scenarios: {reason}"
+        found.append(Diagnostic(uri, place.span, Severity.ERROR, "incomplete-variant", message))
+    return found

@@ -1,0 +1,131 @@
+"""Which declarations of a graph speak of the same node, and the name that stands for each node in the text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.graph.write.declarations import Key, Reached
+from robbdd_tools.graph.write.source_map import Location
+from robbdd_tools.names.scope import local_name
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.project import Snapshot
+    from robbdd_tools.syntax.declaration import Declaration, Symbol
+
+VARIABLES = frozenset({SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE})
+SHARED = VARIABLES | {SymbolKind.BEHAVIOUR}
+"""Kinds whose nodes several templates of a namespace may have in common."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Named:
+    """A name that makes a node: ``namespace`` and ``local`` make its IRI, ``says`` what is stated of a shared one."""
+
+    symbol: Symbol
+    namespace: str
+    local: str
+    says: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Declarer:
+    """A declaration that names a node, by its key, and the name."""
+
+    key: Key
+    symbol: Symbol
+    says: str | None
+
+    @property
+    def location(self) -> Location:
+        """The name's place."""
+        uri, offset = self.key
+        return Location(uri, self.symbol.span.shifted(offset))
+
+
+@dataclass(slots=True)
+class Identities:
+    """The nodes that some declarations name.
+
+    ``starts`` maps the name of a namespace in a document to what the IRIs in it begin with.
+    ``names`` maps an IRI to the first qualified name for it. ``shared`` are nodes that several declarations agree
+    on, ``contested`` those where it matters who else names them: only one can have them, or they say different
+    things of them. Both list the declarers in the order of the graph.
+    """
+
+    names: Mapping[str, str]
+    starts: Mapping[tuple[str, str], str | None]
+    shared: dict[str, list[Declarer]] = field(default_factory=dict[str, list[Declarer]])
+    contested: dict[str, list[Declarer]] = field(default_factory=dict[str, list[Declarer]])
+
+
+def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
+    """Return which nodes some declarations name, and who names the same."""
+    names: dict[str, str] = {}
+    first: dict[str, tuple[Reached, _Named]] = {}
+    repeated: dict[str, list[Declarer]] = {}
+    starts: dict[tuple[str, str], str | None] = {}
+    for entry in reached:
+        for named in _named(entry.placed.declaration):
+            place = (entry.uri, named.namespace)
+            if place not in starts:
+                scope = snapshot.scope(entry.uri)
+                starts[place] = scope.namespace_iri(scope.files[0], named.namespace)
+            start = starts[place]
+            if start is None:
+                continue
+            iri = start + named.local
+            if iri not in first:
+                first[iri] = (entry, named)
+                names[iri] = named.symbol.path
+                continue
+            other, one = first[iri]
+            declarers = repeated.setdefault(iri, [Declarer(other.key, one.symbol, one.says)])
+            declarers.append(Declarer(entry.key, named.symbol, named.says))
+    return _sorted_out(Identities(names, starts), repeated)
+
+
+def _sorted_out(found: Identities, repeated: Mapping[str, list[Declarer]]) -> Identities:
+    """Tell agreement from contest; a declaration that may lose its name to another may state nothing at all."""
+    for iri, declarers in repeated.items():
+        agreed = {declarer.says for declarer in declarers}
+        (found.contested if None in agreed or len(agreed) > 1 else found.shared)[iri] = declarers
+    unsure = {declarer.key for declarers in found.contested.values() for declarer in declarers}
+    for iri in [iri for iri, declarers in found.shared.items() if any(one.key in unsure for one in declarers)]:
+        found.contested[iri] = found.shared.pop(iri)
+    return found
+
+
+@kept_with_key
+def namespaces_of(declaration: Declaration) -> tuple[str, ...]:
+    """Return the names of the namespaces that a declaration makes nodes in."""
+    return tuple(dict.fromkeys(named.namespace for named in _named(declaration)))
+
+
+@kept_with_key
+def _named(declaration: Declaration) -> tuple[_Named, ...]:
+    words = dict(_behaviours(declaration.tree.body)) if isinstance(declaration.tree, tree.Template) else {}
+    return tuple(
+        _Named(symbol, symbol.namespace, local_name(symbol), _says(symbol, words))
+        for symbol in declaration.symbols
+        if symbol.namespace is not None
+    )
+
+
+def _says(symbol: Symbol, words: Mapping[str, str]) -> str | None:
+    if symbol.kind in VARIABLES:
+        return str(symbol.kind)
+    return words.get(symbol.name) if symbol.kind is SymbolKind.BEHAVIOUR else None
+
+
+def _behaviours(body: tree.Body) -> Iterator[tuple[str, str]]:
+    """Yield name and word of each behaviour of a template; the last ``for all`` inside has the last one."""
+    inner: tree.Body | None = body
+    while inner is not None:
+        if inner.when is not None:
+            yield inner.when.behaviour.name.text, inner.when.behaviour.action.word
+        inner = None if inner.for_all is None else inner.for_all.body

@@ -1,0 +1,163 @@
+"""Results of runs as knowledge: what was judged, in which execution, with which values, beside the model itself.
+
+Clauses' verdicts are EARL assertions, executions are PROV activities. Nodes are named after the content of the
+results, so that the same results give the same graph.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+from robbdd_tools.graph.rdf.prefixes import user_prefixes
+from robbdd_tools.graph.rdf.vocabulary import expand
+
+if TYPE_CHECKING:
+    from rdflib import Graph, URIRef
+    from rdflib.term import Node
+
+OUTCOMES = {"holds": "earl:passed", "violated": "earl:failed", "unknown": "earl:cantTell"}
+"""Verdict → EARL's outcome value."""
+Json = Mapping[str, Any]
+
+
+class BadResults(Exception):
+    """A document is none of ``docs/schemas/run.schema.json``; the message says where."""
+
+
+def read_results(text: str) -> Json:
+    """Return the results of a run from their JSON; raises ``BadResults``."""
+    try:
+        document: object = json.loads(text)
+    except ValueError as error:
+        raise BadResults(f"no JSON: {error}") from error
+    return _object(document, "the document")
+
+
+def add_results(graph: Graph, document: Json) -> None:
+    """State the results of a run in the graph of its model; raises ``BadResults``."""
+    digest = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
+    writer = _Writer(graph, user_prefixes(graph))
+    run = writer.node(f"urn:robbdd:run:{digest}", "prov:Activity", "rbw:Run")
+    writer.say(run, "rbw:seed", _field(document, "seed", int, "the run"))
+    writer.say(run, "rbw:complete", _field(document, "complete", bool, "the run"))
+    for number, entry in enumerate(_field(document, "scenarios", list, "the run"), start=1):
+        writer.scenario(run, _object(entry, f"scenario {number}"), number)
+
+
+@dataclass(frozen=True, slots=True)
+class _Writer:
+    graph: Graph
+    prefixes: Mapping[str, str]
+
+    def node(self, iri: str, *types: str) -> URIRef:
+        from rdflib import URIRef
+        from rdflib.namespace import RDF
+
+        node = URIRef(iri)
+        for type_ in types:
+            self.graph.add((node, RDF.type, URIRef(expand(type_))))
+        return node
+
+    def link(self, node: URIRef, term: str, target: Node | str) -> None:
+        from rdflib import URIRef
+
+        value = URIRef(target) if type(target) is str else cast("Node", target)
+        self.graph.add((node, URIRef(expand(term)), value))
+
+    def say(self, node: URIRef, term: str, value: str | float | bool) -> None:
+        """State a literal: a number with a point as xsd:double."""
+        from rdflib import Literal, URIRef
+
+        double = URIRef(expand("xsd:double"))
+        literal = Literal(repr(value), datatype=double) if isinstance(value, float) else Literal(value)
+        self.graph.add((node, URIRef(expand(term)), literal))
+
+    def scenario(self, run: URIRef, entry: Json, number: int) -> None:
+        where = f"scenario {number}"
+        node = self.node(f"{run}/{number}", "prov:Activity", "rbw:ScenarioRun")
+        self.link(node, "rbw:run", run)
+        self.link(node, "rbw:of-story", _field(entry, "story", str, where))
+        self.link(node, "rbw:of-variant", _field(entry, "variant", str, where))
+        self.say(node, "rbw:variation-number", _field(entry, "variation", int, where))
+        self.say(node, "rbw:repetition", entry.get("repetition", 1))
+        self.say(node, "rbw:name", _field(entry, "name", str, where))
+        self.say(node, "rbw:seed", _field(entry, "seed", int, where))
+        self.link(node, "earl:outcome", self._outcome(entry, where))
+        if entry.get("shared") is not None:
+            self._shared(run, node, _object(entry["shared"], f"'shared' of {where}"), where)
+        if entry.get("duration") is not None:
+            self.say(node, "rbw:duration-seconds", float(_field(entry, "duration", (int, float), where)))
+        for place, (variable, value) in enumerate(sorted(_field(entry, "values", dict, where).items()), start=1):
+            self._value(node, f"{node}/value/{place}", str(variable), value)
+        for place, clause in enumerate(_field(entry, "clauses", list, where), start=1):
+            self._clause(node, f"{node}/clause/{place}", _object(clause, f"clause {place} of {where}"), entry)
+
+    def _shared(self, run: URIRef, scenario: URIRef, entry: Json, where: str) -> None:
+        """State the execution of a behaviour tree that a scenario was judged from; others may have been as well."""
+        from urllib.parse import quote
+
+        name = _field(entry, "execution", str, where)
+        execution = self.node(f"{run}/tree/{quote(name, safe='')}", "prov:Activity", "rbw:TreeExecution")
+        self.link(execution, "rbw:run", run)
+        self.link(execution, "rbw:of-tree", _field(entry, "tree", str, where))
+        self.link(scenario, "rbw:judged-from", execution)
+        self.link(scenario, "prov:wasInformedBy", execution)
+        self.link(scenario, "rbw:of-node", _field(entry, "node", str, where))
+
+    def _value(self, run: URIRef, iri: str, variable: str, value: object) -> None:
+        node = self.node(iri, "rbw:GivenValue")
+        self.link(run, "rbw:given-value", node)
+        self.link(node, "rbw:of-variable", self._named(variable))
+        for one in cast("list[object]", value) if isinstance(value, list) else [value]:
+            known = self._named(one) if isinstance(one, str) else None
+            if known is not None and (known, None, None) in self.graph:
+                self.link(node, "rbw:is-value", known)
+            elif isinstance(one, str | int | float):
+                self.say(node, "rbw:is-value", one)
+
+    def _clause(self, run: URIRef, iri: str, clause: Json, scenario: Json) -> None:
+        where = f"the clause {clause.get('name')}"
+        node = self.node(iri, "earl:Assertion", "prov:Entity")
+        self.link(node, "prov:wasGeneratedBy", run)
+        self.link(node, "earl:test", _field(clause, "iri", str, where))
+        self.link(node, "earl:subject", _field(scenario, "variant", str, where))
+        self.link(node, "earl:mode", expand("earl:automatic"))
+        result = self.node(f"{iri}/result", "earl:TestResult")
+        self.link(node, "earl:result", result)
+        self.link(result, "earl:outcome", self._outcome(clause, where))
+        for field, term in (("robustness", "rbw:robustness"), ("at", "rbw:at-seconds")):
+            if clause.get(field) is not None:
+                self.say(result, term, float(_field(clause, field, (int, float), where)))
+        for field, term in (("unit", "rbw:unit"), ("reason", "earl:info")):
+            if clause.get(field):
+                self.say(result, term, _field(clause, field, str, where))
+
+    def _named(self, curie: str) -> Any:
+        """Return the node of a CURIE with one of the model's prefixes; of anything else, the text as an IRI."""
+        from rdflib import URIRef
+
+        prefix, colon, local = curie.partition(":")
+        return URIRef(self.prefixes[prefix] + local if colon and prefix in self.prefixes else curie)
+
+    def _outcome(self, entry: Json, where: str) -> str:
+        verdict = _field(entry, "verdict", str, where)
+        if verdict not in OUTCOMES:
+            raise BadResults(f"the verdict of {where} is '{verdict}', not one of {', '.join(OUTCOMES)}")
+        return expand(OUTCOMES[verdict])
+
+
+def _object(value: object, where: str) -> Json:
+    if not isinstance(value, dict):
+        raise BadResults(f"{where} is not an object")
+    return cast(Json, value)
+
+
+def _field(entry: Json, name: str, kind: Any, where: str) -> Any:
+    value = entry.get(name)
+    if not isinstance(value, kind):
+        raise BadResults(f"'{name}' of {where} is {'missing' if value is None else 'not what it should be'}")
+    return value

@@ -1,0 +1,211 @@
+"""User stories, variants and their variations as triples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.graph.rdf.vocabulary import ELEMENT_TYPES, MEMBERSHIPS, SELECTIONS
+from robbdd_tools.graph.write.clauses import ClauseWriter
+from robbdd_tools.graph.write.scenes import Memberships, Scenes
+from robbdd_tools.graph.write.sink import Frame, Sink, namespace_of
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from rdflib import URIRef
+    from rdflib.term import Node
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What stories build on: the scenes, their memberships, and the task of each template."""
+
+    scenes: Scenes
+    memberships: Memberships
+    tasks: Mapping[URIRef, URIRef]
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where a variant stands: its story's namespace, its qualified name, its own name and its node."""
+
+    namespace: str
+    owner: str
+    node: URIRef
+
+
+def add_story(frame: Frame, known: Known, story: tree.Story, position: int) -> None:
+    """State a user story; ``position`` is its place among all stories of the graph."""
+    node = frame.claimed(story.name.text, story.name)
+    if node is None:
+        return
+    sink = frame.sink
+    sink.add_types(node, ["bdd:UserStory"], frame.at(story.name))
+    for term, text in (("role", story.role), ("feature", story.feature), ("benefit", story.benefit)):
+        sink.add(node, f"rbw:{term}", sink.literal(text.value), frame.at(text))
+    sink.add(node, "rbw:position", sink.literal(position))
+    namespace = namespace_of(node, story.name.text)
+    variants: list[URIRef] = []
+    for variant in story.variants:
+        owner = f"{story.name.text}.{variant.name.text}"
+        criterion = frame.claimed(owner, variant.name)
+        if criterion is not None:
+            sink.add(node, "bdd:has-criteria", criterion, frame.at(variant.name))
+            _add_variant(frame, known, variant, _Place(namespace, owner, criterion))
+            variants.append(criterion)
+    sink.add(node, "rbw:criteria-list", sink.make_list(variants))
+
+
+def _add_variant(frame: Frame, known: Known, variant: tree.Variant, place: _Place) -> None:
+    sink, node = frame.sink, place.node
+    template = frame.target(variant.template)
+    sink.add_types(node, ["bdd:ScenarioVariant"], frame.at(variant.name))
+    sink.add(node, "bdd:of-template", template, frame.at(variant.template))
+    if template is not None:
+        writer = ClauseWriter(frame, place.namespace, place.owner, f"{template}-scenario")
+        clauses = writer.top(variant.given, "given") + writer.occurrences(variant.events)
+        clauses += writer.top(variant.then, "then")
+        sink.add(node, "bdd:has-clause", sink.make_list(clauses))
+    _add_membership(frame, known, variant, node, template)
+    _add_variation(frame, known, variant.variation, place, template)
+
+
+def _add_membership(frame: Frame, known: Known, variant: tree.Variant, node: URIRef, template: URIRef | None) -> None:
+    scene = frame.target(variant.scene)
+    sink = frame.sink
+    sink.add(node, "rbw:scene", scene, frame.at(variant.scene))
+    template_scene = None if template is None else sink.iri(f"{template}-scene")
+    if scene is None or template_scene is None:
+        return
+    own = known.scenes.members(scene)
+    brought = known.scenes.brought_in(frame, variant.variation)
+    for kind in ELEMENT_TYPES:
+        if own[kind]:
+            members = tuple(dict.fromkeys([*own[kind], *brought[kind]]))
+            membership = known.memberships.node(scene, kind, template_scene, members)
+            sink.add(node, "bdd:has-scene", membership, frame.at(variant.scene))
+        else:
+            _add_loose_members(sink, scene, kind, brought[kind])
+
+
+def _add_loose_members(sink: Sink, scene: URIRef, kind: str, members: tuple[URIRef, ...]) -> None:
+    """State, as published, what a variation brings of a kind that its scene does not have at all."""
+    _, term, ending = MEMBERSHIPS[kind]
+    node = sink.iri(scene + ending)
+    if node is not None:
+        for member in members:
+            sink.add(node, term, member)
+
+
+def _add_variation(
+    frame: Frame, known: Known, variation: tree.Table | tree.Product, place: _Place, template: URIRef | None
+) -> None:
+    sink = frame.sink
+    is_table = isinstance(variation, tree.Table)
+    node = sink.iri(f"{place.namespace}{'tv-table' if is_table else 'tv-cart_prod'}-{place.owner}")
+    if node is None:
+        return
+    kind = "bdd:TableVariation" if is_table else "bdd:CartesianProductVariation"
+    sink.add_types(node, ["bdd:TaskVariation", kind], frame.at(variation))
+    sink.add(place.node, "bdd:has-variation", node, frame.at(variation))
+    if template is not None:
+        sink.add(node, "task:of-task", known.tasks.get(template))
+    writer = _VariationWriter(frame, place, node)
+    if isinstance(variation, tree.Table):
+        writer.table(variation)
+    else:
+        writer.product(variation)
+
+
+@dataclass(frozen=True, slots=True)
+class _VariationWriter:
+    frame: Frame
+    place: _Place
+    node: URIRef
+
+    def table(self, table: tree.Table) -> None:
+        sink = self.frame.sink
+        variables = self._variables(table.header)
+        rows: list[Node] = []
+        for row in table.rows:
+            cells = [self._choice(cell) for cell in row.cells]
+            for variable, cell, written in zip(variables, cells, row.cells, strict=False):
+                self._mark(variable, written, cell)
+            head = sink.make_list(cells)
+            rows.append(head)
+            sink.mark_node(head, self.frame.at(row))
+        sink.add(self.node, "bdd:rows", sink.make_list(rows), self.frame.at(table))
+
+    def product(self, product: tree.Product) -> None:
+        sink = self.frame.sink
+        variables = self._variables([assignment.variable for assignment in product.assignments])
+        entries: list[Node | None] = []
+        for index, (variable, assignment) in enumerate(zip(variables, product.assignments, strict=True)):
+            choices = assignment.choices
+            if isinstance(choices, tree.Selection):
+                entry = self._selection(choices, index)
+            elif isinstance(choices, tree.SetList):
+                entry = sink.make_list(self._values(variable, values) for values in choices.sets)
+            else:
+                entry = self._choice(choices)
+            self._mark(variable, choices, entry)
+            entries.append(entry)
+        sink.add(self.node, "bdd:of-sets", sink.make_list(entries), self.frame.at(product))
+
+    def _variables(self, refs: tuple[tree.Ref, ...] | list[tree.Ref]) -> list[URIRef | None]:
+        sink = self.frame.sink
+        targets = [self.frame.target(ref) for ref in refs]
+        sink.add(self.node, "bdd:variable-list", sink.make_list(targets))
+        for ref, target in zip(refs, targets, strict=True):
+            if target is not None:
+                sink.mark(self.node, "bdd:variable-list", target, self.frame.at(ref))
+        return targets
+
+    def _choice(self, piece: tree.Value | tree.SetExpression) -> Node | None:
+        match piece:
+            case tree.Link():
+                return self.frame.target(piece.reference)
+            case tree.ValueList():
+                return self.frame.sink.make_list(self._value(value) for value in piece.values)
+            case _:
+                return self._value(piece)
+
+    def _values(self, variable: URIRef | None, values: tree.ValueList) -> Node | None:
+        entry = self._choice(values)
+        self._mark(variable, values, entry)
+        return entry
+
+    def _value(self, value: tree.Value) -> Node | None:
+        if isinstance(value, tree.Ref):
+            return self.frame.target(value)
+        return self.frame.sink.literal(value.value)
+
+    def _mark(self, variable: URIRef | None, written: tree.Node, node: Node | None) -> None:
+        """Note where a variable gets a value, for the value and for each value in a list of them."""
+        if variable is None or node is None:
+            return
+        sink = self.frame.sink
+        place = written.reference if isinstance(written, tree.Link) else written
+        sink.mark_choice(self.node, variable, node, self.frame.at(place))
+        for value in written.values if isinstance(written, tree.ValueList) else ():
+            element = self._value(value)
+            if element is not None:
+                sink.mark_choice(self.node, variable, element, self.frame.at(value))
+
+    def _selection(self, selection: tree.Selection, index: int) -> URIRef | None:
+        sink = self.frame.sink
+        kind = "comb" if selection.kind == "combinations" else "perm"
+        node = sink.iri(f"{self.place.namespace}{kind}-{self.place.owner}.{index}")
+        if node is None:
+            return None
+        count = selection.count.value
+        datatype = "xsd:positiveInteger" if isinstance(count, int) and count > 0 else None
+        sink.add_types(node, [SELECTIONS[selection.kind]], self.frame.at(selection))
+        source = self.frame.target(selection.source)
+        sink.add(node, "bdd:from", source, self.frame.at(selection.source))
+        sink.add(node, "bdd:length", sink.literal(count, datatype), self.frame.at(selection.count))
+        # The published vocabulary has this property on combinations only.
+        if kind == "comb" or selection.repeated:
+            sink.add(node, "bdd:repetition-allowed", sink.literal(selection.repeated), self.frame.at(selection))
+        return node

@@ -1,0 +1,117 @@
+"""Decides clauses on a trace: fluents by the monitor, junctions by strong Kleene logic."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from collections.abc import Set as AbstractSet
+from itertools import product
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.judging.observation_streams import Unobserved
+from robbdd_tools.judging.sentences import AnyOf, Clause, Filler, Fluent, Junction, Unmatched, fluents_of
+from robbdd_tools.monitor.judge import judge, margin_range
+from robbdd_tools.monitor.time import NoWindow, occurrences, window
+from robbdd_tools.monitor.vacuity import Range, joined
+from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation, unknown
+from robbdd_tools.protocol.messages import NO_STEP
+from robbdd_tools.user_code.calls import UserCodeError, fault_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Arguments, Slot
+    from robbdd_tools.monitor.judge import Regions
+    from robbdd_tools.monitor.trace import Trace
+
+SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
+
+
+def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[str]) -> Verdict:
+    """Judge a clause on what has happened; ``events`` are those that something in the scenario emits."""
+    if trace.unreached:
+        return unknown(trace.unreached)
+    match clause:
+        case Fluent():
+            return _fluent(clause, trace, regions, events)
+        case Junction("not", (operand,)):
+            return negation(decide(operand, trace, regions, events))
+        case Junction(operator, operands):
+            verdicts = [decide(operand, trace, regions, events) for operand in operands]
+            return conjunction(verdicts) if operator == "and" else disjunction(verdicts)
+        case Unmatched(text):
+            return unknown(f"{NO_STEP} for '{text}'")
+
+
+def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:
+    """Return how far the margin of each fluent of a clause varied over a whole trace, as far as that is known."""
+    found: list[Range] = []
+    for fluent in fluents_of(clause):
+        slots = fluent.predicate.slots
+        try:
+            each = [
+                margin_range(fluent.predicate, words, trace, regions) for words in _instances(slots, fluent.arguments)
+            ]
+        except Exception:  # the same failure has made the clause unknown, with its words
+            return ()
+        found += [joined(known)] if (known := [one for one in each if one is not None]) else []
+    return tuple(found)
+
+
+def is_closed(clause: Clause, trace: Trace, events: AbstractSet[str]) -> bool:
+    """Whether a longer trace could not tell more about a clause."""
+    return all(_closed(fluent, trace, events) for fluent in fluents_of(clause))
+
+
+def ways(fluent: Fluent) -> Iterator[Iterator[Arguments]]:
+    """Yield the ways in which a fluent may hold, each with the arguments for all of which it then must."""
+    slots = fluent.predicate.slots
+    some = [slot for slot in slots if isinstance(fluent.arguments[slot.name], AnyOf)]
+    return (_instances(slots, chosen) for chosen in _choices(fluent.arguments, some))
+
+
+def _closed(fluent: Fluent, trace: Trace, events: AbstractSet[str]) -> bool:
+    if fluent.predicate.evaluate is None or not events >= {event for event, _ in occurrences(fluent.time)}:
+        return True
+    selected = window(fluent.time, trace)
+    return not (isinstance(selected, NoWindow) and selected.open)
+
+
+def _fluent(fluent: Fluent, trace: Trace, regions: Regions, events: AbstractSet[str]) -> Verdict:
+    silent = [event for event, _ in occurrences(fluent.time) if event not in events]
+    if silent and fluent.predicate.evaluate is not None:
+        return unknown(f"nothing in the scenario emits event {silent[0]}")
+    return disjunction(
+        conjunction(_judged(fluent, arguments, trace, regions) for arguments in group) for group in ways(fluent)
+    )
+
+
+def _judged(fluent: Fluent, arguments: Arguments, trace: Trace, regions: Regions) -> Verdict:
+    try:
+        return judge(fluent.predicate, arguments, fluent.time, trace, regions)
+    except Unobserved as error:
+        return unknown(str(error))
+    except UserCodeError as error:
+        return unknown(str(error), fault=error.fault)
+    except Exception as error:  # an evaluator may come from any package; its failure is missing evidence
+        fault = fault_of(error, fluent.predicate.name, fluent.predicate.evaluate)
+        return unknown(f"the evaluator of '{fluent.predicate.name}' failed: {fault.summary}", fault=fault)
+
+
+def _choices(arguments: Mapping[str, Filler], some: list[Slot]) -> Iterator[Mapping[str, Filler]]:
+    """Every way to choose one element for each existential slot."""
+    options = [filler.elements for slot in some if isinstance(filler := arguments[slot.name], AnyOf)]
+    for chosen in product(*options):
+        yield {**arguments, **{slot.name: element for slot, element in zip(some, chosen, strict=True)}}
+
+
+def _instances(slots: tuple[Slot, ...], arguments: Mapping[str, Filler]) -> Iterator[Arguments]:
+    """Arguments as the evaluators want them; a set where one element is wanted stands for each of them in turn."""
+    options = [_options(slot.kind, arguments[slot.name]) for slot in slots]
+    for values in product(*options):
+        yield {slot.name: value for slot, value in zip(slots, values, strict=True)}
+
+
+def _options(kind: Kind, filler: Filler) -> tuple[str | tuple[str, ...], ...]:
+    elements = filler.elements if isinstance(filler, AnyOf) else filler
+    if kind in SETS:
+        return ((elements,) if isinstance(elements, str) else elements,)
+    return (elements,) if isinstance(elements, str) else elements

@@ -1,0 +1,94 @@
+"""The margins of a scenario's clauses over time, kept beside its trace as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.base.writing import replace_file
+from robbdd_tools.catalog.coordination import END, START, emitter
+from robbdd_tools.judging.clauses import ways
+from robbdd_tools.judging.sentences import Clause, Doing, Fluent, Junction, Unmatched
+from robbdd_tools.monitor.curve import Curve, curve
+from robbdd_tools.monitor.judge import WindowEvidence
+from robbdd_tools.monitor.time import Window
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.judge import Regions
+    from robbdd_tools.monitor.trace import Trace
+
+
+def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False) -> Iterator[Curve]:
+    """Yield the curve of each fluent of a clause: of a set the worst member's, where any will do the best one's."""
+    match clause:
+        case Fluent():
+            yield _curve(clause, trace, regions, negated)
+        case Junction(operator, operands):
+            for operand in operands:
+                yield from curves(operand, trace, regions, negated != (operator == "not"))
+        case Unmatched():
+            return
+
+
+def behaviour_curves(
+    doing: Doing, trace: Trace, emitters: Mapping[str, str], node: str = "", iteration: int = 0
+) -> tuple[Curve, ...]:
+    """Return the duration of a behaviour, without a margin; ``emitters`` maps events to what emits them.
+
+    ``node`` is that of the behaviour tree which executes it, if one does; ``iteration`` is 0 for a behaviour that is
+    executed once.
+    """
+    limits = doing.behaviour.events[0], doing.behaviour.events[-1]
+    if node:
+        limits = emitter(node, START), emitter(node, END)
+    stamps = [stamp for stamp in trace.events if stamp.iteration == iteration or not iteration]
+    times = [stamp.time for stamp in stamps if emitters.get(stamp.name) in limits]
+    return (Curve(min(times), max(times)),) if times else ()
+
+
+def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tuple[Curve, ...]], trace: Trace) -> None:
+    """Write curves by the feature lines of their clauses, with the events; raises ``OSError``.
+
+    ``scenario`` is the IRI of its variant with its number.
+    """
+    document = {
+        "scenario": scenario,
+        "duration": trace.end,
+        "remark": trace.remark,
+        "events": [
+            {"name": stamp.name, "time": stamp.time} for stamp in sorted(trace.events, key=lambda stamp: stamp.time)
+        ],
+        "clauses": {str(line): [asdict(one) for one in found] for line, found in by_line.items()},
+    }
+    path.parent.mkdir(exist_ok=True)
+    replace_file(path, json.dumps(document, ensure_ascii=False) + "\n")
+
+
+def _curve(fluent: Fluent, trace: Trace, regions: Regions, negated: bool) -> Curve:
+    predicate = fluent.predicate
+    every = [list(group) for group in ways(fluent)]
+
+    def margins(rows: Window) -> FloatArray | None:
+        if predicate.evaluate is None:
+            return None
+        evidence = WindowEvidence(trace, rows, regions)
+        try:
+            worst = [np.min([predicate.evaluate(evidence, words) for words in group], axis=0) for group in every]
+            best: FloatArray = np.max(worst, axis=0)
+        except Exception:  # no record, an empty set, users' code that fails: the verdict says so
+            return None
+        return best
+
+    unit = predicate.unit
+    if predicate.unit_for is not None:
+        with suppress(KeyError, IndexError):
+            unit = predicate.unit_for(WindowEvidence(trace, Window(0, 0), regions), every[0][0])
+    return curve(Curve(unit=unit, negated=negated), fluent.time, trace, margins)

@@ -1,0 +1,80 @@
+"""What an execution says of clauses that prove little: how far margins varied, and what held from the start."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.coordination import START, emitter
+from robbdd_tools.judging.clauses import decide, ranges
+from robbdd_tools.judging.sentences import Clause, Fluent, Junction, fluents_of, read_doing
+from robbdd_tools.monitor.time import Before, During
+from robbdd_tools.monitor.trace import EventStamp
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.protocol.messages import MarginRanges
+
+if TYPE_CHECKING:
+    from robbdd_tools.monitor.judge import Regions
+    from robbdd_tools.monitor.trace import Trace
+    from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
+
+BEGIN = "the behaviour begins"
+"""Name of the event that stands for the beginning of a behaviour."""
+
+
+def margin_ranges(
+    index: int, clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: Trace, regions: Regions
+) -> MarginRanges | None:
+    """Return the message on a clause of scenario number ``index``, ``None`` when its trace says nothing of this."""
+    if trace.unreached:
+        return None
+    found = ranges(clause, trace, regions)
+    held = _held_before(clause, stated, spec, trace, regions)
+    return MarginRanges(index, stated.line, found, held) if found or held is not None else None
+
+
+def _held_before(clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: Trace, regions: Regions) -> bool | None:
+    """Tell whether a Then clause holds, and its predicates held when the first behaviour of its scope began as well.
+
+    ``None`` where that means nothing: for other clauses, for intervals, which say that something stays as it is, and
+    for what is set up or measured in windows only.
+    """
+    fluents = list(fluents_of(clause))
+    if stated.role != "then" or not fluents:
+        return None
+    if any(isinstance(one.time, During) or one.predicate.set_up or one.predicate.quantities for one in fluents):
+        return None
+    time = _beginning(stated, spec, trace)
+    if time is None:
+        return None
+    before = replace(trace, events=(EventStamp(BEGIN, time),))
+    outcome = decide(_at_beginning(clause), before, regions, {BEGIN}).outcome
+    if outcome is Outcome.UNKNOWN:
+        return None
+    holds = decide(clause, trace, regions, spec.events.keys()).outcome is Outcome.HOLDS
+    return holds and outcome is Outcome.HOLDS
+
+
+def _beginning(stated: ClauseSpec, spec: ScenarioSpec, trace: Trace) -> float | None:
+    """Return when the first behaviour of a clause's scope began, s."""
+    if spec.node:
+        emitting = emitter(spec.node, START)
+    else:
+        doings = [read_doing(one.sentence) for one in spec.clauses if one.role == "when"]
+        behaviours = [doing.behaviour for doing in doings if doing is not None]
+        number = stated.iterations[0] if stated.iterations else 1
+        if len(behaviours) < number:
+            return None
+        emitting = behaviours[number - 1].events[0]
+    names = [event for event, emits in spec.events.items() if emits == emitting]
+    return trace.event_time(names[0], stated.iterations[0] if stated.iterations else 0) if names else None
+
+
+def _at_beginning(clause: Clause) -> Clause:
+    match clause:
+        case Fluent():
+            return replace(clause, time=Before(BEGIN))
+        case Junction():
+            return replace(clause, operands=tuple(map(_at_beginning, clause.operands)))
+        case _:
+            return clause

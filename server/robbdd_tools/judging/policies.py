@@ -1,0 +1,170 @@
+"""Observation policies: how a ``.bddx`` wants clauses observed and judged, in place of the catalog's evaluators."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.catalog.api import Predicate
+from robbdd_tools.judging.observation_streams import Stream, Unobserved
+from robbdd_tools.judging.sentences import Clause, Fluent, Junction, Unmatched, read_timed_text
+from robbdd_tools.monitor.time import After, Before, TimeConstraint
+from robbdd_tools.protocol.specs import plain_name
+from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray
+    from robbdd_tools.monitor.policy import Policy, Rule
+    from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
+
+NOTHING: Mapping[str, Any] = {}
+
+
+def with_policies(clause: Clause, stated: ClauseSpec | None, spec: ScenarioSpec) -> Clause:
+    """Return a clause whose fluents are judged by the policies of the scenario's execution, where it has any.
+
+    ``stated`` tells which fluents these are, in order.
+    """
+    policies = {} if spec.execution is None else {policy.clause: policy for policy in spec.execution.policies}
+    parts = () if stated is None else stated.parts or (stated.iri,)
+    if stated is None or not policies.keys() & set(parts):
+        return clause
+    stated_parts = zip_longest(parts, stated.arguments, fillvalue=NOTHING)
+    return _attached(clause, stated_parts, policies, spec)
+
+
+def _attached(clause: Clause, parts: Iterator[Any], policies: Mapping[str, Policy], spec: ScenarioSpec) -> Clause:
+    if isinstance(clause, Junction):
+        return replace(clause, operands=tuple(_attached(one, parts, policies, spec) for one in clause.operands))
+    part, arguments = next(parts, ("", NOTHING))
+    policy = policies.get(part)
+    if policy is None:
+        return clause
+    if isinstance(clause, Unmatched):
+        timed = read_timed_text(clause.text)
+        if timed is None:
+            return clause
+        time = timed[1]
+    else:
+        time = clause.time
+    return Fluent(_predicate(policy, spec, arguments), {}, _with_horizon(time, policy.horizon))
+
+
+def _with_horizon(time: TimeConstraint, horizon: float | None) -> TimeConstraint:
+    if horizon is None or not isinstance(time, Before | After):
+        return time
+    return replace(time, horizon=horizon)
+
+
+def _predicate(policy: Policy, spec: ScenarioSpec, arguments: Mapping[str, Any]) -> Predicate:
+    judge = Judge(policy, spec, arguments)
+    unit = "m" if policy.rule.kind == "distance" else ""
+    return Predicate(policy.iri, "", "", (), "", unit, "", judge.margins)
+
+
+@dataclass(frozen=True, slots=True)
+class Judge:
+    """Judges the windows of one clause of one scenario by a policy.
+
+    ``own`` is what the clause's slots and quantified variables stand for.
+    """
+
+    policy: Policy
+    spec: ScenarioSpec
+    own: Mapping[str, Any]
+
+    def margins(self, evidence: Evidence, _arguments: Arguments) -> FloatArray:
+        """Return the margin at each sample of a window, shape (n,).
+
+        Raises ``Unobserved`` where a simulation has nothing to judge on, ``UserCodeError`` where the user's code fails.
+        """
+        rule = self.policy.rule
+        if rule.kind == "topic":
+            raise Unobserved(f"its verdicts come from the ROS topic '{rule.name}', which a simulation does not have")
+        streams = self._streams(evidence)
+        if rule.kind == "python":
+            return self._by_code(rule.name, Observed(evidence, {stream.target: stream for stream in streams}))
+        if len(streams) != 2:
+            raise Unobserved(f"a distance is between two things; {len(streams)} are observed")
+        return distance_margins(rule, *streams)
+
+    def _streams(self, evidence: Evidence) -> list[Stream]:
+        found: list[Stream] = []
+        for observation in self.policy.observations:
+            for target in observation.targets:
+                value: object = self.spec.values.get(target, self.own.get(plain_name(target), target))
+                if not isinstance(value, str):
+                    raise Unobserved(f"what is observed must be one element, but {target} is {value}")
+                found.append(Stream(observation, value, evidence, self.spec.seed))
+        return found
+
+    def _by_code(self, name: str, evidence: Observed) -> FloatArray:
+        arguments = {**{plain_name(variable): value for variable, value in self.spec.values.items()}, **self.own}
+        try:
+            evaluate = load_attribute(name, self.spec.model)
+            return _as_margins(name, evaluate, called(name, evaluate, evidence, arguments), len(evidence.times))
+        except UserCodeError as error:
+            raise UserCodeError(str(error), replace(error.fault, origin=self.policy.iri)) from error
+
+
+class Observed:
+    """The evidence of a window as its observations have it: where things were seen, not where they are."""
+
+    def __init__(self, evidence: Evidence, streams: Mapping[str, Stream]) -> None:
+        self._evidence = evidence
+        self._streams = streams
+
+    @property
+    def times(self) -> FloatArray:
+        """Simulated time of each sample, s, shape (n,)."""
+        return self._evidence.times
+
+    def position(self, name: str) -> FloatArray:
+        """Last observed position of an element at each sample, m, shape (n, 3); raises ``KeyError`` for others."""
+        return self._streams[name].positions
+
+    def stamps(self, name: str) -> FloatArray:
+        """Time at which each of these observations was taken, s, shape (n,); raises ``KeyError``."""
+        return self._streams[name].stamps
+
+
+def distance_margins(rule: Rule, one: Stream, other: Stream) -> FloatArray:
+    """Return the margin (m) of a distance at each sample, shape (n,).
+
+    Raises ``Unobserved`` when the two were seen too far apart in time.
+    """
+    apart = np.abs(one.stamps - other.stamps)
+    if rule.max_time_offset is not None and (worst := float(apart.max())) > rule.max_time_offset + 1e-9:
+        raise Unobserved(f"the observations are {worst:.3g} s apart, more than {rule.max_time_offset:g} s")
+    distance = np.linalg.norm(one.positions - other.positions, axis=1)
+    match rule.form, rule.bounds:
+        case "less-than", (bound,):
+            return bound - distance
+        case "greater-than", (bound,):
+            return distance - bound
+        case "between", (lower, upper):
+            return np.minimum(distance - lower, upper - distance)
+        case "equals", (value, tolerance):
+            return tolerance - np.abs(distance - value)
+        case form, bounds:
+            raise Unobserved(f"there is no comparison '{form}' of a distance with {len(bounds)} bounds")
+
+
+def _as_margins(name: str, evaluate: object, answer: Any, count: int) -> FloatArray:
+    """Return the user's answer as margins: numbers as they are, true and false as 1 and -1, one for all or one each."""
+    values = np.asarray(answer)
+    if values.dtype == bool:
+        values = np.where(values, 1.0, -1.0)
+    if values.dtype.kind not in "fiu" or values.shape not in ((), (count,)):
+        message = f"{name} must return one number or truth value, or one for each of the {count} samples"
+        raise refused(name, message, definition_of(evaluate))
+    if not np.all(np.isfinite(values)):
+        message = f"{name} must return finite numbers, but {np.count_nonzero(~np.isfinite(values))} are not"
+        raise refused(name, message, definition_of(evaluate))
+    return np.broadcast_to(values.astype(float), (count,))

@@ -1,0 +1,22 @@
+"""Which fluents of a clause ask for a quantity that is measured only on demand, and of which elements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import product
+
+from robbdd_tools.judging.sentences import AnyOf, Clause, Filler, Fluent, fluents_of
+
+
+def wanting(clause: Clause, quantity: str) -> Iterator[tuple[Fluent, Mapping[str, str]]]:
+    """Yield the fluents that need a quantity, once for every way to fill their slots with single elements."""
+    for fluent in fluents_of(clause):
+        if quantity in fluent.predicate.quantities:
+            slots = tuple(fluent.arguments)
+            for chosen in product(*(_elements(fluent.arguments[slot]) for slot in slots)):
+                yield fluent, dict(zip(slots, chosen, strict=True))
+
+
+def _elements(filler: Filler) -> tuple[str, ...]:
+    listed = filler.elements if isinstance(filler, AnyOf) else filler
+    return (listed,) if isinstance(listed, str) else listed

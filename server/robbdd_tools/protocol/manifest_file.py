@@ -1,0 +1,99 @@
+"""The manifest in a run folder: what the agent is told to execute.
+
+Scenarios name their execution by its IRI and their behaviour tree by its name; these are beside them, each once.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, fields
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from robbdd_tools.base.files import load_text
+from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.plain import from_plain
+from robbdd_tools.base.writing import replacing
+from robbdd_tools.catalog.coordination import TreeSpec
+from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, Manifest, ScenarioSpec, SceneSpec
+
+MANIFEST = "manifest.json"
+STORED_RESULTS = "stored-results.json"
+"""File beside a manifest with the results of the stored run that is judged again."""
+
+
+def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioSpec]) -> Iterator[ScenarioSpec]:
+    """Write a manifest into a run folder, as ``head`` but with these scenarios, and yield them as they are written.
+
+    Raises ``OSError``.
+    """
+    executions: dict[str, ExecutionSpec] = {}
+    trees: dict[str, TreeSpec] = {}
+    with replacing(folder / MANIFEST) as file:
+        begin = {"model": head.model, "seed": head.seed, "traces": head.traces, "sources": dict(head.sources)}
+        file.write(_json(begin)[:-1] + ', "scenarios": [')
+        separator = "\n"
+        for spec in scenarios:
+            file.write(separator + _json(spec))
+            separator = ",\n"
+            if spec.execution is not None:
+                executions.setdefault(spec.execution.iri, spec.execution)
+            if spec.tree is not None:
+                trees[spec.tree.name] = spec.tree
+            yield spec
+        for name, beside in (("executions", executions), ("trees", trees)):
+            file.write(f'\n], "{name}": [' + ",\n".join(_json(asdict(one)) for one in beside.values()))
+        file.write("]}\n")
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """Read the manifest of a run folder; raises ``OSError``, ``ValueError``, ``KeyError`` or ``TypeError``."""
+    data = json.loads(load_text(folder / MANIFEST, RESULT_SIZE))
+    executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
+    trees = {entry["name"]: from_plain(TreeSpec, entry) for entry in data.get("trees", ())}
+    scenarios = tuple(_scenario(entry, executions, trees) for entry in data["scenarios"])
+    return Manifest(data["model"], data["seed"], scenarios, data.get("traces", False), data.get("sources", {}))
+
+
+def _scenario(
+    entry: dict[str, Any], executions: Mapping[str, ExecutionSpec], trees: Mapping[str, TreeSpec]
+) -> ScenarioSpec:
+    scene = entry.pop("scene")
+    clauses = entry.pop("clauses")
+    execution, tree = entry.pop("execution", None), entry.pop("tree", None)
+    return ScenarioSpec(
+        scene=SceneSpec(
+            tuple(scene["objects"]),
+            tuple(scene["agents"]),
+            {name: tuple(objects) for name, objects in scene["workspaces"].items()},
+            {name: tuple(inner) for name, inner in scene["contains"].items()},
+            dict(scene["places"]),
+            tuple(ConfigSpec(**config) for config in scene["config"]),
+            tuple(scene.get("unused", ())),
+            {name: tuple(sets) for name, sets in scene.get("sets", {}).items()},
+        ),
+        clauses=tuple(from_plain(ClauseSpec, clause) for clause in clauses),
+        execution=None if execution is None else executions[execution],
+        tree=None if tree is None else trees[tree],
+        **entry,
+    )
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, default=_plain, ensure_ascii=False)
+
+
+def _plain(value: Any) -> object:
+    """Return the fields of a dataclass; unlike ``asdict`` it copies nothing. Executions and trees are named."""
+    if isinstance(value, ExecutionSpec):
+        return value.iri
+    if isinstance(value, TreeSpec):
+        return value.name
+    return {name: getattr(value, name) for name in _names(value.__class__)}
+
+
+@cache
+def _names(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(entry.name for entry in fields(kind))

@@ -1,0 +1,203 @@
+"""The messages between a run and its agent processes: one JSON object per line in both directions.
+
+The agent reads orders (``Execute``) on its standard input, ends at its end, and writes ``RunMessage``s. Every message
+is a frozen dataclass; ``encode`` and ``decode`` are inverse.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+
+from robbdd_tools.base.plain import finite, from_plain
+from robbdd_tools.monitor.fault import Fault
+from robbdd_tools.monitor.verdict import Outcome, Verdict
+
+VIEWER = "ROBBDD_VIEWER"
+"""Environment variable of the agent: when it is set, a window shows each scenario in real time."""
+NO_STEP = "no step definition"
+"""How the reason begins why a clause is unknown that nothing can judge."""
+
+
+@dataclass(frozen=True, slots=True)
+class Execute:
+    """The parent's order to execute scenario number ``index`` of the manifest."""
+
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class RunStarted:
+    """The agent is up; the manifest has ``total`` scenarios."""
+
+    total: int
+    simulator: str
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioStarted:
+    """Scenario number ``index`` (from 0, in manifest order) begins."""
+
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseStarted:
+    """The clause on feature line ``line`` is waiting for its window to close."""
+
+    index: int
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class ClauseJudged:
+    """A clause has its verdict (``holds``, ``violated``, ``unknown``); see ``monitor.verdict.Verdict``.
+
+    ``fault`` is the ``id`` of the error in users' code that it is unknown for, as a ``UserCodeFailed`` has it.
+    """
+
+    index: int
+    line: int
+    verdict: str
+    robustness: float | None
+    unit: str
+    at: float | None
+    reason: str
+    worst_at: float | None = None
+    vacuous: str = ""
+    fault: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class MarginRanges:
+    """How far the margin of each fluent of the clause on ``line`` varied over the whole execution: least, largest.
+
+    ``held_before`` tells of a Then clause whether it holds and its predicates held before the behaviour began as well,
+    ``None`` where that is not known.
+    """
+
+    index: int
+    line: int
+    ranges: tuple[tuple[float, float], ...]
+    held_before: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioFinished:
+    """All clauses of scenario ``index`` are judged; times in seconds (simulated, wall, wall inside mj_step).
+
+    ``resampled`` counts the random places that were drawn again because they overlapped or were out of reach.
+    """
+
+    index: int
+    simulated: float
+    wall: float
+    stepping: float
+    resampled: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class UserCodeFailed:
+    """Code of the user failed in scenario ``index``, or before any scenario when ``None``; once for each scenario.
+
+    It comes before the verdicts that name ``fault``.
+    """
+
+    index: int | None
+    fault: Fault
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """Lines that users' code printed while scenario ``index`` was executed, or before any scenario when ``None``."""
+
+    index: int | None
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class LogLine:
+    """A line for the log: ``level`` is ``info``, ``warning`` or ``error``."""
+
+    level: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class RunFinished:
+    """The agent ends by itself, not ``ok`` when it cannot work; anything else at the end of the stream is a crash."""
+
+    ok: bool
+
+
+RunMessage = (
+    RunStarted
+    | ScenarioStarted
+    | ClauseStarted
+    | ClauseJudged
+    | MarginRanges
+    | ScenarioFinished
+    | UserCodeFailed
+    | Output
+    | LogLine
+    | RunFinished
+)
+_TYPES: dict[str, type[RunMessage]] = {
+    kind.__name__: kind
+    for kind in (
+        RunStarted,
+        ScenarioStarted,
+        ClauseStarted,
+        ClauseJudged,
+        MarginRanges,
+        ScenarioFinished,
+        UserCodeFailed,
+        Output,
+        LogLine,
+        RunFinished,
+    )
+}
+
+
+def judged(index: int, line: int, verdict: Verdict) -> ClauseJudged:
+    """Return the message that a clause has a verdict."""
+    return ClauseJudged(
+        index,
+        line,
+        str(verdict.outcome),
+        verdict.robustness,
+        verdict.unit,
+        verdict.at,
+        verdict.reason,
+        verdict.worst_at,
+        verdict.vacuous,
+        "" if verdict.fault is None else verdict.fault.id,
+    )
+
+
+def encode(message: RunMessage | Execute) -> str:
+    """Return a message as one line of JSON in ASCII, without the line end."""
+    return json.dumps({"type": type(message).__name__, **asdict(message)})
+
+
+def decode(line: str) -> RunMessage:
+    """Return the message of a line; raises ``ValueError`` for anything that is not one, field by field."""
+    try:
+        fields = json.loads(line, parse_float=finite, parse_constant=finite)
+        message = from_plain(_TYPES[fields.pop("type")], fields)
+        if isinstance(message, ClauseJudged):
+            Outcome(message.verdict)
+        if isinstance(message, LogLine) and message.level not in ("info", "warning", "error"):
+            raise ValueError(message.level)
+        return message
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
+        raise ValueError(f"not a run message: {line[:200]!r}") from error
+
+
+def decode_order(line: str) -> Execute:
+    """Return the order of a line; raises ``ValueError`` for anything that is not one."""
+    match json.loads(line):
+        case {"type": "Execute", "index": int(index)}:
+            return Execute(index)
+        case _:
+            raise ValueError(f"not an order: {line[:200]!r}")

@@ -1,0 +1,129 @@
+"""Calls of code that users brought with their model: it is imported here and nowhere else."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import sys
+import sysconfig
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import redirect_stderr
+from dataclasses import replace
+from pathlib import Path
+from traceback import extract_tb
+from typing import Any
+
+from robbdd_tools.base.files import load_bytes
+from robbdd_tools.base.printable import encodable
+from robbdd_tools.monitor.fault import Fault, Frame
+from robbdd_tools.user_code.modules import NotImported, folder_of, refuse_hidden, search
+
+MOST_FRAMES = 20
+"""Frames that a fault keeps: of a deeper recursion the outermost and the innermost ones."""
+MOST_WORDS = 2000
+"""Characters of an exception's message that a fault keeps."""
+
+
+class UserCodeError(Exception):
+    """Code of the user failed; the message says what, how and where, for the user to read."""
+
+    def __init__(self, message: str, fault: Fault) -> None:
+        super().__init__(message)
+        self.fault = fault
+
+
+def load_attribute(name: str, model: str) -> Callable[..., Any]:
+    """Return ``module:attribute``; modules beside the file ``model`` (a path or URI) are found, too.
+
+    Raises ``UserCodeError``, also where another module has the name of one beside the model.
+    """
+    module_name, _, attribute = name.partition(":")
+    folder = folder_of(model)
+    try:
+        search(folder)
+        if folder is not None:
+            refuse_hidden(module_name.partition(".")[0], folder)
+    except NotImported as error:
+        raise refused(name, str(error), (Frame(str(error.file), 1),) if error.file else ()) from None
+    module = called(name, importlib.import_module, module_name)
+    found = getattr(module, attribute, None)
+    if not callable(found):
+        message = f"the Python module {module_name} has no function '{attribute}'"
+        file = getattr(module, "__file__", None)
+        raise refused(name, message, (Frame(str(file), 1),) if file else ())
+    return found
+
+
+def called(name: str, code: Callable[..., Any], *arguments: Any) -> Any:
+    """Return what user code returns; raises ``UserCodeError`` with file and line when it raises anything.
+
+    What it writes to the standard error goes where its ``print`` goes.
+    """
+    try:
+        with redirect_stderr(sys.stdout):
+            return code(*arguments)
+    except (Exception, SystemExit) as error:  # whatever it raises is the user's error
+        fault = fault_of(error, name, code)
+        raise UserCodeError(f"{name} failed: {fault.summary}{_place(error, fault)}", fault) from error
+
+
+def refused(name: str, message: str, frames: tuple[Frame, ...] = ()) -> UserCodeError:
+    """Return the error for user code that raises nothing but gives an answer that it must not give."""
+    return UserCodeError(message, _with_digest(Fault("", message, name, frames)))
+
+
+def definition_of(code: object) -> tuple[Frame, ...]:
+    """Return where a function is defined: the place of an error in its answer or in its parameters."""
+    compiled: Any = getattr(code, "__code__", None)
+    if compiled is None:
+        return ()
+    return (Frame(str(compiled.co_filename), int(compiled.co_firstlineno), str(compiled.co_name)),)
+
+
+def fault_of(error: BaseException, name: str, code: object = None) -> Fault:
+    """Describe an exception that ``code``, called ``name``, raised."""
+    words = error.msg if isinstance(error, SyntaxError) else str(error)
+    frames = tuple(_frames(error)) or tuple(frame for frame in definition_of(code) if not _is_ours(frame.file))
+    if len(frames) > MOST_FRAMES:
+        frames = (*frames[: MOST_FRAMES // 2], *frames[-MOST_FRAMES // 2 :])
+    return _with_digest(Fault(type(error).__name__, encodable(str(words)[:MOST_WORDS]), name, frames))
+
+
+def original(fault: Fault, sources: Mapping[str, str]) -> Fault:
+    """Return a fault with the files that the user edits in place of the copies that ran; both are absolute paths."""
+    frames = tuple(replace(one, file=sources.get(str(Path(one.file).resolve()), one.file)) for one in fault.frames)
+    return _with_digest(replace(fault, frames=frames))
+
+
+def _frames(error: BaseException) -> Iterator[Frame]:
+    """Yield the calls outside of this package, without the import system's own."""
+    for call in extract_tb(error.__traceback__):
+        if not call.filename.startswith("<") and call.filename != importlib.__file__ and not _is_ours(call.filename):
+            yield Frame(call.filename, call.lineno or 1, call.name, call.line or "", not _is_library(call.filename))
+    if isinstance(error, SyntaxError) and error.filename:
+        yield Frame(error.filename, error.lineno or 1, "", (error.text or "").strip())
+
+
+def _is_ours(file: str) -> bool:
+    return Path(__file__).parents[1] in Path(file).parents
+
+
+def _is_library(file: str) -> bool:
+    path = Path(file)
+    installed = not {"site-packages", "dist-packages"}.isdisjoint(path.parts)
+    return installed or Path(sysconfig.get_path("stdlib")) in path.parents
+
+
+def _with_digest(fault: Fault) -> Fault:
+    place = fault.place
+    try:
+        digest = "" if place is None else hashlib.sha256(load_bytes(Path(place.file))).hexdigest()
+    except OSError:
+        digest = ""
+    return replace(fault, digest=digest)
+
+
+def _place(error: BaseException, fault: Fault) -> str:
+    """Say where in the user's own files an error was raised."""
+    place = fault.place
+    return "" if place is None or isinstance(error, ModuleNotFoundError) else f" ({place.file}:{place.line})"

@@ -1,0 +1,134 @@
+"""Forward and inverse kinematics of one arm, on a model that holds nothing else."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.world.composition import load_robot
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import BehaviourError
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray, RobotModel
+
+CLOSE = 5e-5
+"""Remaining pose error (m and rad) at which a solution is accepted."""
+ROUNDS = 60
+LEAST_DAMPING, DAMPING = 1e-6, 0.01
+"""Damping of the least squares: a floor, and a share of the squared pose error. It fades as the goal comes near,
+because damping lets the pull towards the posture leak into the pose."""
+POSTURE = 0.2
+"""Share of the way back to the home posture that a redundant arm goes in each round."""
+ARMS = 16
+"""Arms that are kept: a configured robot is one of its own."""
+STRIDE = 0.3
+"""Largest change of a joint in one round, rad."""
+
+
+class Unreachable(BehaviourError):
+    """No joint positions within the limits put the tool there."""
+
+
+class Arm:
+    """An arm by itself; poses of its tool are in the frame of its base.
+
+    ``lower`` and ``upper`` (n,) are the joint limits, ``home`` (n,) the posture it prefers, all in rad.
+    """
+
+    def __init__(self, robot: RobotModel) -> None:
+        self._model: Any = load_robot(robot).compile()
+        self._data: Any = mujoco.MjData(self._model)
+        self._site = int(self._model.site(robot.tool_site).id)
+        joints = [self._model.joint(name) for name in robot.joints]
+        self._places = np.array([joint.qposadr[0] for joint in joints])
+        self._speeds = np.array([joint.dofadr[0] for joint in joints])
+        self.lower: FloatArray = np.array([joint.range[0] for joint in joints])
+        self.upper: FloatArray = np.array([joint.range[1] for joint in joints])
+        self.home: FloatArray = np.array(robot.home)
+        self._position: FloatArray = self._data.site_xpos[self._site]
+        self._rotation: FloatArray = self._data.site_xmat[self._site]
+        self._jacobian: FloatArray = np.zeros((6, self._model.nv))
+        self._turns: FloatArray = np.zeros((2, 4))
+        self._weights: FloatArray = np.zeros(6)
+
+    def forward(self, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the tool's position (3,) m and rotation matrix (3, 3) for joint positions (n,) rad."""
+        self._data.qpos[self._places] = joints
+        mujoco.mj_kinematics(self._model, self._data)
+        return self._position.copy(), self._rotation.reshape(3, 3).copy()
+
+    def towards(self, position: FloatArray) -> FloatArray:
+        """Return the home posture (n,) with the first joint turned towards a position, within its limits."""
+        posture = self.home.copy()
+        posture[0] += np.arctan2(position[1], position[0])
+        return np.minimum(np.maximum(posture, self.lower), self.upper)
+
+    def solve(self, seed: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:
+        """Return joint positions (n,) near ``seed`` that put the tool at a pose; raises ``Unreachable``.
+
+        Damped least squares; what a redundant arm is free in is drawn towards the home posture, with its first
+        joint turned towards the goal. Joints that come to a limit stay there while the others make up for them.
+        """
+        joints = np.minimum(np.maximum(seed, self.lower), self.upper)
+        posture = self.towards(position)
+        mujoco.mju_mat2Quat(self._turns[0], rotation.ravel())
+        gap = np.empty(6)
+        error = np.inf
+        for _ in range(ROUNDS):
+            self._data.qpos[self._places] = joints
+            mujoco.mj_kinematics(self._model, self._data)
+            np.subtract(position, self._position, out=gap[:3])
+            self._turn_left(gap[3:])
+            error = _largest(gap)
+            if error < CLOSE:
+                return joints
+            joints = self._improve(joints, gap, posture)
+        raise Unreachable(f"{1000 * error:.0f} mm short")
+
+    def _turn_left(self, turn: FloatArray) -> None:
+        """Write the rotation vector (3,) rad, world frame, from the tool's present orientation to the goal's."""
+        goal, present = self._turns
+        mujoco.mju_mat2Quat(present, self._rotation)
+        mujoco.mju_subQuat(turn, goal, present)
+        mujoco.mju_rotVecQuat(turn, turn.copy(), present)
+
+    def _improve(self, joints: FloatArray, gap: FloatArray, posture: FloatArray) -> FloatArray:
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_jacSite(self._model, self._data, self._jacobian[:3], self._jacobian[3:], self._site)
+        jacobian = self._jacobian[:, self._speeds]
+        homewards = posture - joints
+        moved = joints + self._step(jacobian, gap, homewards)
+        free = np.ones(len(joints))
+        for _ in range(len(joints) - 1):
+            beyond = ((moved < self.lower) | (moved > self.upper)) & (free > 0.0)
+            if not beyond.any():
+                break
+            free[beyond] = 0.0
+            moved = joints + self._step(jacobian * free, gap, homewards * free)
+        return np.minimum(np.maximum(moved, self.lower), self.upper)
+
+    def _step(self, jacobian: FloatArray, gap: FloatArray, homewards: FloatArray) -> FloatArray:
+        """One round of damped least squares with a pull (n,) in the null space of the Jacobian (6, n)."""
+        square = jacobian @ jacobian.T
+        square.flat[::7] += LEAST_DAMPING + DAMPING * float(gap @ gap)
+        pull = POSTURE * homewards
+        # Six equations: the engine's own solver takes a fraction of the time of a general one.
+        mujoco.mju_cholFactor(square, 0.0)
+        mujoco.mju_cholSolve(self._weights, square, gap - jacobian @ pull)
+        step: FloatArray = pull + self._weights @ jacobian
+        return step / max(1.0, _largest(step) / STRIDE)
+
+
+@lru_cache(maxsize=ARMS)
+def arm_of(robot: RobotModel) -> Arm:
+    """Return the arm of a robot model; compiled when it is first asked for."""
+    return Arm(robot)
+
+
+def _largest(values: FloatArray) -> float:
+    """Return the largest magnitude; of a few numbers plain Python finds it faster."""
+    numbers: list[float] = values.tolist()
+    return max(map(abs, numbers))

@@ -1,0 +1,41 @@
+"""Asks the engine's own collision detection whether an arm would hit something."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.world.engine import mujoco
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.world.simulation import Robot, Simulation
+
+
+class Clearance:
+    """Collision checks of one robot with the world as it is in ``state`` when this is made; nothing is stepped."""
+
+    def __init__(self, simulation: Simulation, robot: Robot, spare: str, state: Any) -> None:
+        """Leave contacts with the object ``spare`` out: it is the one to be gripped."""
+        self._model: Any = simulation.model
+        self._data: Any = simulation.scratch
+        self._state: FloatArray = state.qpos.copy()
+        self._robot = robot
+        self._simulation = simulation
+        trees = self._model.body_rootid
+        root = trees[self._model.geom_bodyid[robot.pads[0]]]
+        self._own = trees[self._model.geom_bodyid] == root
+        self._ignored = self._model.geom_bodyid == self._model.body(spare).id
+
+    def depth(self, joints: FloatArray) -> float:
+        """Return how deep (m) the arm with open fingers would be in something else; 0 when it is clear."""
+        self._data.qpos[:] = self._state
+        self._data.qpos[self._robot.joints] = joints
+        self._simulation.open_fingers(self._robot, self._data)
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_collision(self._model, self._data)
+        pairs = self._data.contact.geom
+        hits = self._own[pairs].any(axis=1) & ~self._ignored[pairs].any(axis=1)
+        return max(0.0, -float(np.min(self._data.contact.dist[hits], initial=0.0)))

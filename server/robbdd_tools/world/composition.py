@@ -1,0 +1,224 @@
+"""Composes one simulated world: robots on their pedestals, tables, bins and objects, in one model."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from math import cos, sin
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.catalog.api import ObjectModel, RobotModel, Shape, ShapeKind
+from robbdd_tools.catalog.objects.table import HEIGHT
+from robbdd_tools.world.belts import add_belt
+from robbdd_tools.world.engine import TIMESTEP, mujoco
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.friction import pair_pads, rank_by_friction
+from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
+from robbdd_tools.world.robot_files import prepared_robot
+from robbdd_tools.world.scene import Cast, cast_scene
+from robbdd_tools.world.staging import Staging
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import SceneInstance
+    from robbdd_tools.protocol.specs import SceneSpec
+
+FLOOR = TABLE_TOP - HEIGHT
+"""Height of the floor, m, world frame."""
+THINGS = 1
+"""Collision group (bit) of objects; the n-th robot has the bit ``2 << n``. A robot does not hit itself."""
+TORSION, ROLLING = 0.005, 0.0005
+"""Torsional and rolling friction of objects, m; without the latter a ball never comes to rest."""
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A compiled scene.
+
+    ``model`` is the engine's; ``bases`` are the poses of the robots' bases, ``poses`` those of the objects before
+    they settle. ``seed`` is the one that decided everything random in it; ``resampled`` counts the random places that
+    were drawn again because they overlapped or were out of reach.
+    """
+
+    model: Any
+    cast: Cast
+    bases: Mapping[str, Pose]
+    poses: Mapping[str, Pose]
+    seed: int
+    resampled: int
+
+
+def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance: SceneInstance | None = None) -> World:
+    """Build the world of a scene; everything random in it follows from ``seed``, or from that of its configuration.
+
+    ``actor`` is the agent that objects are laid out for, by default the first; ``instance`` says what elements are
+    and where. Raises ``SceneError`` when an element has no model, a place does not exist or there is no room.
+    """
+    staging = None if instance is None else Staging(instance, _seed_of(scene, seed))
+    cast = cast_scene(scene, staging)
+    bases = mounts(cast)
+    if actor is not None and actor not in bases:
+        raise SceneError(f"the scene has no agent '{actor}'")
+    base = bases[actor] if actor is not None else next(iter(bases.values()), Pose((0.0, 0.0, TABLE_TOP)))
+    seed = seed if cast.seed is None else cast.seed
+    arranged = arrange(scene, cast, base, np.random.default_rng(seed))
+    model = _compile(cast, bases, arranged.poses)
+    return World(model, cast, bases, arranged.poses, seed, arranged.resampled)
+
+
+def _seed_of(scene: SceneSpec, seed: int) -> int:
+    """Return the seed that the scene is configured with, if any."""
+    written = next((config.value for config in scene.config if config.name == "seed"), "")
+    return int(written) if written.isdecimal() else seed
+
+
+def mjcf_path(robot: RobotModel) -> Path:
+    """Return the robot's model file; raises ``SceneError`` when it is missing."""
+    from robbdd_tools.catalog import robots
+
+    own = Path(robots.__path__[0]) / robot.mjcf
+    path = own if own.is_file() else Path(robot.mjcf)
+    if not path.is_file():
+        raise SceneError(f"the model file '{robot.mjcf}' of robot '{robot.name}' is missing")
+    return path
+
+
+def load_robot(robot: RobotModel) -> Any:
+    """Return the engine's editable description of a robot; raises ``SceneError`` when its file is broken."""
+    prepared = prepared_robot(robot.mjcf)
+    if prepared is not None:
+        return prepared.copy()
+    try:
+        return _read(str(mjcf_path(robot))).copy()
+    except ValueError as error:
+        raise SceneError(f"the model file of robot '{robot.name}' cannot be read: {error}") from error
+
+
+@cache
+def _read(path: str) -> Any:
+    return mujoco.MjSpec.from_file(path)
+
+
+def _compile(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -> Any:
+    spec = mujoco.MjSpec()
+    _set_options(spec)
+    _add_room(spec)
+    for number, scenery in enumerate(() if cast.staging is None else cast.staging.scenery):
+        _add_scenery(spec, scenery, f"scenery{number}/", len(bases))
+    for name, model in cast.objects.items():
+        _add_object(spec, name, model, poses[name], len(bases))
+    for index, (name, robot) in enumerate(cast.agents.items()):
+        _add_robot(spec, name, robot, bases[name], index, len(bases))
+    pads = [f"{name}/{pad}" for name, robot in cast.agents.items() for pad in robot.pads]
+    loose = [
+        _geom_name(name, i) for name, model in cast.objects.items() if model.free for i in range(len(model.shapes))
+    ]
+    pair_pads(spec, pads, loose)
+    rank_by_friction(spec, pads)
+    try:
+        with warnings.catch_warnings():
+            # The options of the world are kept, whatever a robot's file says of its own.
+            warnings.simplefilter("ignore")
+            return spec.compile()
+    except ValueError as error:
+        raise SceneError(f"the scene does not compile: {error}") from error
+
+
+def _set_options(spec: Any) -> None:
+    option = spec.option
+    option.timestep = TIMESTEP
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.solver = mujoco.mjtSolver.mjSOL_NEWTON
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    option.impratio = 10.0
+    # A state that is not a number must be seen, not silently replaced by the initial one.
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+
+
+def _add_room(spec: Any) -> None:
+    plane = mujoco.mjtGeom.mjGEOM_PLANE
+    floor = spec.worldbody.add_geom(name="floor", type=plane, size=[0, 0, 0.05], pos=[0, 0, FLOOR])
+    floor.rgba = [0.62, 0.64, 0.66, 1.0]
+    spec.worldbody.add_light(name="lamp", pos=[0.4, -0.6, 2.5], dir=[0.0, 0.2, -1.0])
+    spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
+    spec.visual.headlight.diffuse = [0.45, 0.45, 0.45]
+
+
+def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: int) -> None:
+    turn = list(pose.rotation) or [cos(pose.yaw / 2), 0.0, 0.0, sin(pose.yaw / 2)]
+    body = spec.worldbody.add_body(name=name, pos=list(pose.position), quat=turn)
+    if model.free:
+        body.add_freejoint()
+    volumes = [_volume(shape) for shape in model.shapes]
+    for index, (shape, volume) in enumerate(zip(model.shapes, volumes, strict=True)):
+        carrier = body if shape.surface is None else add_belt(spec, body, f"{name}/belt{index}", shape.surface)
+        geom = carrier.add_geom(name=_geom_name(name, index), type=_geom_type(shape.kind), size=list(shape.size))
+        geom.pos = list(shape.position)
+        geom.mass = model.mass * volume / sum(volumes)
+        geom.friction = [model.friction, TORSION, ROLLING]
+        geom.condim = 4 if shape.kind is ShapeKind.BOX else 6
+        geom.rgba = list(model.color)
+        geom.contype = THINGS
+        geom.conaffinity = THINGS | sum(2 << index for index in range(robots))
+
+
+def _add_scenery(spec: Any, scenery: Any, prefix: str, robots: int) -> None:
+    """Add what a model of the whole scene has beside the elements."""
+    child = scenery.copy()
+    for geom in child.geoms:
+        if geom.contype or geom.conaffinity:
+            geom.contype = THINGS
+            geom.conaffinity = THINGS | sum(2 << index for index in range(robots))
+    spec.attach(child, prefix=prefix, frame=spec.worldbody.add_frame())
+
+
+def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, count: int) -> None:
+    child = load_robot(robot)
+    own = 2 << index
+    for geom in child.geoms:
+        if geom.contype or geom.conaffinity:
+            geom.contype = own
+            geom.conaffinity = THINGS | sum(2 << other for other in range(count) if other != index)
+    for servo in child.actuators:
+        if servo.target in robot.joints:
+            # What controls it is the speed of the target: one that jumps with every tick would shake the arm.
+            servo.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
+            servo.ctrllimited = False
+    turn = [cos(base.yaw / 2), 0.0, 0.0, sin(base.yaw / 2)]
+    frame = spec.worldbody.add_frame(pos=list(base.position), quat=turn)
+    spec.attach(child, prefix=f"{name}/", frame=frame)
+    half = (base.position[2] - FLOOR) / 2
+    x, y, z = base.position
+    column = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[0.1, half, 0.0], pos=[x, y, z - half])
+    column.contype, column.conaffinity = 0, THINGS
+    column.rgba = [0.45, 0.47, 0.50, 1.0]
+
+
+def _geom_name(thing: str, index: int) -> str:
+    return f"{thing}/shape{index}"
+
+
+def _geom_type(kind: ShapeKind) -> Any:
+    kinds = mujoco.mjtGeom
+    return {
+        ShapeKind.BOX: kinds.mjGEOM_BOX,
+        ShapeKind.SPHERE: kinds.mjGEOM_SPHERE,
+        ShapeKind.CYLINDER: kinds.mjGEOM_CYLINDER,
+    }[kind]
+
+
+def _volume(shape: Shape) -> float:
+    a, b, c = shape.size
+    match shape.kind:
+        case ShapeKind.BOX:
+            return 8 * a * b * c
+        case ShapeKind.SPHERE:
+            return 4 / 3 * np.pi * a**3
+        case ShapeKind.CYLINDER:
+            return 2 * np.pi * a**2 * b

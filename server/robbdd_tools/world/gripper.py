@@ -1,0 +1,129 @@
+"""The kinds of grippers behind one interface: how each can grasp a thing, take hold of it and let go."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Protocol
+
+from robbdd_tools.catalog.api import GripperKind
+from robbdd_tools.world.engine import TICK
+from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.grasp import Grasp, finger_grasps, suction_grasps
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray, ObjectModel, RobotModel
+    from robbdd_tools.world.motion import ToolPose
+
+CLOSING = 0.05
+"""Speed of one finger, m/s."""
+PATIENCE = 60
+"""Ticks that the fingers may take beyond their way before the object counts as missed."""
+STANDOFF, PRESS = 0.015, 0.010
+"""Where a cup starts to descend slowly above the object, and how far below its top it gives up, m."""
+DESCENT = 0.05
+"""Speed of a cup that is about to touch, m/s."""
+
+Step = Iterator[None]
+"""One control tick per item: the controls are set, the world may be stepped."""
+
+
+class Hand(Protocol):
+    """What a gripper may ask of the controller that moves it. ``control`` is the value of its actuator."""
+
+    control: float
+
+    def move(self, goal: ToolPose, speed: float | None = None, until: Callable[[], bool] | None = None) -> Step:
+        """Move the tool, no faster than ``speed`` (m/s), until something is the case; raises ``BehaviourError``."""
+        ...
+
+    def wait(self, ticks: int) -> Step:
+        """Stay in place."""
+        ...
+
+    def feels(self, name: str) -> bool:
+        """Whether the gripping faces hold an object."""
+        ...
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        ...
+
+
+class Gripper(ABC):
+    """How one kind of gripper works; it keeps no state."""
+
+    def __init__(self, robot: RobotModel) -> None:
+        self._robot = robot
+        self._firm = max(1, round(robot.grip_time / TICK))
+
+    @abstractmethod
+    def grasps(self, name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray) -> list[Grasp]:
+        """Return the grasps of an object at a pose; raises ``BehaviourError`` when it does not fit."""
+
+    @abstractmethod
+    def take(self, hand: Hand, at: ToolPose, name: str) -> Step:
+        """Move down to a grasp and take hold; raises ``BehaviourError`` when that fails."""
+
+    @abstractmethod
+    def release(self, hand: Hand) -> Step:
+        """Let go of everything."""
+
+
+class Fingers(Gripper):
+    """Two fingers that close on an object and hold it by friction."""
+
+    def grasps(self, name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray) -> list[Grasp]:
+        """Return the grasps across the object's sides that are narrow enough."""
+        return finger_grasps(name, model, position, rotation, self._robot.stroke)
+
+    def take(self, hand: Hand, at: ToolPose, name: str) -> Step:
+        """Reach around the object and close until both fingers press on it."""
+        yield from hand.move(at, self._robot.approach_speed)
+        held = 0
+        closed = self._robot.gripper_closed
+        for _ in range(int((hand.control - closed) / (CLOSING * TICK)) + PATIENCE):
+            hand.control = max(closed, hand.control - CLOSING * TICK)
+            yield from hand.wait(1)
+            held = held + 1 if hand.feels(name) else 0
+            if held == self._firm:
+                hand.control = closed
+                yield from hand.wait(self._firm)
+                return
+        raise BehaviourError(f"gripper closed beside {name} at {hand.time:.2f} s")
+
+    def release(self, hand: Hand) -> Step:
+        """Open the fingers at their speed."""
+        while hand.control < self._robot.gripper_open:
+            hand.control = min(self._robot.gripper_open, hand.control + CLOSING * TICK)
+            yield from hand.wait(1)
+
+
+class Cup(Gripper):
+    """A suction cup: it must touch the object before it can hold it."""
+
+    def grasps(self, name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray) -> list[Grasp]:
+        """Return the grasps on the object's top."""
+        return suction_grasps(name, model, position, rotation, self._robot.stroke)
+
+    def take(self, hand: Hand, at: ToolPose, name: str) -> Step:
+        """Descend slowly with the vacuum on until the cup touches the object."""
+        yield from hand.move(replace(at, height=at.height + STANDOFF), self._robot.approach_speed)
+        hand.control = self._robot.gripper_closed
+        lowest = replace(at, height=at.height - PRESS)
+        yield from hand.move(lowest, min(DESCENT, self._robot.approach_speed or DESCENT), lambda: hand.feels(name))
+        yield from hand.wait(self._firm)
+        if not hand.feels(name):
+            raise BehaviourError(f"suction cup found no hold on {name} at {hand.time:.2f} s")
+
+    def release(self, hand: Hand) -> Step:
+        """Switch the vacuum off."""
+        hand.control = self._robot.gripper_open
+        yield from hand.wait(1)
+
+
+def gripper_of(robot: RobotModel) -> Gripper:
+    """Return how a robot's gripper works."""
+    return {GripperKind.PARALLEL: Fingers, GripperKind.SUCTION: Cup}[robot.gripper](robot)

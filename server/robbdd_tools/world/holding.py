@@ -1,0 +1,93 @@
+"""What each agent's gripper holds, told from contacts alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import cos, radians
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.catalog.api import GripperKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.world.simulation import Robot
+
+ASKEW = cos(radians(20.0))
+"""Cosine of the largest angle between a cup's axis and what it holds at which its lip still seals."""
+
+Contacts = Mapping[int, int]
+"""Column of a loose object (-1 for anything else) → number of a contact with it."""
+
+
+class Grips:
+    """Finds grips in the contacts of a simulation.
+
+    Fingers hold what all their pads touch; a cup what it touches with its face while the vacuum is on.
+    ``held`` maps an agent to an array with 1 in the columns of what it holds; ``leaking`` are the agents whose cup
+    touches something but does not seal on it.
+    """
+
+    def __init__(self, model: Any, robots: Mapping[str, Robot], columns: Mapping[str, int], loose: list[str]) -> None:
+        self._robots = robots
+        self._owner = _owners(model, columns, loose)
+        self._pads = {pad for robot in robots.values() for pad in robot.pads}
+        self._touched = False
+        self.held: dict[str, FloatArray] = {name: np.zeros(len(columns)) for name in robots}
+        self.leaking: set[str] = set()
+
+    def find(self, data: Any) -> None:
+        """Bring ``held`` and ``leaking`` up to date (contacts are few: plain sets are the fastest)."""
+        touching = self._touching(data) if data.ncon else {}
+        if not touching and not self._touched:
+            return
+        self._touched = bool(touching)
+        self.leaking.clear()
+        for name, robot in self._robots.items():
+            grip = self.held[name]
+            grip[:] = 0.0
+            for column in self._held(robot, data, touching):
+                grip[column] = 1.0
+
+    def _touching(self, data: Any) -> dict[int, dict[int, int]]:
+        """Return what each pad touches; a pad that touches nothing is absent."""
+        touching: dict[int, dict[int, int]] = {}
+        pads, owner = self._pads, self._owner
+        for contact, (first, second) in enumerate(data.contact.geom.tolist()):
+            if first in pads:
+                touching.setdefault(first, {}).setdefault(owner.get(second, -1), contact)
+            elif second in pads:
+                touching.setdefault(second, {}).setdefault(owner.get(first, -1), contact)
+        return touching
+
+    def _held(self, robot: Robot, data: Any, touching: Mapping[int, Contacts]) -> set[int]:
+        """Return the columns of what a robot holds."""
+        if any(pad not in touching for pad in robot.pads):
+            return set()
+        first, *others = (touching[pad] for pad in robot.pads)
+        columns = set(first) - {-1}
+        for other in others:
+            columns &= other.keys()
+        if robot.model.gripper is GripperKind.SUCTION:
+            return self._sucked(robot, data, {column: first[column] for column in columns})
+        return columns
+
+    def _sucked(self, robot: Robot, data: Any, contacts: Contacts) -> set[int]:
+        """Return what a cup holds among what it touches."""
+        axis = data.site_xmat[robot.tool].reshape(3, 3)[:, 2]
+        frames = data.contact.frame
+        sealed = {column for column, contact in contacts.items() if abs(float(frames[contact, :3] @ axis)) >= ASKEW}
+        if contacts and not sealed:
+            self.leaking.add(robot.name)
+        return sealed if data.ctrl[robot.gripper] != robot.model.gripper_open else set()
+
+
+def _owners(model: Any, columns: Mapping[str, int], loose: list[str]) -> dict[int, int]:
+    """Map each geom of a loose object to the object's column."""
+    owner: dict[int, int] = {}
+    for name in loose:
+        body = model.body(name)
+        first = int(body.geomadr[0])
+        owner |= dict.fromkeys(range(first, first + int(body.geomnum[0])), columns[name])
+    return owner

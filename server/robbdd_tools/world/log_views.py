@@ -1,0 +1,123 @@
+"""What log viewers show of an execution: frames that move, the shapes in them, joints, events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.world.drawn_shapes import DIGITS, color, geometry, shown_geoms
+from robbdd_tools.world.engine import mujoco
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.trace import Trace
+    from robbdd_tools.protocol.messages import ClauseJudged
+    from robbdd_tools.protocol.specs import ScenarioSpec
+    from robbdd_tools.traces.mcap_file import View
+    from robbdd_tools.world.simulation import Simulation
+
+EVERY = 4
+"""Samples between two pictures: about 16 per second are enough to look at; the exact trace has all of them."""
+WORLD = "world"
+
+
+def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
+    """Yield the views of an execution topic by topic; each is stamped with simulated time."""
+    for stamp in trace.events:
+        yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
+    model = simulation.model
+    bodies = [body for body in range(model.nbody) if any(shown_geoms(model, body))]
+    names = {body: str(model.body(body).name) or WORLD for body in bodies}
+    names = {body: f"{WORLD}/solid" if name == WORLD else name for body, name in names.items()}
+    yield 0.0, "/geometry", geometry(model, names, simulation.world.cast.regions)
+    solids = {body: shapes for body in bodies if (shapes := _shapes(model, body))}
+    yield 0.0, "/scene", {"deletions": [], "entities": [_entity(names[body], solids[body]) for body in solids]}
+    scratch = mujoco.MjData(model)
+    states = simulation.recorder.states
+    moving = [body for body in bodies if model.body_weldid[body] != 0]
+    for row in range(0, len(states), EVERY):
+        time = float(trace.times[row])
+        scratch.qpos[:] = states[row]
+        mujoco.mj_kinematics(model, scratch)
+        shown = bodies if row == 0 else moving
+        places, turns = scratch.xpos[shown].round(DIGITS).tolist(), scratch.xquat[shown].round(DIGITS).tolist()
+        yield time, "/tf", {"transforms": _frames(time, [names[body] for body in shown], places, turns)}
+        if simulation.robots:
+            yield time, "/joints", _joints(simulation, states[row])
+
+
+def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:
+    """Yield the verdicts, each at its instant, or at the trace's end (s) where it has none."""
+    clauses = {clause.line: clause for clause in spec.clauses}
+    for one in judged:
+        clause = asdict(clauses[one.line])
+        del clause["line"]
+        details = {"verdict": one.verdict, "robustness": one.robustness, "unit": one.unit, "reason": one.reason}
+        yield (end if one.at is None else one.at), "/verdicts", {**clause, **details}
+
+
+def _joints(simulation: Simulation, state: FloatArray) -> dict[str, dict[str, float]]:
+    return {
+        name: dict(zip(robot.model.joints, state[robot.joints].round(DIGITS).tolist(), strict=True))
+        for name, robot in simulation.robots.items()
+    }
+
+
+def _frames(
+    time: float, names: Sequence[str], places: Sequence[Sequence[float]], turns: Sequence[Sequence[float]]
+) -> list[dict[str, Any]]:
+    stamp = _stamp(time)
+    return [
+        {
+            "timestamp": stamp,
+            "parent_frame_id": WORLD,
+            "child_frame_id": name,
+            "translation": {"x": place[0], "y": place[1], "z": place[2]},
+            "rotation": {"x": turn[1], "y": turn[2], "z": turn[3], "w": turn[0]},
+        }
+        for name, place, turn in zip(names, places, turns, strict=True)
+    ]
+
+
+def _entity(name: str, shapes: dict[str, list[Any]]) -> dict[str, Any]:
+    forever = {"sec": 0, "nsec": 0}
+    nothing: dict[str, list[Any]] = {
+        kind: []
+        for kind in ("metadata", "arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "texts", "models")
+    }
+    head = {"timestamp": _stamp(0.0), "frame_id": name, "id": name, "lifetime": forever, "frame_locked": True}
+    return {**head, **nothing, **shapes}
+
+
+def _shapes(model: Any, body: int) -> dict[str, list[Any]]:
+    """Return the boxes, balls and cylinders of a body, by the names that viewers have for them; meshes are left out."""
+    found: dict[str, list[Any]] = {}
+    for geom in shown_geoms(model, body):
+        half = model.geom_size[geom].tolist()
+        match int(model.geom_type[geom]):
+            case mujoco.mjtGeom.mjGEOM_BOX:
+                kind, size = "cubes", [2 * side for side in half]
+            case mujoco.mjtGeom.mjGEOM_SPHERE:
+                kind, size = "spheres", [2 * half[0]] * 3
+            case mujoco.mjtGeom.mjGEOM_CYLINDER | mujoco.mjtGeom.mjGEOM_CAPSULE:
+                kind, size = "cylinders", [2 * half[0], 2 * half[0], 2 * half[1]]
+            case _:
+                continue
+        found.setdefault(kind, []).append(_solid(model, geom, size))
+    return found
+
+
+def _solid(model: Any, geom: int, size: list[float]) -> dict[str, Any]:
+    place, turn = model.geom_pos[geom].tolist(), model.geom_quat[geom].tolist()
+    pose = {
+        "position": dict(zip("xyz", place, strict=True)),
+        "orientation": dict(zip("wxyz", turn, strict=True)),
+    }
+    shade = dict(zip("rgba", color(model, geom), strict=True))
+    return {"pose": pose, "size": dict(zip("xyz", size, strict=True)), "color": shade}
+
+
+def _stamp(time: float) -> dict[str, int]:
+    nanoseconds = round(time * 1e9)
+    return {"sec": nanoseconds // 10**9, "nsec": nanoseconds % 10**9}

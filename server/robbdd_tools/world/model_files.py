@@ -1,0 +1,222 @@
+"""Model files that an executable scene names: found, read, and turned into what a simulated world is made of."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.base.interpreter import started_in
+from robbdd_tools.base.model_includes import unusable
+from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
+from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.extent import bounds_of
+from robbdd_tools.world.frames import at
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robbdd_tools.catalog.api import FloatArray, Vector
+    from robbdd_tools.catalog.executable import ModelSource
+
+SPACE = 0.15
+"""Height (m) of the workspace above an object whose file has no site 'workspace'."""
+SITE = "workspace"
+ALIGNED = 1e-6
+_KINDS = {
+    int(mujoco.mjtGeom.mjGEOM_BOX): ShapeKind.BOX,
+    int(mujoco.mjtGeom.mjGEOM_SPHERE): ShapeKind.SPHERE,
+    int(mujoco.mjtGeom.mjGEOM_CYLINDER): ShapeKind.CYLINDER,
+}
+
+
+def usable(models: Sequence[ModelSource], element: str) -> ModelSource | None:
+    """Return the model of an element that can be simulated, ``None`` without any; raises ``SceneError`` for USD."""
+    found = next((model for model in models if model.format != "usd"), None)
+    if found is None and models:
+        message = f"'{element}' has a USD model only, which this simulator cannot load: name an MJCF or URDF model too"
+        raise SceneError(at(models[0].origin) + message)
+    return found
+
+
+def load(source: ModelSource) -> Any:
+    """Return the engine's editable description of a model; raises ``SceneError``."""
+    if source.kind == "python":
+        return _from_code(source)
+    path = _path(source)
+    if not path.exists():
+        raise SceneError(f"{at(source.origin)}there is no model file {path}")
+    problem = unusable(path)
+    if problem is not None:
+        raise SceneError(f"{at(source.origin)}the model file {path} cannot be used: {problem.reason}")
+    try:
+        spec = _read(str(path)).copy()
+    except (ValueError, OSError) as error:
+        words = " ".join(str(error).split())  # the engine's come in several lines
+        raise SceneError(f"{at(source.origin)}the model file {path} cannot be read: {words}") from error
+    # Links that are fixed to others keep their names: they may be the tool, or what a body is mapped to.
+    spec.compiler.fusestatic = False
+    return spec
+
+
+@cache
+def _read(path: str) -> Any:
+    return mujoco.MjSpec.from_file(path)
+
+
+def _read_made(path: Path) -> Any:
+    problem = unusable(path)
+    if problem is not None:
+        raise ValueError(problem.reason)
+    return mujoco.MjSpec.from_file(str(path))
+
+
+def _path(source: ModelSource) -> Path:
+    path = Path(source.name).expanduser()
+    if source.kind == "ros":
+        prefixes = [Path(entry) for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
+        shares = [prefix / "share" / source.package for prefix in prefixes]
+        found = next((share / path for share in shares if share.is_dir()), None)
+        if found is None:
+            where = "AMENT_PREFIX_PATH is not set" if not prefixes else "it is not in AMENT_PREFIX_PATH"
+            raise SceneError(f"{at(source.origin)}the ROS package '{source.package}' cannot be found: {where}")
+        return found
+    return (started_in() if source.origin is None else Path(source.origin.file).parent) / path
+
+
+def _from_code(source: ModelSource) -> Any:
+    """Call the code, which returns MJCF text, the path of a file, or the engine's own description."""
+    model = "" if source.origin is None else source.origin.file
+    try:
+        make = load_attribute(source.name, model)
+        made = called(source.name, make)
+        try:
+            if isinstance(made, str) and made.lstrip().startswith("<"):
+                return mujoco.MjSpec.from_string(made)
+            return _read_made(Path(made)) if isinstance(made, str | Path) else made.copy()
+        except (ValueError, AttributeError) as error:
+            raise refused(source.name, f"{source.name} made no model: {error}", definition_of(make)) from error
+    except UserCodeError as error:
+        raise SceneError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
+
+
+@dataclass(frozen=True, slots=True)
+class FromFile:
+    """An object as its file has it; ``position`` (m) and ``rotation`` (quaternion) are its pose in the file."""
+
+    model: ObjectModel
+    position: FloatArray
+    rotation: FloatArray
+
+
+def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -> FromFile:
+    """Return the object that a body of a file is, the first one without a name; raises ``SceneError``.
+
+    It consists of the collision shapes of the body and of what is fixed to it: boxes, spheres and cylinders in line
+    with the body as they are, any other by the box around it. It can move if the file gives it a free joint or, in
+    URDF, a mass. If it ``carries`` a workspace or is fixed, that is the box site 'workspace', else the space above it.
+    """
+    model = compiled(spec, source)
+    body = _body(model, source, body_name)
+    data: Any = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    own = [index for index in range(model.nbody) if _belongs(model, index, body)]
+    geoms = [
+        g
+        for g in range(model.ngeom)
+        if model.geom_bodyid[g] in own and model.geom_contype[g] | model.geom_conaffinity[g]
+    ]
+    if not geoms:
+        raise SceneError(f"{at(source.origin)}the body '{model.body(body).name}' has no shape that can be touched")
+    shapes = tuple(_shape(model, data, geom, body) for geom in geoms)
+    low, high = bounds_of(shapes)
+    joint = int(model.body_jntadr[body])
+    free = joint >= 0 and int(model.jnt_type[joint]) == int(mujoco.mjtJoint.mjJNT_FREE)
+    if source.format == "urdf":
+        free = float(model.body_mass[body]) > 0
+    region = _workspace(model, data, own, body, low, high) if carries or not free else None
+    chosen = ObjectModel(
+        name=source.iri,
+        prefixes=(),
+        shapes=shapes,
+        mass=max(float(model.body_subtreemass[body]), 1e-3),
+        friction=float(model.geom_friction[geoms[0], 0]),
+        free=free,
+        graspable=free and not carries,
+        rest_height=-float(low[2]),
+        color=_color(model.geom_rgba[geoms[0]]),
+        doc=f"from {source.name}",
+        region=region,
+    )
+    return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy())
+
+
+def compiled(spec: Any, source: ModelSource) -> Any:
+    """Return the engine's model of a description, which is left as it is; raises ``SceneError``."""
+    try:
+        return spec.copy().compile()
+    except ValueError as error:
+        raise SceneError(f"{at(source.origin)}the model {source.name} does not compile: {error}") from error
+
+
+def _body(model: Any, source: ModelSource, name: str) -> int:
+    names = [str(model.body(index).name) for index in range(1, model.nbody)]
+    if not names:
+        raise SceneError(f"{at(source.origin)}the model {source.name} has no body")
+    if name and name not in names:
+        raise SceneError(f"{at(source.origin)}{source.name} has no body '{name}'; it has {', '.join(names)}")
+    return names.index(name) + 1 if name else 1
+
+
+def _belongs(model: Any, index: int, body: int) -> bool:
+    while index > 0 and index != body:
+        index = int(model.body_parentid[index])
+    return index == body
+
+
+def _shape(model: Any, data: Any, geom: int, body: int) -> Shape:
+    """Return a collision shape in the frame of a body."""
+    frame = data.xmat[body].reshape(3, 3)
+    mujoco.mj_kinematics(model, data)
+    turn = frame.T @ data.geom_xmat[geom].reshape(3, 3)
+    center = frame.T @ (data.geom_xpos[geom] - data.xpos[body])
+    kind = _KINDS.get(int(model.geom_type[geom]))
+    size = model.geom_size[geom]
+    upright = np.abs(turn - np.eye(3)).max() < ALIGNED
+    if kind is ShapeKind.SPHERE:
+        return Shape(kind, (float(size[0]), 0.0, 0.0), _vector(center))
+    if kind is ShapeKind.CYLINDER and (upright or abs(turn[2, 2]) > 1 - ALIGNED):
+        return Shape(kind, (float(size[0]), float(size[1]), 0.0), _vector(center))
+    if kind is ShapeKind.BOX and upright:
+        return Shape(kind, _vector(size), _vector(center))
+    box = model.geom_aabb[geom]
+    half = np.abs(turn) @ box[3:]
+    return Shape(ShapeKind.BOX, _vector(half), _vector(center + turn @ box[:3]))
+
+
+def _workspace(model: Any, data: Any, own: list[int], body: int, low: FloatArray, high: FloatArray) -> Region:
+    for site in range(model.nsite):
+        if str(model.site(site).name).endswith(SITE) and model.site_bodyid[site] in own:
+            frame = data.xmat[body].reshape(3, 3)
+            center = frame.T @ (data.site_xpos[site] - data.xpos[body])
+            return Region(_vector(center), _vector(model.site_size[site]))
+    middle, half = (low + high) / 2, (high - low) / 2
+    top = float(high[2])
+    center = (float(middle[0]), float(middle[1]), top + SPACE / 2)
+    return Region(center, (float(half[0]), float(half[1]), SPACE / 2))
+
+
+def _vector(numbers: Any) -> Vector:
+    x, y, z = (float(number) for number in numbers)
+    return (x, y, z)
+
+
+def _color(numbers: Any) -> tuple[float, float, float, float]:
+    red, green, blue, opacity = (float(number) for number in numbers)
+    return (red, green, blue, opacity)

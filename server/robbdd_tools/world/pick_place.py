@@ -1,0 +1,224 @@
+"""The controller that picks an object from above and places it at a workspace.
+
+It knows the object's pose when it begins and follows its plan from there, feeling only what its gripper holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
+from robbdd_tools.world.clearance import Clearance
+from robbdd_tools.world.engine import TICK
+from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.gripper import Step, gripper_of
+from robbdd_tools.world.motion import ToolPose, plan, present_pose, tool_pose
+from robbdd_tools.world.put_down import Target, has_room, targets
+from robbdd_tools.world.reaching import Approach, approaches, at_travel, joints_at
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.world.grasp import Grasp
+    from robbdd_tools.world.simulation import Simulation
+
+SLIPPED = 3
+"""Ticks in a row without grip that count as a loss."""
+STILL, STILL_TURN, STILL_FOR = 2e-3, 0.02, 0.3
+"""A thing on a belt is at rest when it has stayed within this distance (m) and angle (rad) for this time (s): the
+slowest belt moves it by 3 mm; one that slips below it makes it tremble by some tenths of a millimetre and milliradians.
+"""
+PATIENCE = 30.0
+"""How long the arm waits for a thing to come to rest, s."""
+RISE = 1e-3
+"""Difference in height (m) from which on the tool first rises and then travels: on a slant it would hit the place."""
+
+
+class PickPlace:
+    """Drives one robot of a simulation. Every generator sets the controls for one tick before each item.
+
+    ``emit`` is called with the name of each event when it occurs, ``note_choice`` with the workspace that is chosen
+    among several.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        agent: str,
+        emit: Callable[[str], None],
+        note_choice: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        self._simulation = simulation
+        self._robot = simulation.robots[agent]
+        self._arm = arm_of(self._robot.model)
+        self._limits: FloatArray = np.array(self._robot.model.velocity_limits)
+        self._emit = emit
+        self._note_choice = note_choice
+        self._joints: FloatArray = self._arm.home.copy()
+        self._gripper = gripper_of(self._robot.model)
+        self.control = self._robot.model.gripper_open
+        self._held: str | None = None
+        self._grasp: Grasp | None = None
+
+    def pick(self, name: str) -> Step:
+        """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``.
+
+        Where a belt runs, it first waits until the object has come to rest.
+        """
+        yield from self._until_at_rest(name)
+        self._emit("pick-start")
+        best = self._choose_grasp(name)
+        yield from self._gripper.release(self)
+        yield from self.move(best.above)
+        yield from self._gripper.take(self, best.at, name)
+        self._held, self._grasp = name, best.grasp
+        yield from self.move(self._at_travel(best.at))
+        self._emit("pick-end")
+
+    def place(self, name: str, workspaces: Sequence[str]) -> Step:
+        """Carry the object that is held to a workspace and release it; raises ``BehaviourError``.
+
+        Of several workspaces, the first one with room for the object is chosen, else the first one that can be reached.
+        """
+        if self._held != name or self._grasp is None:
+            raise BehaviourError(f"{self._robot.name} does not hold {name}")
+        self._emit("place-start")
+        down = self._choose_place(name, workspaces, self._grasp)
+        over, here = self._at_travel(down), present_pose(self._arm, self._joints)
+        if over.height > here.height + RISE:
+            yield from self.move(replace(here, height=over.height))
+        yield from self.move(over)
+        yield from self.move(down, self._robot.model.approach_speed)
+        self._held = None
+        yield from self._gripper.release(self)
+        yield from self.wait(round(self._robot.model.release_time / TICK))
+        yield from self.move(self._at_travel(down))
+        self._emit("place-end")
+
+    def pick_place(self, name: str, workspaces: Sequence[str]) -> Step:
+        """Pick an object and place it at one of some workspaces; raises ``BehaviourError``."""
+        yield from self.pick(name)
+        yield from self.place(name, workspaces)
+
+    def withdraw(self) -> Step:
+        """Open the gripper and leave upwards, after something went wrong."""
+        self._held = None
+        yield from self._gripper.release(self)
+        try:
+            yield from self.move(self._at_travel(present_pose(self._arm, self._joints)))
+        except BehaviourError:
+            return
+
+    def _until_at_rest(self, name: str) -> Step:
+        if not self._simulation.belts or name not in self._simulation.world.cast.objects:
+            return
+        last, since = self._simulation.pose(name), 0
+        for _ in range(round(PATIENCE / TICK)):
+            yield from self.wait(1)
+            here, since = self._simulation.pose(name), since + 1
+            if _has_moved(last, here):
+                last, since = here, 0
+            if since * TICK >= STILL_FOR:
+                return
+        raise BehaviourError(f"{name} has not come to rest within {PATIENCE:g} s")
+
+    def _choose_grasp(self, name: str) -> Approach:
+        """Return the grasp with the most room for the hand."""
+        found = approaches(self._simulation, self._robot, name)
+        best = min(found, key=lambda one: (round(one.depth, 4), abs(one.at.turn)), default=None)
+        if best is None:
+            raise BehaviourError(f"{self._robot.name} cannot reach {name}")
+        return best
+
+    def _choose_place(self, name: str, workspaces: Sequence[str], grasp: Grasp) -> ToolPose:
+        if len(workspaces) == 1:
+            return self._choose_target(name, workspaces[0], grasp)
+        simulation, robot = self._simulation, self._robot
+        # Sorting is stable: among those with room the order stays as it is.
+        for workspace in sorted(workspaces, key=lambda one: not has_room(simulation, robot, name, one)):
+            try:
+                found = self._choose_target(name, workspace, grasp)
+            except BehaviourError:
+                continue
+            self._note_choice(workspace)
+            return found
+        raise BehaviourError(f"{robot.name} cannot reach a free place at any of {', '.join(workspaces)}")
+
+    def _choose_target(self, name: str, workspace: str, grasp: Grasp) -> ToolPose:
+        """Return the lowest tool pose over the first target that the arm reaches without hitting anything."""
+        simulation, robot = self._simulation, self._robot
+        clearance = Clearance(simulation, robot, name, simulation.data)
+        for target in targets(simulation, robot, name, workspace):
+            pose = self._lower_onto(target, grasp, clearance)
+            if pose is not None:
+                return pose
+        raise BehaviourError(f"{robot.name} cannot reach a free place at {workspace}")
+
+    def _lower_onto(self, target: Target, grasp: Grasp, clearance: Clearance) -> ToolPose | None:
+        robot = self._robot
+        x, y, surface = target.position
+        height = surface + grasp.below + target.gap
+        top = max(robot.model.travel_height, height)
+        closing = target.closing if target.closing is not None else grasp.closing
+        while height <= top:
+            pose = tool_pose(robot.base, np.array([x, y, height]), closing)
+            try:
+                joints = joints_at(self._arm, self._at_travel(pose), pose)
+            except Unreachable:
+                return None
+            if clearance.depth(joints) == 0.0:
+                return pose
+            height += 0.02
+        return None
+
+    def _at_travel(self, pose: ToolPose) -> ToolPose:
+        return at_travel(self._robot, pose)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self._simulation.time
+
+    def feels(self, name: str) -> bool:
+        """Whether the gripping faces hold an object."""
+        return self._simulation.holds(self._robot.name, name)
+
+    def move(self, goal: ToolPose, speed: float | None = None, until: Callable[[], bool] | None = None) -> Step:
+        """Move the tool, no faster than ``speed`` (m/s), until something is the case.
+
+        Raises ``BehaviourError`` when the way leads beyond the joint limits or what is held gets lost.
+        """
+        limit = self._robot.model.tool_speed
+        try:
+            motion = plan(self._arm, self._joints, goal, self._limits, min(limit, speed or limit))
+        except Unreachable as error:
+            where = f"at {self.time:.2f} s, {error}"
+            raise BehaviourError(
+                f"{self._robot.name} cannot follow its path within its joint limits {where}"
+            ) from error
+        missing = 0
+        ahead = motion.joints + self._robot.lead * motion.velocities
+        for joints, target in zip(motion.joints, ahead, strict=True):
+            self._joints = joints
+            self._simulation.command(self._robot, target, self.control)
+            yield
+            if until is not None and until():
+                return
+            missing = 0 if self._held is None or self.feels(self._held) else missing + 1
+            if missing == SLIPPED:
+                raise BehaviourError(f"gripper lost {self._held} at {self.time:.2f} s")
+
+    def wait(self, ticks: int) -> Step:
+        """Stay in place."""
+        for _ in range(ticks):
+            self._simulation.command(self._robot, self._joints, self.control)
+            yield
+
+
+def _has_moved(last: tuple[FloatArray, FloatArray], here: tuple[FloatArray, FloatArray]) -> bool:
+    """Whether a pose (position m, rotation matrix) is further from another than what rests may tremble."""
+    turned = np.arccos(np.clip((np.trace(last[1].T @ here[1]) - 1.0) / 2.0, -1.0, 1.0))
+    return bool(np.linalg.norm(here[0] - last[0]) > STILL or turned > STILL_TURN)

@@ -1,0 +1,152 @@
+"""Takes pictures of a simulated world, with its workspaces drawn in and labelled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.scene import local_name
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from robbdd_tools.catalog.api import FloatArray, Region
+    from robbdd_tools.world.simulation import Simulation
+
+WIDTH, HEIGHT = 1280, 800
+COLORS = ((0.10, 0.55, 0.90), (0.95, 0.55, 0.10), (0.25, 0.70, 0.30), (0.80, 0.25, 0.55), (0.55, 0.45, 0.85))
+OPACITY = 0.20
+THIN = 0.06
+"""Opacity of a workspace that other workspaces lie in, such as a table's."""
+AIM = (-0.05, 0.0, 0.12)
+"""What the camera looks at, m from the middle of the tables' tops."""
+LABEL = 0.012
+"""Radius (m) of the dot that a label is put beside."""
+OVERVIEW = (2.15, 128.0, -36.0)
+"""Distance (m), azimuth and elevation (degrees) from which a whole scene is seen."""
+CLOSE, DOWN = 1.1, -30.0
+"""Distance (m) and elevation (degrees) from which one object is seen."""
+AZIMUTHS = (128.0, 160.0, 96.0, -160.0, 64.0, -128.0, 32.0, -96.0, 0.0, -64.0, -32.0)
+"""Directions (degrees) from which one object may be seen, best first."""
+LONGEST = 90
+"""Bytes of a label that the engine can hold."""
+
+
+class NoPicture(Exception):
+    """Nothing here can render; the message says what was tried."""
+
+
+class Camera:
+    """Renders a simulation: the whole scene from beside the table, or one object from near by.
+
+    ``size`` is width and height in pixels; a ``plain`` picture has no shadows, which takes a tenth of the time.
+    Raises ``NoPicture`` where nothing can render.
+    """
+
+    def __init__(self, simulation: Simulation, size: tuple[int, int] = (WIDTH, HEIGHT), *, plain: bool = False) -> None:
+        self._simulation = simulation
+        model = simulation.model
+        model.vis.global_.offwidth, model.vis.global_.offheight = size
+        model.vis.quality.shadowsize = 2048
+        try:
+            self._renderer: Any = mujoco.Renderer(model, size[1], size[0])
+            if plain:
+                self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
+                self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
+        except Exception as error:  # the back ends fail in ways of their own, import errors included
+            raise NoPicture(f"{type(error).__name__}: {error}") from error
+        self._view: Any = mujoco.MjvCamera()
+
+    def take(self, data: Any, focus: str | None = None) -> NDArray[np.uint8]:
+        """Return the picture of a state as pixels (height, width, 3), of the whole scene or close to one object."""
+        if focus is not None and focus in self._simulation.world.cast.objects:
+            self._look_at(data, focus)
+        else:
+            self._look_around(data)
+        self._renderer.update_scene(data, self._view)
+        scene = self._renderer.scene
+        for index, (name, carrier, region) in enumerate(self._regions()):
+            self._draw(scene, data, carrier, region, COLORS[index % len(COLORS)], local_name(name), index % 2 > 0)
+        pixels: NDArray[np.uint8] = self._renderer.render()
+        return pixels
+
+    def take_state(self, state: Sequence[float] | FloatArray, focus: str | None = None) -> NDArray[np.uint8]:
+        """Return the picture of joint positions that the engine once had, of the whole scene or close to one object."""
+        data = self._simulation.scratch
+        data.qpos[:] = state
+        mujoco.mj_forward(self._simulation.model, data)
+        return self.take(data, focus)
+
+    def close(self) -> None:
+        """Give the graphics context back."""
+        self._renderer.close()
+
+    def _look_around(self, data: Any) -> None:
+        tables = [data.body(name).xpos for name in self._simulation.world.cast.tables]
+        self._view.lookat[:] = np.mean(tables, axis=0) + np.array(AIM)
+        self._view.distance, self._view.azimuth, self._view.elevation = OVERVIEW
+
+    def _look_at(self, data: Any, name: str) -> None:
+        """Choose the first direction in which nothing stands before the object."""
+        target = data.body(name).xpos.copy()
+        self._view.lookat[:] = target
+        self._view.distance, self._view.elevation = CLOSE, DOWN
+        clear = (azimuth for azimuth in AZIMUTHS if self._sees(data, name, target, azimuth))
+        self._view.azimuth = next(clear, AZIMUTHS[0])
+
+    def _sees(self, data: Any, name: str, target: FloatArray, azimuth: float) -> bool:
+        model = self._simulation.model
+        turn, tilt = np.radians(azimuth), np.radians(DOWN)
+        ahead = np.array([np.cos(tilt) * np.cos(turn), np.cos(tilt) * np.sin(turn), np.sin(tilt)])
+        hit = np.full(1, -1, dtype=np.int32)
+        mujoco.mj_ray(model, data, target - CLOSE * ahead, ahead, None, 1, -1, hit)
+        return hit[0] >= 0 and int(model.geom_bodyid[hit[0]]) == int(model.body(name).id)
+
+    def _regions(self) -> Iterator[tuple[str, str, Region]]:
+        for name, boxes in self._simulation.world.cast.regions.items():
+            for carrier, region in boxes:
+                yield name, carrier, region
+
+    def _draw(
+        self,
+        scene: Any,
+        data: Any,
+        carrier: str,
+        region: Region,
+        color: tuple[float, float, float],
+        name: str,
+        odd: bool,
+    ) -> None:
+        body = data.body(carrier)
+        turn: FloatArray = body.xmat.reshape(3, 3)
+        center: FloatArray = body.xpos + turn @ np.array(region.center)
+        half = np.array(region.half)
+        free = self._simulation.world.cast.objects[carrier].free
+        opacity = OPACITY if free else THIN
+        _add(scene, mujoco.mjtGeom.mjGEOM_BOX, half, center, turn, (*color, opacity), "")
+        # The middle of a table is where things lie: its label goes to a corner; boards lie side by side.
+        side = 0.0 if region.walled else -0.8 if odd else 0.8
+        corner = np.array([0.0, side, 1.0]) if free else np.array([-1.0, 1.0, 1.0])
+        above = center + turn @ (corner * half + np.array([0.0, 0.0, 2 * LABEL]))
+        _add(scene, mujoco.mjtGeom.mjGEOM_SPHERE, np.full(3, LABEL), above, turn, (*color, 1.0), name)
+
+
+def _add(
+    scene: Any,
+    kind: Any,
+    size: FloatArray,
+    position: FloatArray,
+    turn: FloatArray,
+    color: tuple[float, float, float, float],
+    label: str,
+) -> None:
+    """Add a shape that is only drawn; when the scene is full, it stays as it is."""
+    if scene.ngeom >= scene.maxgeom:
+        return
+    geom = scene.geoms[scene.ngeom]
+    mujoco.mjv_initGeom(geom, kind, size, position, turn.flatten(), np.array(color, dtype=np.float32))
+    geom.label = label.encode("ascii", "replace")[:LONGEST].decode("ascii")
+    scene.ngeom += 1

@@ -1,0 +1,312 @@
+"""Where the things of a scene stand at the start: tables and bins by the catalog, what can be grasped at random."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import atan2, cos, hypot, pi, sin
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, ShapeKind, Vector
+from robbdd_tools.catalog.settings import NORMAL
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.pose import Pose as Pose
+from robbdd_tools.world.scene import carriers
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from robbdd_tools.catalog.settings import Numbers
+    from robbdd_tools.protocol.specs import SceneSpec
+    from robbdd_tools.world.scene import Cast
+
+TABLE_TOP = 0.10
+"""Height of table tops above the world's origin, m; the paper leaves it open, the world frame is its own."""
+BEARING = 2.6
+"""Largest angle to either side of straight ahead, rad, that an arm is asked to turn to."""
+FINGER_GAP = 0.04
+"""Room for a finger around what lies on a table, m."""
+HAND_GAP = 0.08
+"""Room for a hand beside a bin's wall, m."""
+TOUCHING = 0.002
+"""Room around things where there is no space for more, m."""
+BIN_SKEW = 0.2
+"""How far (rad) things in a bin are turned from its edges: a hand fits into a bin only along its length."""
+BIN_ROOM = 0.03
+"""Half edge (m) of the square in a bin's middle that a hand can work in."""
+TRIES = 400
+SIDES = 4
+"""Sides of a table at which an agent has room."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """The pose of every object's middle, and how often a random place overlapped with something and was drawn again."""
+
+    poses: dict[str, Pose]
+    resampled: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Field:
+    """A rectangle to draw positions from: centre and half edges (m, world frame), height of what lies there (m).
+
+    ``skew`` bounds the rotation (rad), ``gap`` and ``wall_gap`` keep other objects and bins away (m); in a bin
+    there is no ``wall_gap``.
+    """
+
+    center: tuple[float, float]
+    half: tuple[float, float]
+    height: float
+    skew: float
+    gap: float
+    wall_gap: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Disc:
+    x: float
+    y: float
+    radius: float
+
+
+def footprint(model: ObjectModel) -> float:
+    """Return the radius (m) of the upright cylinder about the origin that holds the object."""
+    return max(_reach(model, index) for index in range(len(model.shapes)))
+
+
+def surface(model: ObjectModel) -> float:
+    """Return the height (m) of the surface that an object carries things on above its origin, 0 without any."""
+    return 0.0 if model.region is None else model.region.center[2] - model.region.half[2]
+
+
+def mounts(cast: Cast) -> dict[str, Pose]:
+    """Return where each agent's base stands; raises ``SceneError`` when there is no room for one.
+
+    One that an executable scene does not place stands at the table: the first at its model's mount, the others across
+    the table and at its ends.
+    """
+    placed = {name: pose for name in cast.agents if (pose := cast.base(name)) is not None}
+    table = next(iter(cast.tables))
+    free = list(range(SIDES))
+    poses: dict[str, Pose] = {}
+    for name, robot in cast.agents.items():
+        if name not in placed and not free:
+            others = [other for other in cast.agents if other not in poses]
+            room = f"there is room for {SIDES} agents around '{table}', one at each side"
+            raise SceneError(f"{room}; place {', '.join(others)} in a .scenex")
+        poses[name] = placed[name] if name in placed else _beside(cast.objects[table], robot, free.pop(0))
+    return poses
+
+
+def _beside(table: ObjectModel, robot: RobotModel, side: int) -> Pose:
+    """Return a base at a side of a table: 0 the front, 1 across, 2 and 3 the ends, as far from the edge as in front."""
+    x, y, z = robot.mount
+    # A user's own table has no standard place: its own pose decides where it is, and the front is all that is known.
+    middle = table.places[0][0] if table.places else x
+    half = (0.0, 0.0) if table.region is None else table.region.half[:2]
+    end = half[1] + (middle - half[0] - x)
+    return (
+        Pose((x, y, z)),
+        Pose((2 * middle - x, -y, z), pi),
+        Pose((middle, -end, z), pi / 2),
+        Pose((middle, end, z), -pi / 2),
+    )[side]
+
+
+def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) -> Arrangement:
+    """Lay the objects of a scene out for an agent that acts from ``base``.
+
+    Raises ``SceneError`` when the scene asks for a place that does not exist or for more than there is room for.
+    """
+    poses: dict[str, Pose] = {}
+    # What can be grasped may be told where to lie by a configuration as well, which goes first.
+    fixed = {name: cast.pose(name) for name in cast.objects if name not in cast.ranges}
+    placed = {name: pose for name, pose in fixed.items() if pose is not None}
+    poses |= {name: pose for name, pose in placed.items() if not cast.objects[name].graspable}
+    for name, (x, y, _) in _at_places(cast, tuple(name for name in cast.tables if name not in placed), "the room"):
+        poses[name] = Pose((x, y, TABLE_TOP - surface(cast.objects[name])))
+    for table, names in _stands_on(scene, cast).items():
+        left, ahead, z = poses[table].position
+        top = z + surface(cast.objects[table])
+        for name, (x, y, _) in _at_places(cast, tuple(name for name in names if name not in placed), table):
+            poses[name] = Pose((left + x, ahead + y, top + cast.objects[name].rest_height))
+    bins = [name for name in poses if cast.objects[name].free]
+    taken: list[_Disc] = []
+    resampled = 0
+    for name, model in cast.objects.items():
+        if not model.graspable:
+            continue
+        walls = [(poses[other], cast.objects[other]) for other in bins]
+        if name in placed:
+            pose, rejected = _apart_from(cast, name, placed[name], taken)
+        else:
+            pose, rejected = _draw(name, model, list(_fields(scene, cast, poses, base, name)), base, taken, walls, rng)
+        taken.append(_Disc(pose.position[0], pose.position[1], footprint(model)))
+        poses[name] = pose
+        resampled += rejected
+    return Arrangement(poses, resampled)
+
+
+def _apart_from(cast: Cast, name: str, first: Pose, taken: list[_Disc]) -> tuple[Pose, int]:
+    """Return where the scene has an object, drawn anew while it lies on another one, and how often it was."""
+    radius, pose = footprint(cast.objects[name]), first
+    for attempt in range(1, TRIES):
+        x, y, _ = pose.position
+        if all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + TOUCHING for disc in taken):
+            return pose, attempt - 1
+        again = cast.pose(name, attempt)
+        if again is None or again == pose:
+            return pose, attempt - 1
+        pose = again
+    raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
+
+
+def field_before(
+    base: Pose, table: Pose, model: ObjectModel, area: Numbers = NORMAL
+) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """Return centre and half edges (m) of the part of a table that lies before a robot's base, ``None`` without.
+
+    ``area`` (m) is ahead of the base from, to; to its left from, to.
+    """
+    if model.region is None:
+        return None
+    if abs(base.position[1] - table.position[1]) > model.region.half[1]:
+        return _field_before_end(base, table, model.region, area)
+    side = 1.0 if table.position[0] >= base.position[0] else -1.0
+    (near, far), (low, high) = (sorted(side * edge for edge in edges) for edges in (area[:2], area[2:]))
+    left, ahead, _ = (at + offset for at, offset in zip(table.position, model.region.center, strict=True))
+    x = _overlap(base.position[0] + near, base.position[0] + far, left, model.region.half[0])
+    y = _overlap(base.position[1] + low, base.position[1] + high, ahead, model.region.half[1])
+    if x is None or y is None:
+        return None
+    return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)
+
+
+def _field_before_end(
+    base: Pose, table: Pose, region: Region, area: Numbers
+) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """Return the same for a base beyond the left or right end of a table, ahead of which is along y."""
+    side = 1.0 if table.position[1] >= base.position[1] else -1.0
+    (near, far), (low, high) = sorted(side * edge for edge in area[:2]), sorted(-side * edge for edge in area[2:])
+    y = _overlap(base.position[1] + near, base.position[1] + far, table.position[1], region.half[1])
+    x = _overlap(base.position[0] + low, base.position[0] + high, table.position[0], region.half[0])
+    if x is None or y is None:
+        return None
+    return ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2), ((x[1] - x[0]) / 2, (y[1] - y[0]) / 2)
+
+
+def bearing(base: Pose, x: float, y: float) -> float:
+    """Return the direction (rad, in (-π, π]) of a point as seen from a robot's base, 0 straight ahead."""
+    angle = atan2(y - base.position[1], x - base.position[0]) - base.yaw
+    return atan2(sin(angle), cos(angle))
+
+
+def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple[str, Vector]]:
+    """Yield each object with the first standard place of its kind that nothing stands at."""
+    used: list[tuple[Vector, ObjectModel]] = []
+    for name in names:
+        model = cast.objects[name]
+        if not model.places:
+            raise SceneError(f"'{name}' has no pose: place it in the .scenex, as its model ({model.doc}) has none")
+        free = (place for place in model.places if not any(_overlapping(place, model, *one) for one in used))
+        place = next(free, None)
+        if place is None:
+            room = f"there is room for {len(model.places)} objects of the kind '{model.name}' on {where}"
+            raise SceneError(f"{room}, less where others stand; '{name}' has no place")
+        used.append((place, model))
+        yield name, place
+
+
+def _overlapping(place: Vector, model: ObjectModel, other_place: Vector, other: ObjectModel) -> bool:
+    if model.region is None or other.region is None:
+        return place == other_place
+    reach = (one + two for one, two in zip(model.region.half[:2], other.region.half[:2], strict=True))
+    return all(abs(a - b) < r for a, b, r in zip(place, other_place, reach, strict=False))
+
+
+def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:
+    """Map each table to what stands at a fixed place on it; the first table takes what the scene leaves open."""
+    chosen: dict[str, list[str]] = {table: [] for table in cast.tables}
+    homes: dict[str, str] = {}
+    for outer, inner in scene.contains.items():
+        for table in set(scene.workspaces.get(outer, ())) & set(cast.tables):
+            homes |= {name: table for part in inner for name in carriers(scene, part)}
+    for name, model in cast.objects.items():
+        if model.free and not model.graspable:
+            chosen[homes.get(name, cast.tables[0])].append(name)
+    return {table: tuple(names) for table, names in chosen.items()}
+
+
+def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose, name: str) -> Iterator[_Field]:
+    """The areas for an object, best first; raises ``SceneError`` when there is none."""
+    carrier = cast.tables[0]
+    region = cast.objects[carrier].region
+    if (workspace := scene.places.get(name)) is not None:
+        if workspace not in cast.regions:
+            raise SceneError(f"'{name}' is to be at '{workspace}', but nothing in the scene carries that workspace")
+        carrier, region = cast.regions[workspace][0]
+    model, pose = cast.objects[carrier], poses[carrier]
+    radius = footprint(cast.objects[name])
+    if region is None:
+        raise SceneError(f"'{name}' is to be at '{carrier}', which has no workspace")
+    x, y, z = (at + offset for at, offset in zip(pose.position, region.center, strict=True))
+    bottom = z - region.half[2]
+    if model.free:
+        inner = (region.half[0] - radius, region.half[1] - radius)
+        if region.walled:
+            yield _Field((x, y), (BIN_ROOM, BIN_ROOM), bottom, BIN_SKEW, FINGER_GAP, None)
+        else:
+            yield _Field((x, y), inner, bottom, pi, FINGER_GAP, None)
+        yield _Field((x, y), inner, bottom, pi, TOUCHING, None)
+        return
+    area = field_before(base, pose, model, cast.ranges.get(name, NORMAL))
+    if area is None:
+        raise SceneError(f"no part of '{carrier}', where '{name}' is to be, lies within reach")
+    yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP)
+    yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING)
+
+
+def _draw(
+    name: str,
+    model: ObjectModel,
+    fields: list[_Field],
+    base: Pose,
+    taken: list[_Disc],
+    walls: list[tuple[Pose, ObjectModel]],
+    rng: np.random.Generator,
+) -> tuple[Pose, int]:
+    """Return a pose and how many others were rejected before; raises ``SceneError``."""
+    radius = footprint(model)
+    rejected = 0
+    for field in fields:
+        wall_gap = field.wall_gap
+        for _ in range(TRIES):
+            dx, dy, turn = rng.uniform(-1.0, 1.0, 3)
+            x, y = field.center[0] + dx * field.half[0], field.center[1] + dy * field.half[1]
+            clear = all(hypot(x - disc.x, y - disc.y) >= radius + disc.radius + field.gap for disc in taken)
+            apart = wall_gap is None or all(_apart(x, y, radius + wall_gap, pose, other) for pose, other in walls)
+            if clear and apart and abs(bearing(base, x, y)) <= BEARING:
+                return Pose((x, y, field.height + model.rest_height), turn * field.skew), rejected
+            rejected += 1
+    raise SceneError(f"there is no room left for '{name}' among {len(taken)} other objects")
+
+
+def _apart(x: float, y: float, distance: float, pose: Pose, model: ObjectModel) -> bool:
+    """Whether a point is at least ``distance`` (m) from a bin's walls."""
+    if model.region is None:
+        return True
+    dx = max(abs(x - pose.position[0]) - model.region.half[0], 0.0)
+    dy = max(abs(y - pose.position[1]) - model.region.half[1], 0.0)
+    return hypot(dx, dy) >= distance
+
+
+def _reach(model: ObjectModel, index: int) -> float:
+    shape = model.shapes[index]
+    corner = hypot(shape.size[0], shape.size[1]) if shape.kind is ShapeKind.BOX else shape.size[0]
+    return hypot(shape.position[0], shape.position[1]) + corner
+
+
+def _overlap(low: float, high: float, middle: float, half: float) -> tuple[float, float] | None:
+    start, end = max(low, middle - half), min(high, middle + half)
+    return (start, end) if start < end else None

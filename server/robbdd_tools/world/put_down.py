@@ -1,0 +1,123 @@
+"""Where in a workspace an object can be put down."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import atan2, hypot
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.placement import BEARING, HAND_GAP, Pose, bearing, field_before, footprint
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Region, Vector
+    from robbdd_tools.world.simulation import Robot, Simulation
+
+ALONG = (0.0, -0.03, 0.03)
+"""Places along a bin's length, m from its middle, where a hand fits in."""
+GRID = 7
+"""Places along each side of a table that are looked at."""
+INTO_BIN, ONTO_TABLE = 0.02, 0.005
+"""Height above the surface at which an object is released, m."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A place to put an object: a point on the surface (m, world frame) and the height to release it at (m above).
+
+    ``closing`` is the direction (rad) the fingers should have there, ``None`` when any will do.
+    """
+
+    position: Vector
+    gap: float
+    closing: float | None
+
+
+def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> Iterator[Target]:
+    """Yield places for an object at a workspace, the roomiest first; raises ``BehaviourError`` without any."""
+    regions = simulation.world.cast.regions.get(workspace)
+    if not regions:
+        raise BehaviourError(f"nothing in the scene carries {workspace}")
+    for carrier, region in regions:
+        if region.walled:
+            yield from _in_bin(simulation, name, carrier, region)
+        elif simulation.world.cast.objects[carrier].free:
+            yield from _on_board(simulation, name, carrier, region)
+        else:
+            yield from _on_table(simulation, robot, name, carrier, region)
+
+
+def has_room(simulation: Simulation, robot: Robot, name: str, workspace: str) -> bool:
+    """Tell whether something at a workspace is far enough from everything loose to take an object."""
+    radius = footprint(simulation.world.cast.objects[name])
+    for carrier, _ in simulation.world.cast.regions.get(workspace, ()):
+        others = _others(simulation, name, carrier)
+        places = targets(simulation, robot, name, workspace)
+        if any(_room(*place.position[:2], others) >= radius for place in places):
+            return True
+    return False
+
+
+def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
+    position, rotation = simulation.pose(carrier)
+    bottom = np.array(region.center) - [0.0, 0.0, region.half[2]]
+    others = _others(simulation, name, carrier)
+    longest = int(np.argmax(region.half[:2]))
+    axis = rotation[:, longest]
+    points = [position + rotation @ bottom + along * axis for along in ALONG]
+    for point in sorted(points, key=lambda point: -_room(point[0], point[1], others)):
+        yield Target((float(point[0]), float(point[1]), float(point[2])), INTO_BIN, atan2(axis[1], axis[0]))
+
+
+def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
+    """Yield places on a board or tray: those with room for a hand first, the nearest to the middle first."""
+    position, rotation = simulation.pose(carrier)
+    radius = footprint(simulation.world.cast.objects[name])
+    others = _others(simulation, name, carrier)
+    longest = int(np.argmax(region.half[:2]))
+    shares = np.linspace(-1.0, 1.0, GRID)
+    inner = np.maximum(np.array(region.half[:2]) - radius, 0.0)
+    offsets = sorted((np.array([sx, sy]) * inner for sx in shares for sy in shares), key=lambda one: float(one @ one))
+    x, y, z = region.center
+    points = [position + rotation @ np.array([x + dx, y + dy, z - region.half[2]]) for dx, dy in offsets]
+    closing = atan2(rotation[1, longest], rotation[0, longest])
+    # Sorting is stable: among equals the order stays that of the distance from the middle.
+    for point in sorted(points, key=lambda point: _room(point[0], point[1], others) < radius + HAND_GAP):
+        yield Target((float(point[0]), float(point[1]), float(point[2])), ONTO_TABLE, closing)
+
+
+def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, region: Region) -> Iterator[Target]:
+    position, _ = simulation.pose(carrier)
+    model = simulation.world.cast.objects[carrier]
+    table = Pose((float(position[0]), float(position[1]), float(position[2])))
+    area = field_before(robot.base, table, model)
+    if area is None:
+        return
+    (cx, cy), (hx, hy) = area
+    shares = np.linspace(-1.0, 1.0, GRID)
+    others = _others(simulation, name, carrier)
+    wanted = footprint(simulation.world.cast.objects[name]) + HAND_GAP
+    grid = [(float(cx + sx * hx), float(cy + sy * hy)) for sx in shares for sy in shares]
+    points = [point for point in grid if abs(bearing(robot.base, *point)) <= BEARING]
+    roomy = [point for point in points if _room(*point, others) >= wanted]
+    surface = float(position[2]) + region.center[2] - region.half[2]
+    for x, y in sorted(roomy or points, key=lambda point: hypot(point[0] - cx, point[1] - cy)):
+        yield Target((x, y, surface), ONTO_TABLE, None)
+
+
+def _others(simulation: Simulation, name: str, carrier: str) -> list[tuple[float, float, float]]:
+    """Place (m) and radius (m) of everything loose but the object itself and what carries the workspace."""
+    found: list[tuple[float, float, float]] = []
+    for other, model in simulation.world.cast.objects.items():
+        if model.free and other not in (name, carrier):
+            position, _ = simulation.pose(other)
+            found.append((float(position[0]), float(position[1]), footprint(model)))
+    return found
+
+
+def _room(x: float, y: float, others: list[tuple[float, float, float]]) -> float:
+    """Distance (m) from a point to the nearest of the others, far away when there is none."""
+    return min((hypot(x - ox, y - oy) - radius for ox, oy, radius in others), default=1.0)

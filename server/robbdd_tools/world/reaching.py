@@ -1,0 +1,127 @@
+"""How an agent gets at an object: its grasp poses, the joint positions there, and what room they leave."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import nan, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.world.arm_kinematics import Unreachable, arm_of
+from robbdd_tools.world.clearance import Clearance
+from robbdd_tools.world.engine import mujoco
+from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.grasp import Grasp
+from robbdd_tools.world.gripper import gripper_of
+from robbdd_tools.world.motion import ToolPose, frame_of, tool_pose
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.world.arm_kinematics import Arm
+    from robbdd_tools.world.simulation import Robot, Simulation
+
+NONE = -pi
+"""Reach margin (rad) where there is no clear grasp within the joint limits."""
+SAME = 1e-4
+"""Change of the world's state (m, rad) below which a reach margin is taken over from the sample before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """A grasp with the tool pose above it and that at it, the joint positions (rad) there, and ``depth``:
+    how far (m) the arm would be in something else.
+    """
+
+    grasp: Grasp
+    above: ToolPose
+    at: ToolPose
+    joints: FloatArray
+    depth: float
+
+
+def at_travel(robot: Robot, pose: ToolPose) -> ToolPose:
+    """Return a tool pose raised to the travelling height."""
+    height = robot.model.travel_height - robot.base.position[2]
+    return replace(pose, height=max(height, pose.height))
+
+
+def joints_at(arm: Arm, above: ToolPose, at: ToolPose) -> FloatArray:
+    """Return the joint positions (rad) at a pose that is come to from above; raises ``Unreachable``."""
+    position, rotation = frame_of(above)
+    start = arm.solve(arm.towards(position), position, rotation)
+    return arm.solve(start, *frame_of(at))
+
+
+def approaches(simulation: Simulation, robot: Robot, name: str, data: Any = None) -> Iterator[Approach]:
+    """Yield every grasp of an object that is within the joint limits, in the present state or in that of ``data``.
+
+    Raises ``BehaviourError`` when the scene has no such object or the gripper is too small for it.
+    """
+    objects = simulation.world.cast.objects
+    if name not in objects:
+        raise BehaviourError(f"there is no {name} in the scene")
+    data = simulation.data if data is None else data
+    arm = arm_of(robot.model)
+    body = data.body(name)
+    position, rotation = body.xpos.copy(), body.xmat.reshape(3, 3).copy()
+    clearance = Clearance(simulation, robot, name, data)
+    for grasp in gripper_of(robot.model).grasps(name, objects[name], position, rotation):
+        at = tool_pose(robot.base, grasp.position, grasp.closing)
+        above = at_travel(robot, at)
+        try:
+            joints = joints_at(arm, above, at)
+        except Unreachable:
+            continue
+        yield Approach(grasp, above, at, joints, clearance.depth(joints))
+
+
+class ReachSampler:
+    """Measures, after the fact and only where somebody asks, how well agents could reach objects."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._margins: dict[tuple[str, str], dict[int, float]] = {}
+
+    @cached_property
+    def _data(self) -> Any:
+        return mujoco.MjData(self._simulation.model)
+
+    def sample(self, agent: str, name: str, rows: range) -> None:
+        """Measure at these samples of the trace; raises ``KeyError`` for an agent that the scene lacks."""
+        robot = self._simulation.robots[agent]
+        known = self._margins.setdefault((agent, name), {})
+        states = self._simulation.recorder.states
+        # Where the arm itself is does not matter: it is asked where it could be.
+        others = np.ones(states.shape[1], dtype=bool)
+        others[robot.joints] = False
+        last: tuple[FloatArray, float] | None = None
+        for row in rows:
+            if row in known:
+                continue
+            state = states[row]
+            if last is None or np.abs(state[others] - last[0]).max(initial=0.0) > SAME:
+                last = (state[others], self._margin(robot, name, state))
+            known[row] = last[1]
+
+    def record(self, size: int) -> Mapping[tuple[str, str], FloatArray]:
+        """Return what was measured as arrays over the first ``size`` samples, not a number elsewhere."""
+        found: dict[tuple[str, str], FloatArray] = {}
+        for pair, margins in self._margins.items():
+            values = np.full(size, nan)
+            values[list(margins)] = list(margins.values())
+            found[pair] = values
+        return found
+
+    def _margin(self, robot: Robot, name: str, state: FloatArray) -> float:
+        self._data.qpos[:] = state
+        mujoco.mj_kinematics(self._simulation.model, self._data)
+        arm = arm_of(robot.model)
+        try:
+            clear = [a.joints for a in approaches(self._simulation, robot, name, self._data) if a.depth == 0.0]
+        except BehaviourError:
+            return NONE
+        rooms = [float(np.minimum(joints - arm.lower, arm.upper - joints).min()) for joints in clear]
+        return max(rooms, default=NONE)

@@ -1,0 +1,168 @@
+"""Which catalog model stands for which element of a scene, and where each workspace is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.extent import centred
+from robbdd_tools.world.scene_configuration import Configured, configure, height_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel
+    from robbdd_tools.catalog.settings import Numbers
+    from robbdd_tools.protocol.specs import SceneSpec
+    from robbdd_tools.world.pose import Pose
+    from robbdd_tools.world.staging import Staging
+
+PEDESTAL = "pedestal"
+"""Name of the table that stands in for the one which a scene lacks."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cast:
+    """A scene with a model for every object and agent.
+
+    ``regions`` maps a workspace to the boxes that make it up, each with the object in whose frame it is given;
+    a workspace that nothing carries is absent. ``ranges`` tells of some elements where things are laid out
+    (``position_range``); ``seed`` is the one that the scene asks for, if any. ``judged`` maps element and name to the
+    configurations that say how to judge it.
+    """
+
+    objects: Mapping[str, ObjectModel]
+    agents: Mapping[str, RobotModel]
+    regions: Mapping[str, tuple[tuple[str, Region], ...]]
+    ranges: Mapping[str, Numbers]
+    seed: int | None
+    judged: Mapping[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
+
+    staging: Staging | None = None
+    """What an executable scene says of the elements, if there is one."""
+    left_out: tuple[str, ...] = ()
+    """Elements that no clause speaks of and that have no model or, of agents, no place."""
+    heights: Mapping[str, float] = field(default_factory=dict[str, float])
+    """Height (m) of each object before ``height_scale``."""
+
+    def pose(self, name: str, attempt: int = 0) -> Pose | None:
+        """Return where an executable scene has the middle of an object; raises ``SceneError``."""
+        pose = None if self.staging is None else self.staging.pose(name, attempt)
+        x, y, z = self.objects[name].frame
+        return None if pose is None else pose.at((-x, -y, -z))
+
+    def base(self, name: str) -> Pose | None:
+        """Return where an executable scene has an agent's base; raises ``SceneError``."""
+        return None if self.staging is None else self.staging.base(name)
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """The fixed objects, which everything else stands on, the one with the largest top first."""
+        fixed = [name for name, model in self.objects.items() if not model.free]
+        return tuple(sorted(fixed, key=lambda name: -_top_area(self.objects[name])))
+
+
+def _top_area(model: ObjectModel) -> float:
+    return 0.0 if model.region is None else 4 * model.region.half[0] * model.region.half[1]
+
+
+def local_name(curie: str) -> str:
+    """Return what follows the last colon of a CURIE."""
+    return curie.rpartition(":")[2]
+
+
+def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
+    """Choose the models of a scene, as an executable one says, else by name, and configure them.
+
+    Raises ``SceneError`` for a name that no model stands for and for a configuration that cannot be.
+    """
+    catalog = load_catalog()
+    objects: dict[str, ObjectModel] = {}
+    left_out: list[str] = []
+    # Sorted: what happens must not depend on the order in which a model declares its objects.
+    for name in sorted(scene.objects):
+        carrying = any(name in own for own in scene.workspaces.values())
+        model = None if staging is None else staging.object_model(name, carrying)
+        model = model or catalog.object_for(local_name(name), scene.sets.get(name, ()))
+        if model is not None:
+            objects[name] = model
+        elif name in scene.unused:
+            left_out.append(name)
+        else:
+            raise SceneError(_no_model("object", name, (m.prefixes for m in catalog.objects.values())))
+    agents: dict[str, RobotModel] = {}
+    for name in scene.agents:
+        robot = None if staging is None else staging.robot(name)
+        robot = robot or catalog.robot_for(local_name(name), scene.sets.get(name, ()))
+        # Bystanders stand where an executable scene places them; there is no other reason for them to be anywhere.
+        if name in scene.unused and (robot is None or staging is None or staging.base(name) is None):
+            left_out.append(name)
+            continue
+        if robot is None:
+            raise SceneError(_no_model("agent", name, (m.prefixes for m in catalog.robots.values())))
+        agents[name] = robot
+    if all(model.free for model in objects.values()):
+        objects[PEDESTAL] = catalog.objects["table"]
+    heights = {name: height_of(model) for name, model in objects.items()}
+    found = Configured(objects, agents)
+    configure(found, ((config, _elements(scene, config.target)) for config in scene.config))
+    objects |= {name: centred(model) for name, model in objects.items()}
+    regions = _regions(scene, objects)
+    return Cast(objects, agents, regions, found.ranges, found.seed, found.judged, staging, tuple(left_out), heights)
+
+
+def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
+    """Return the objects that a workspace stands for, for anything else the target itself."""
+    return carriers(scene, target) or (target,)
+
+
+def _no_model(kind: str, name: str, prefixes: Iterable[tuple[str, ...]]) -> str:
+    known = ", ".join(sorted(prefix for group in prefixes for prefix in group))
+    return (
+        f"there is no model for {kind} '{name}': its name, or its set's, would have to hold one of {known}; "
+        "or run a .bddx whose .scenex gives it a model"
+    )
+
+
+def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, tuple[tuple[str, Region], ...]]:
+    regions: dict[str, tuple[tuple[str, Region], ...]] = {}
+    for workspace in {**scene.workspaces, **scene.contains}:
+        boxes: list[tuple[str, Region]] = []
+        for carrier in carriers(scene, workspace):
+            model = objects.get(carrier)
+            if carrier in scene.unused and model is None:
+                continue
+            if model is None:
+                raise SceneError(f"workspace '{workspace}' is carried by '{carrier}', which is not in the scene")
+            boxes += [(carrier, region) for region in model.spaces(local_name(workspace))]
+        if boxes:
+            regions[workspace] = tuple(boxes)
+    return regions
+
+
+def contents_of(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
+    """Return the workspaces that are composed into one, at any depth, in written order."""
+    found: dict[str, None] = {}
+    waiting = list(scene.contains.get(workspace, ()))
+    while waiting:
+        inner = waiting.pop(0)
+        if inner not in found and inner != workspace:
+            found[inner] = None
+            waiting += scene.contains.get(inner, ())
+    return tuple(found)
+
+
+def carriers(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
+    """Return the objects that make up a workspace: its own or, when it has none, those of what lies within it."""
+    return _carriers(scene, workspace, frozenset())
+
+
+def _carriers(scene: SceneSpec, workspace: str, seen: frozenset[str]) -> tuple[str, ...]:
+    own = scene.workspaces.get(workspace, ())
+    if own or workspace in seen:
+        return own
+    inner = scene.contains.get(workspace, ())
+    return tuple(name for part in inner for name in _carriers(scene, part, seen | {workspace}))

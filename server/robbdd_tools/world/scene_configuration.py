@@ -1,0 +1,184 @@
+"""Sets a scene up as its Given clauses want it, and reads the values back from the world that came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from math import hypot
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, Shape, ShapeKind, Vector
+from robbdd_tools.catalog.settings import NORMAL, SETTINGS, Numbers, SettingError, setting_of, written
+from robbdd_tools.world.belts import belt_speed, belts_of
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.extent import bounds_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.protocol.specs import ConfigSpec, SceneSpec
+    from robbdd_tools.world.simulation import Simulation
+
+
+CONTROLLER = {
+    "approach_speed": "approach_speed",
+    "ee_speed": "tool_speed",
+    "grip_time": "grip_time",
+    "release_time": "release_time",
+    "travel_height": "travel_height",
+}
+"""Configurations of how an agent picks and places, and the attributes of its model that have them."""
+
+
+@dataclass(slots=True)
+class Configured:
+    """Models of objects and agents as configured, where things lie (position ranges, m) and the seed, if any.
+
+    ``judged`` are the configurations, by element and name, that change not the world but how it is judged.
+    """
+
+    objects: dict[str, ObjectModel]
+    agents: dict[str, RobotModel]
+    ranges: dict[str, Numbers] = field(default_factory=dict[str, Numbers])
+    seed: int | None = None
+    judged: dict[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
+
+
+def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, ...]]]) -> None:
+    """Apply configurations, each with the elements that its target stands for.
+
+    Raises ``SceneError`` for a name or value that does not exist, an element that has no such configuration, and
+    two values for one configuration.
+    """
+    known: dict[tuple[str, str], Numbers] = {}
+    for config, elements in wanted:
+        try:
+            value = setting_of(config.name).read(config.value)
+        except SettingError as error:
+            raise SceneError(f"'{config.target}' cannot be configured: {error}") from error
+        for element in ("",) if config.name == "seed" else elements:
+            if known.setdefault((element, config.name), value) != value:
+                other = written(known[element, config.name])
+                raise SceneError(f"'{config.target}' is to have {config.name} = {other} and {config.value}")
+            _apply(found, element, config, value)
+
+
+def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, str], str]:
+    """Return element and name → value of every configuration, as the simulated world has it."""
+    cast, model = simulation.world.cast, simulation.model
+    settings: dict[tuple[str, str], Numbers] = dict(cast.judged)
+    for name, thing in cast.objects.items():
+        body = model.body(name)
+        geoms = range(int(body.geomadr[0]), int(body.geomadr[0] + body.geomnum[0]))
+        settings[name, "friction"] = (float(model.geom_friction[geoms[0], 0]),)
+        if thing.free:
+            settings[name, "mass"] = (float(body.mass[0]),)
+        if thing.graspable:
+            settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
+        for servo in belts_of(model, name)[:1]:
+            settings[name, "belt_speed"] = (belt_speed(model, servo),)
+        if _is_scalable(thing):
+            settings[name, "height_scale"] = (_height(model, geoms) / cast.heights[name],)
+    for name, robot in simulation.robots.items():
+        for setting, attribute in CONTROLLER.items():
+            settings[name, setting] = (getattr(robot.model, attribute),)
+        if robot.model.approach_speed is None:
+            settings[name, "approach_speed"] = settings[name, "ee_speed"]
+        settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
+    # A seed may be asked for of anything, such as the scene.
+    for name in (*cast.objects, *cast.agents, *(config.target for config in scene.config)):
+        settings[name, "seed"] = (float(simulation.world.seed),)
+    return {pair: written(value) for pair, value in settings.items()}
+
+
+def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) -> None:
+    thing, robot = found.objects.get(element), found.agents.get(element)
+    judged = {"agent": robot, "object": thing}.get(SETTINGS[config.name].judges)
+    match config.name:
+        case "seed":
+            found.seed = int(value[0])
+        case name if judged is not None:
+            found.judged[element, name] = value
+        case name if name in CONTROLLER and robot is not None:
+            changed: dict[str, Any] = {CONTROLLER[name]: value[0]}
+            found.agents[element] = replace(robot, **changed)
+        case "position_range" if robot is not None:
+            found.ranges |= dict.fromkeys(_loose(found), value) | {element: value}
+        case "position_range" if thing is not None and thing.graspable:
+            found.ranges[element] = value
+        case "mass" if thing is not None and thing.free:
+            found.objects[element] = replace(thing, mass=value[0])
+        case "friction" if thing is not None:
+            found.objects[element] = replace(thing, friction=value[0])
+        case "belt_speed" if thing is not None and _has_belt(thing):
+            found.objects[element] = _driven(thing, value[0])
+        case "height_scale" if thing is not None and _is_scalable(thing):
+            found.objects[element] = _scaled(thing, value[0])
+        case name if thing is None and robot is None:
+            raise SceneError(f"'{config.target}', which is to have {name} = {config.value}, is not in the scene")
+        case name:
+            raise SceneError(f"'{config.target}' has no {name}: that is of {SETTINGS[name].target}")
+
+
+def _loose(found: Configured) -> list[str]:
+    """What is laid out at random and has no range of its own."""
+    return [name for name in found.objects if found.objects[name].graspable and name not in found.ranges]
+
+
+def _is_scalable(model: ObjectModel) -> bool:
+    """Tell whether an object is a loose container. A sphere keeps its proportions."""
+    round_ones = any(shape.kind is ShapeKind.SPHERE for shape in model.shapes)
+    return model.free and model.region is not None and not round_ones
+
+
+def _has_belt(model: ObjectModel) -> bool:
+    return any(shape.surface is not None for shape in model.shapes)
+
+
+def _driven(model: ObjectModel, speed: float) -> ObjectModel:
+    """Let the belts of an object run at another speed (m/s), in their directions."""
+
+    def at_speed(velocity: Vector) -> Vector:
+        x, y, z = velocity
+        factor = speed / hypot(x, y, z)
+        return (factor * x, factor * y, factor * z)
+
+    shapes = (
+        shape if shape.surface is None else replace(shape, surface=at_speed(shape.surface)) for shape in model.shapes
+    )
+    return replace(model, shapes=tuple(shapes))
+
+
+def _scaled(model: ObjectModel, factor: float) -> ObjectModel:
+    """Stretch an object upwards from its lowest point."""
+    bottom = float(bounds_of(model.shapes)[0][2])
+
+    def raised(place: Vector) -> Vector:
+        return (place[0], place[1], bottom + factor * (place[2] - bottom))
+
+    def taller(shape: Shape) -> Shape:
+        a, b, c = shape.size
+        size = (a, factor * b, c) if shape.kind is ShapeKind.CYLINDER else (a, b, factor * c)
+        return replace(shape, size=size, position=raised(shape.position))
+
+    def stretched(region: Region) -> Region:
+        x, y, z = region.half
+        return replace(region, center=raised(region.center), half=(x, y, factor * z))
+
+    return replace(
+        model,
+        shapes=tuple(map(taller, model.shapes)),
+        region=None if model.region is None else stretched(model.region),
+        parts=tuple(map(stretched, model.parts)),
+    )
+
+
+def height_of(model: ObjectModel) -> float:
+    """Return the height (m) of an object without its belts."""
+    low, high = bounds_of(tuple(shape for shape in model.shapes if shape.surface is None))
+    return float(high[2] - low[2])
+
+
+def _height(model: Any, geoms: range) -> float:
+    """Return the height (m) of the box around the geoms of a body, which are in line with it."""
+    middle = model.geom_pos[geoms, 2] + model.geom_aabb[geoms, 2]
+    half = model.geom_aabb[geoms, 5]
+    return float((middle + half).max() - (middle - half).min())

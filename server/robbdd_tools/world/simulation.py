@@ -1,0 +1,224 @@
+"""Steps a world and records it: one sample per control tick."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from math import isfinite
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.world.belts import Belts
+from robbdd_tools.world.contact_forces import Forces
+from robbdd_tools.world.engine import SUBSTEPS, TICK, mujoco
+from robbdd_tools.world.errors import SimulationError
+from robbdd_tools.world.holding import Grips
+from robbdd_tools.world.recorder import Bodies, Recorder
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
+    from robbdd_tools.monitor.trace import EventStamp, Trace
+    from robbdd_tools.world.composition import World
+
+AT_REST = 2e-3
+"""Speed (m/s and rad/s) below which an object is at rest."""
+REST_TICKS = 6
+"""Ticks in a row that everything must be at rest."""
+SETTLE_TICKS = 190
+"""Ticks (about three seconds) after which a world counts as settled, come what may."""
+
+
+class Robot:
+    """One robot of a running simulation: its places in the engine's arrays.
+
+    ``joints`` (n,) indexes joint positions, ``speeds`` (n,) velocities, ``motors`` (n,) and ``gripper`` controls,
+    ``targets`` (n,) the positions that the arm's servos hold at the moment.
+    """
+
+    def __init__(self, world: World, name: str) -> None:
+        model, robot = world.model, world.cast.agents[name]
+        self.name = name
+        self.model = robot
+        self.base = world.bases[name]
+        joints = [model.joint(f"{name}/{joint}") for joint in robot.joints]
+        self.joints = np.array([joint.qposadr[0] for joint in joints])
+        self.speeds = np.array([joint.dofadr[0] for joint in joints])
+        on_joint = np.flatnonzero(model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_JOINT))
+        driven = {int(model.actuator_trnid[motor, 0]): int(motor) for motor in on_joint}
+        self.motors = np.array([driven[joint.id] for joint in joints])
+        self.targets = model.actuator_actadr[self.motors]
+        self.gripper = int(model.actuator(f"{name}/{robot.gripper_actuator}").id)
+        self.tool = int(model.site(f"{name}/{robot.tool_site}").id)
+        self.pads = tuple(int(model.geom(f"{name}/{pad}").id) for pad in robot.pads)
+        gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
+        self.lead: FloatArray = -bias / gain
+        """Seconds by which a joint's target must run ahead to make up for the servo's damping, shape (n,)."""
+
+
+class Simulation:
+    """A world in motion. Time counts from the end of ``settle``; sample 0 is the settled world.
+
+    ``stepping`` is the wall time (s) spent in the engine's step; ``watchers`` are called after each tick, such as a
+    viewer.
+    """
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self.model: Any = world.model
+        self.data: Any = mujoco.MjData(world.model)
+        self.stepping = 0.0
+        self.ticks = 0
+        self.watchers: list[Callable[[], None]] = []
+        self.robots = {name: Robot(world, name) for name in world.cast.agents}
+        self._free = [name for name, model in world.cast.objects.items() if model.free]
+        bodies = [self.model.body(name) for name in self._free]
+        addresses = np.array([body.jntadr[0] for body in bodies], dtype=int)
+        starts = self.model.jnt_qposadr[addresses].reshape(-1, 1)
+        self._speeds = self.model.jnt_dofadr[addresses].reshape(-1, 1) + np.arange(6)
+        names = (*world.cast.objects, *world.cast.agents)
+        self.belts = Belts(self.model, list(world.cast.objects))
+        self._column = {name: index for index, name in enumerate(names)}
+        self._grips = Grips(self.model, self.robots, self._column, self._free)
+        # Views of the engine's memory, which stays where it is: to ask for them anew in every tick takes longer.
+        self._qpos: FloatArray = self.data.qpos
+        self._qvel: FloatArray = self.data.qvel
+        self._ctrl: FloatArray = self.data.ctrl
+        self._act: FloatArray = self.data.act
+        motors = [robot.motors for robot in self.robots.values()]
+        self._servos = np.concatenate([*motors, np.empty(0, dtype=int)]).astype(int)
+        self._tools: list[tuple[FloatArray, FloatArray]] = [
+            (self.data.site_xpos[robot.tool], self.data.site_xmat[robot.tool]) for robot in self.robots.values()
+        ]
+        watched = {element for element, name in world.cast.judged if name == "force_limit"}
+        self.forces = Forces(self.model, self.robots, world.cast.objects, watched) if watched else None
+        self._go_home()
+        things = [self.data.body(name) for name in world.cast.objects]
+        unset = len(self.robots)
+        bodies = Bodies(
+            names,
+            np.array([*(body.xpos for body in things), *[np.zeros(3)] * unset]),
+            np.array([*(body.xquat for body in things), *[np.zeros(4)] * unset]),
+            np.array([self._column[name] for name in self._free], dtype=int),
+            starts + np.arange(3),
+            starts + np.arange(3, 7),
+            np.array([self._column[name] for name in self.robots], dtype=int),
+        )
+        self.recorder = Recorder(bodies, tuple(self.robots), int(self.model.nq))
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the last sample, s."""
+        return round(self.ticks * TICK, 6)
+
+    @cached_property
+    def scratch(self) -> Any:
+        """A state of the engine to try things in: whoever does sets all that matters; made once, as it takes long."""
+        return mujoco.MjData(self.model)
+
+    def settle(self) -> None:
+        """Step until nothing moves any more, then start the clock and take the first sample."""
+        quiet = 0
+        for _ in range(SETTLE_TICKS):
+            self._step()
+            speeds = self.data.qvel[self._speeds]
+            quiet = quiet + 1 if not speeds.size or np.abs(speeds).max() < AT_REST else 0
+            if quiet == REST_TICKS:
+                break
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget what was recorded and count time from now; belts run from now on."""
+        self.ticks = 0
+        self.belts.start(self.data)
+        self.recorder.clear()
+        if self.forces is not None:
+            self.forces.clear()
+        self.record()
+
+    def tick(self) -> None:
+        """Advance by one control tick under the present controls and record a sample.
+
+        Raises ``SimulationError`` when the state is no longer a number.
+        """
+        self._step()
+        self.ticks += 1
+        self.record()
+        for watch in self.watchers:
+            watch()
+
+    def record(self) -> None:
+        """Take a sample of the world as it is."""
+        # Positions in the engine's data are those of one step ago until they are computed anew.
+        mujoco.mj_kinematics(self.model, self.data)
+        self._grips.find(self.data)
+        if self.forces is not None:
+            self.forces.record()
+        rows = self.recorder.append(self.time, self._qpos, self._grips.held)
+        for row, (position, rotation) in zip(rows, self._tools, strict=True):
+            row[:3] = position
+            mujoco.mju_mat2Quat(row[3:], rotation)
+
+    def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
+        """Return what was recorded so far, without copying it."""
+        return self.recorder.trace(events, finished, remark)
+
+    def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
+        """Return position (3,) m and rotation matrix (3, 3) of an object in the world frame; raises ``KeyError``."""
+        body = self.data.body(name)
+        return body.xpos.copy(), body.xmat.reshape(3, 3).copy()
+
+    def holds(self, agent: str, name: str) -> bool:
+        """Whether the agent's gripper holds the object."""
+        return bool(self._grips.held[agent][self._column[name]])
+
+    def joint_positions(self, robot: Robot) -> FloatArray:
+        """Return the arm's joint positions, rad, shape (n,)."""
+        positions: FloatArray = self.data.qpos[robot.joints]
+        return positions
+
+    def command(self, robot: Robot, joints: FloatArray, opening: float) -> None:
+        """Let the targets of the arm's servos move to ``joints`` (rad, shape (n,)) within one tick; set the gripper.
+
+        A cup that leaks has no vacuum.
+        """
+        self._ctrl[robot.motors] = (joints - self._act[robot.targets]) / TICK
+        leaks = robot.name in self._grips.leaking
+        self._ctrl[robot.gripper] = robot.model.gripper_open if leaks else opening
+
+    def open_fingers(self, robot: Robot, data: Any) -> None:
+        """Put a robot's fingers into the open position in ``data``: the start, or a state that is only tried."""
+        for pad in robot.pads:
+            body = self.model.body(int(self.model.geom_bodyid[pad]))
+            for joint in range(body.jntadr[0], body.jntadr[0] + body.jntnum[0]):
+                data.qpos[self.model.jnt_qposadr[joint]] = robot.model.gripper_open
+
+    def _step(self) -> None:
+        began = perf_counter()
+        if self.forces is None:
+            mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
+        else:
+            self._step_and_look(self.forces)
+        self.belts.set_back(self.data)
+        self.stepping += perf_counter() - began
+        # A target that nobody moves on stays where it is.
+        self._ctrl[self._servos] = 0.0
+        if not isfinite(self._qvel @ self._qvel):
+            raise SimulationError(f"the simulation became unstable at {self.time:.2f} s")
+
+    def _step_and_look(self, forces: Forces) -> None:
+        """Step one by one: a blow is over within a tick."""
+        gripped = {agent: [name for name in self._free if self.holds(agent, name)] for agent in self.robots}
+        for _ in range(SUBSTEPS):
+            mujoco.mj_step(self.model, self.data)
+            forces.look(self.data, gripped)
+
+    def _go_home(self) -> None:
+        for robot in self.robots.values():
+            home = np.array(robot.model.home)
+            self.data.qpos[robot.joints] = home
+            self.open_fingers(robot, self.data)
+            self.data.act[robot.targets] = home
+            self.command(robot, home, robot.model.gripper_open)
+        mujoco.mj_forward(self.model, self.data)

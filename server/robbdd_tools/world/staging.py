@@ -1,0 +1,120 @@
+"""What an executable scene says of the elements of a scenario: their models and where they are."""
+
+from __future__ import annotations
+
+from math import atan2
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.frames import Frames, at
+from robbdd_tools.world.model_files import FromFile, load, object_from, usable
+from robbdd_tools.world.pose import Pose
+from robbdd_tools.world.robot_files import robot_from
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import ObjectModel, RobotModel
+    from robbdd_tools.catalog.executable import ModelSource, Realisation, SceneInstance
+    from robbdd_tools.world.frames import Transform
+
+UPRIGHT = 1e-6
+
+
+class Staging:
+    """One scene instance in one execution. ``seed`` decides what is drawn at random."""
+
+    def __init__(self, instance: SceneInstance, seed: int) -> None:
+        """Raises ``SceneError`` when a model of the whole scene cannot be loaded."""
+        self._elements = {one.element: one for one in instance.elements}
+        self._frames = Frames(instance, seed)
+        self._found: dict[str, FromFile] = {}
+        self._worlds = [(source, load(source)) for source in self._usable_worlds(instance)]
+
+    @staticmethod
+    def _usable_worlds(instance: SceneInstance) -> list[ModelSource]:
+        found = usable(instance.models, "the scene")
+        return [] if found is None else [source for source in instance.models if source.format != "usd"]
+
+    @property
+    def scenery(self) -> tuple[Any, ...]:
+        """The models of the whole scene, without the bodies that elements of the scene are."""
+        return tuple(spec for _, spec in self._worlds)
+
+    def object_model(self, element: str, carries: bool) -> ObjectModel | None:
+        """Return the model of an object, ``None`` where nothing is said of it; raises ``SceneError``.
+
+        ``carries`` tells that it carries a workspace. An object without a model is the body of its name in a model of
+        the whole scene, if there is one.
+        """
+        chosen = self._source(element)
+        if chosen is None:
+            return self._from_world(element, carries)
+        if chosen.kind == "catalog":
+            found = load_catalog().objects.get(chosen.name)
+            if found is None:
+                raise SceneError(f"{at(chosen.origin)}the catalog has no object '{chosen.name}'")
+            return found
+        name = next((name for _, name in chosen.bodies), "")
+        # Its pose in a file of its own means nothing in the scene.
+        return object_from(load(chosen), chosen, name, carries).model
+
+    def robot(self, element: str) -> RobotModel | None:
+        """Return the model of an agent, ``None`` where nothing is said of it; raises ``SceneError``."""
+        chosen = self._source(element)
+        if chosen is None:
+            return None
+        if chosen.kind == "catalog":
+            found = load_catalog().robots.get(chosen.name)
+            if found is None:
+                raise SceneError(f"{at(chosen.origin)}the catalog has no robot '{chosen.name}'")
+            return found
+        return robot_from(chosen, element)
+
+    def pose(self, element: str, attempt: int = 0) -> Pose | None:
+        """Return where an element is, ``None`` where nothing is said of that; raises ``SceneError``.
+
+        What is drawn for the element itself is drawn anew for each ``attempt``.
+        """
+        chosen = self._source(element)
+        if chosen is None:
+            found = self._found.get(element)
+            return None if found is None else _pose((found.position, found.rotation))
+        bodies = [body for body, _ in chosen.bodies]
+        bodies += [body for tree, _ in chosen.trees if (body := self._frames.first_body(tree)) is not None]
+        transform = self._frames.pose(bodies[0], element, attempt) if bodies else None
+        return None if transform is None else _pose(transform)
+
+    def base(self, element: str) -> Pose | None:
+        """Return where the base of an agent is; raises ``SceneError`` for one that does not stand upright."""
+        pose = self.pose(element)
+        if pose is not None and pose.rotation:
+            chosen = self._source(element)
+            place = at(None if chosen is None else chosen.origin)
+            raise SceneError(f"{place}the base of '{element}' is tilted: arms are moved upright only")
+        return pose
+
+    def _source(self, element: str) -> ModelSource | None:
+        said: Realisation | None = self._elements.get(element)
+        return None if said is None else usable(said.models, element)
+
+    def _from_world(self, element: str, carries: bool) -> ObjectModel | None:
+        name = element.rpartition(":")[2]
+        if element in self._found:
+            return self._found[element].model
+        for source, spec in self._worlds:
+            if spec.body(name) is not None:
+                self._found[element] = object_from(spec, source, name, carries)
+                spec.delete(spec.body(name))
+                return self._found[element].model
+        return None
+
+
+def _pose(transform: Transform) -> Pose:
+    position, turn = transform
+    w, x, y, z = (float(part) for part in turn)
+    place = (float(position[0]), float(position[1]), float(position[2]))
+    if np.hypot(x, y) < UPRIGHT:
+        return Pose(place, 2 * atan2(z, w))
+    return Pose(place, atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)), (w, x, y, z))

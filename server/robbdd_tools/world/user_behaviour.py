@@ -1,0 +1,118 @@
+"""Executes a behaviour by the user's own class."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from robbdd_tools.catalog.own_behaviour import BehaviourFailed, UserBehaviour
+from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
+from robbdd_tools.world.arm_kinematics import arm_of
+from robbdd_tools.world.errors import BehaviourError, UserError
+from robbdd_tools.world.frames import at
+from robbdd_tools.world.motion import frame_of, tool_pose
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Arguments, FloatArray
+    from robbdd_tools.catalog.executable import Implementation
+    from robbdd_tools.world.simulation import Simulation
+
+
+class AgentWorld:
+    """``robbdd_tools.catalog.own_behaviour.World`` for one agent of a simulation."""
+
+    def __init__(self, simulation: Simulation, agent: str, emit: Callable[[str], None]) -> None:
+        self._simulation = simulation
+        self._robot = simulation.robots[agent]
+        self._arm = arm_of(self._robot.model)
+        self._emit = emit
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self._simulation.time
+
+    @property
+    def joints(self) -> FloatArray:
+        """Positions of the arm's joints, rad."""
+        return self._simulation.joint_positions(self._robot).copy()
+
+    @property
+    def tool(self) -> tuple[FloatArray, FloatArray]:
+        """Position (m) and rotation matrix of the tool."""
+        data, site = self._simulation.data, self._robot.tool
+        return data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy()
+
+    def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
+        """Return position (m) and rotation matrix of an object; raises ``KeyError``."""
+        return self._simulation.pose(name)
+
+    def place(self, workspace: str) -> FloatArray:
+        """Return the middle (m) of a workspace's bottom; raises ``KeyError``."""
+        carrier, region = self._simulation.world.cast.regions[workspace][0]
+        position, rotation = self._simulation.pose(carrier)
+        bottom: FloatArray = np.array(region.center) - [0.0, 0.0, region.half[2]]
+        return position + rotation @ bottom
+
+    def holds(self, name: str) -> bool:
+        """Tell whether the gripper holds an object."""
+        return self._simulation.holds(self._robot.name, name)
+
+    def solve(self, position: FloatArray, closing: float = 0.0) -> FloatArray:
+        """Return joint positions (rad) that put the tool there; raises ``BehaviourFailed``."""
+        where, rotation = frame_of(tool_pose(self._robot.base, np.asarray(position), closing))
+        try:
+            return self._arm.solve(self._arm.towards(where), where, rotation)
+        except BehaviourError as error:
+            raise BehaviourFailed(
+                f"{self._robot.name} cannot reach {np.round(position, 3).tolist()}: {error}"
+            ) from error
+
+    def command(self, joints: FloatArray, opening: float) -> None:
+        """Set the targets of servos (rad) and gripper (0 closed, 1 open); raises ``ValueError`` for others."""
+        model = self._robot.model
+        targets = np.asarray(joints, dtype=float)
+        if targets.shape != self.joints.shape or not np.all(np.isfinite(targets)):
+            raise ValueError(f"joints must be {len(self.joints)} finite numbers, not {joints!r:.200}")
+        if not np.isfinite(opening):
+            raise ValueError(f"opening must be a number from 0 to 1, not {opening!r}")
+        share = min(1.0, max(0.0, float(opening)))
+        control = model.gripper_closed + share * (model.gripper_open - model.gripper_closed)
+        self._simulation.command(self._robot, targets, control)
+
+    def emit(self, event: str) -> None:
+        """Stamp an event of the behaviour with the present time."""
+        self._emit(event)
+
+
+def run_user_behaviour(
+    implementation: Implementation, world: AgentWorld, behaviour: str, arguments: Arguments
+) -> Iterator[None]:
+    """Yield once per control tick until the behaviour is over.
+
+    Raises ``BehaviourError`` when it says that it has failed, and ``UserError`` for any other exception in it.
+    """
+    name = implementation.name
+    model = "" if implementation.origin is None else implementation.origin.file
+    try:
+        own: UserBehaviour = called(name, load_attribute(name, model))
+        called(name, own.reset, world, behaviour, arguments)
+        while not _is_over(name, own):
+            yield
+    except UserCodeError as error:
+        if isinstance(error.__cause__, BehaviourFailed):
+            raise BehaviourError(f"{error.__cause__} at {world.time:.2f} s") from error
+        fault = replace(error.fault, origin=implementation.iri)
+        raise UserError(f"{at(implementation.origin)}{error} at {world.time:.2f} s", fault) from error
+
+
+def _is_over(name: str, own: UserBehaviour) -> bool:
+    """Let a behaviour do its next tick. One that returns nothing goes on; any other answer is refused."""
+    answer: Any = called(name, own.step)
+    if answer is None or isinstance(answer, bool | np.bool_):
+        return bool(cast(Any, answer))
+    message = f"{name}.step must return True or False, not {answer!r:.60}"
+    raise refused(name, message, definition_of(own.step))

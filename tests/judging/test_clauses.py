@@ -1,0 +1,83 @@
+"""Deciding clauses on traces made by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from monitor.traces import still, trace_of
+from robbdd_tools.catalog.api import Region
+from robbdd_tools.judging.clauses import decide, is_closed
+from robbdd_tools.judging.sentences import read_clause
+from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.monitor.verdict import Outcome
+
+BOX = Region((0.0, 0.0, 0.0), (0.1, 0.1, 0.1))
+REGIONS = {"left": (("bin1", BOX),), "right": (("bin2", BOX),)}
+EVENTS = {"t:e": "pick-start", "t:later": "pick-end"}
+
+
+def a_trace(finished: bool = True) -> Trace:
+    paths = {
+        "bin1": still(5, (0.0, 0.0, 0.0)),
+        "bin2": still(5, (1.0, 0.0, 0.0)),
+        "ball": still(5, (0.0, 0.0, 0.02)),
+        "cube": still(5, (1.0, 0.0, 0.05)),
+    }
+    return trace_of(paths, {"t:e": 0.2}, {"arm": {"ball": [1.0] * 5}}, finished)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "outcome", "robustness"),
+    [
+        ('"ball" is located at "left" after event "t:e"', Outcome.HOLDS, 0.08),
+        ('not ( "ball" is located at "left" after event "t:e" )', Outcome.VIOLATED, -0.08),
+        ('"ball" is located at "any of [\'right\', \'left\']" after event "t:e"', Outcome.HOLDS, 0.08),
+        ('"any of [\'ball\', \'cube\']" is located at "right" after event "t:e"', Outcome.HOLDS, 0.05),
+        ('"[\'ball\', \'cube\']" is located at "left" after event "t:e"', Outcome.VIOLATED, -0.9),
+        ("\"['ball', 'cube']\" are sorted into \"['left', 'right']\" after event \"t:e\"", Outcome.HOLDS, 0.05),
+        ('"ball" are sorted into "left" after event "t:e"', Outcome.HOLDS, 0.08),
+        (
+            '( "ball" is located at "right" after event "t:e" or "ball" is held by "arm" after event "t:e" )',
+            Outcome.HOLDS,
+            1.0,
+        ),
+        ('( the lamp is green or "ball" is held by "arm" after event "t:e" )', Outcome.HOLDS, 1.0),
+        ('( the lamp is green and "ball" is held by "arm" after event "t:e" )', Outcome.UNKNOWN, None),
+    ],
+)
+def test_decides(sentence: str, outcome: Outcome, robustness: float | None) -> None:
+    found = decide(read_clause(sentence), a_trace(), REGIONS, EVENTS.keys())
+    assert found.outcome is outcome
+    assert found.robustness == (None if robustness is None else pytest.approx(robustness))
+
+
+@pytest.mark.parametrize(
+    ("sentence", "reason"),
+    [
+        ("the lamp is green", "no step definition for 'the lamp is green'"),
+        ('"ball" is located at "left" after event "t:other"', "nothing in the scenario emits event t:other"),
+        ('"ball" is located at "left" after event "t:later"', "event t:later never occurred"),
+        ('"ball" has config "mass" = "1" before event "t:e"', "the trace has no record of 'ball mass'"),
+        ('"ball" is located at "nowhere" after event "t:e"', "the trace has no record of 'nowhere'"),
+        ('"ball" is located at "any of []" after event "t:e"', "there is nothing to judge: the set is empty"),
+    ],
+)
+def test_says_why_it_is_unknown(sentence: str, reason: str) -> None:
+    found = decide(read_clause(sentence), a_trace(), REGIONS, EVENTS.keys())
+    assert (found.outcome, found.reason) == (Outcome.UNKNOWN, reason)
+
+
+def test_a_clause_stays_open_until_all_its_windows_are_closed() -> None:
+    both = read_clause(
+        '( "ball" is located at "left" after event "t:e" and "ball" is located at "left" after event "t:later" )'
+    )
+    assert not is_closed(both, a_trace(finished=False), EVENTS.keys())
+    assert is_closed(both, a_trace(finished=True), EVENTS.keys())
+
+
+def test_nobody_waits_for_what_cannot_be_judged() -> None:
+    for sentence in (
+        "the lamp is green",
+        '"ball" is located at "left" after event "t:other"',
+    ):
+        assert is_closed(read_clause(sentence), a_trace(finished=False), EVENTS.keys())

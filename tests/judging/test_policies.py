@@ -1,0 +1,254 @@
+"""Observation policies: on constructed traces and in physics, both ways."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from monitor.traces import still, trace_of
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.judging.clauses import decide
+from robbdd_tools.judging.policies import with_policies
+from robbdd_tools.judging.sentences import Fluent, Junction, fluents_of, read_clause
+from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
+from robbdd_tools.monitor.time import After, During
+from robbdd_tools.monitor.trace import Trace
+from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.protocol.specs import ClauseSpec, ExecutionSpec, ScenarioSpec
+from world.worlds import BIN_WS, CUBE, PANDA, execution, pick_place, scenario
+
+CLAUSE = "https://x/at-goal"
+SENTENCE = f'"{CUBE}" is located at "{BIN_WS}" from "t:a" until "t:b"'
+STATED = ClauseSpec(7, CLAUSE, "at-goal", "then", SENTENCE)
+TRUTH = Provider("x:truth", "ground-truth", 100.0)
+NEAR = Rule("distance", form="less-than", bounds=(0.5,))
+
+
+def spec_of(
+    rule: Rule = NEAR,
+    provider: Provider = TRUTH,
+    targets: tuple[str, ...] = ("t:var-thing", "env:bin"),
+    horizon: float | None = None,
+    seed: int = 1,
+    model: str = "",
+) -> ScenarioSpec:
+    policy = Policy("x:policy", CLAUSE, rule, horizon, (Observation("x:seen", provider, targets),))
+    way = ExecutionSpec("x:run", "x:run", Implementation("x:impl", "catalog", "pick-place"), policies=(policy,))
+    return replace(scenario(seed=seed), values={"t:var-thing": CUBE}, execution=way, model=model)
+
+
+def moving(distances: list[float]) -> Trace:
+    """A cube at some distances from a bin, sampled every 0.1 s."""
+    path = [[distance, 0.0, 0.0] for distance in distances]
+    events = {"t:a": 0.0, "t:b": (len(path) - 1) * 0.1}
+    return trace_of({CUBE: path, "env:bin": still(len(path))}, events)
+
+
+def judged(spec: ScenarioSpec, trace: Trace, sentence: str = SENTENCE) -> Verdict:
+    clause = with_policies(read_clause(sentence), STATED, spec)
+    return decide(clause, trace, {}, {"t:a", "t:b"})
+
+
+@pytest.mark.parametrize(
+    ("form", "bounds", "margin"),
+    [
+        ("less-than", (0.5,), 0.1),
+        ("less-than", (0.3,), -0.1),
+        ("greater-than", (0.1,), 0.1),
+        ("greater-than", (0.3,), -0.1),
+        ("between", (0.1, 0.5), 0.1),
+        ("between", (0.25, 0.5), -0.05),
+        ("equals", (0.3, 0.15), 0.05),
+        ("equals", (0.2, 0.15), -0.05),
+    ],
+)
+def test_every_form_of_a_distance_has_its_margin(form: str, bounds: tuple[float, ...], margin: float) -> None:
+    found = judged(spec_of(Rule("distance", form=form, bounds=bounds)), moving([0.2, 0.3, 0.4]))
+    assert (found.robustness, found.unit) == (pytest.approx(margin), "m")
+    assert found.outcome is (Outcome.HOLDS if margin >= 0 else Outcome.VIOLATED)
+
+
+def test_a_policy_replaces_the_evaluator_of_its_clause_and_of_no_other() -> None:
+    spec = spec_of()
+    assert judged(spec, moving([0.2])).outcome is Outcome.HOLDS
+    other = with_policies(read_clause(SENTENCE), replace(STATED, iri="https://x/other"), spec)
+    assert decide(other, moving([0.2]), {}, {"t:a", "t:b"}).outcome is Outcome.UNKNOWN
+
+
+def test_a_part_of_a_group_has_its_policy() -> None:
+    group = read_clause(f"( {SENTENCE} or not ( {SENTENCE} ) )")
+    found = with_policies(group, replace(STATED, parts=("https://x/other", CLAUSE)), spec_of())
+    assert isinstance(found, Junction)
+    assert [fluent.predicate.name for fluent in fluents_of(found)] == ["located-at", "x:policy"]
+
+
+def test_free_text_is_judged_by_a_policy() -> None:
+    text = 'the cube is near the bin from "t:a" until "t:b"'
+    assert judged(spec_of(), moving([0.2]), text).outcome is Outcome.HOLDS
+    assert judged(spec_of(), moving([0.6]), text).outcome is Outcome.VIOLATED
+
+
+def test_the_horizon_of_a_policy_takes_the_place_of_that_of_the_clause() -> None:
+    clause = with_policies(read_clause('the cube is near after event "t:a"'), STATED, spec_of(horizon=2.0))
+    assert isinstance(clause, Fluent)
+    assert clause.time == After("t:a", 2.0)
+    interval = with_policies(read_clause(SENTENCE), STATED, spec_of(horizon=2.0))
+    assert isinstance(interval, Fluent)
+    assert interval.time == During("t:a", "t:b")
+
+
+def test_a_slow_provider_sees_nothing_between_its_looks() -> None:
+    trace = moving([0.2, 0.2, 0.2, 0.9, 0.2, 0.2])
+    assert judged(spec_of(), trace).outcome is Outcome.VIOLATED
+    assert judged(spec_of(provider=replace(TRUTH, rate=5.0)), trace).outcome is Outcome.HOLDS
+
+
+def test_latency_makes_what_is_seen_older() -> None:
+    trace = moving([0.9, 0.2, 0.2, 0.2])
+    later = replace(trace, events=tuple(replace(s, time=0.2) if s.name == "t:a" else s for s in trace.events))
+    assert judged(spec_of(), later).outcome is Outcome.HOLDS
+    assert judged(spec_of(provider=replace(TRUTH, latency=0.2)), later).outcome is Outcome.VIOLATED
+    found = judged(spec_of(provider=replace(TRUTH, latency=0.2)), trace)
+    assert found.reason == "nothing was known of env:cube1 at 0.00 s: it is seen 0.2 s later"
+
+
+def test_noise_follows_from_the_seed_and_has_its_deviation() -> None:
+    noisy = replace(TRUTH, noise=0.01)
+    far = Rule("distance", form="equals", bounds=(0.0, 1.0))
+    trace = moving([0.0] * 2000)
+    one, again = (judged(spec_of(far, noisy), trace).robustness for _ in range(2))
+    assert one == again
+    assert one != judged(spec_of(far, noisy, seed=2), trace).robustness
+    assert one is not None
+    # The largest of 2000 differences of two noisy points in space, with a deviation of 0.014 m on each axis.
+    assert 0.03 < 1.0 - one < 0.1
+
+
+def test_noise_of_a_longer_trace_begins_as_that_of_a_shorter_one() -> None:
+    far = Rule("distance", form="equals", bounds=(0.0, 1.0))
+    short, long = moving([0.0] * 5), moving([0.0] * 50)
+    noisy = spec_of(far, replace(TRUTH, noise=0.01))
+    cut = replace(long, events=short.events)
+    assert judged(noisy, short).robustness == judged(noisy, cut).robustness
+
+
+def test_observations_too_far_apart_in_time_are_no_evidence() -> None:
+    slow = Observation("x:slow", replace(TRUTH, rate=1.0), ("env:bin",))
+    fast = Observation("x:fast", TRUTH, (CUBE,))
+    for offset, outcome in ((0.1, Outcome.UNKNOWN), (1.0, Outcome.HOLDS)):
+        spec = spec_of(replace(NEAR, max_time_offset=offset))
+        assert spec.execution is not None
+        policy = replace(spec.execution.policies[0], observations=(slow, fast))
+        found = judged(replace(spec, execution=replace(spec.execution, policies=(policy,))), moving([0.2] * 6))
+        assert found.outcome is outcome
+
+
+@pytest.mark.parametrize(
+    ("spec", "reason"),
+    [
+        (
+            spec_of(Rule("topic", "/seen")),
+            "its verdicts come from the ROS topic '/seen', which a simulation does not have",
+        ),
+        (
+            spec_of(provider=Provider("x:p", "topic", source="/poses")),
+            "env:cube1 is observed by a ROS topic '/poses', which a simulation does not have",
+        ),
+        (spec_of(targets=("t:var-thing",)), "a distance is between two things; 1 are observed"),
+        (spec_of(targets=("t:var-thing", "env:void")), "the trace has no record of 'env:void'"),
+        (spec_of(provider=replace(TRUTH, rate=0.0)), "the update rate of the provider of env:cube1 must be above 0 Hz"),
+    ],
+)
+def test_what_cannot_be_observed_is_unknown_and_says_why(spec: ScenarioSpec, reason: str) -> None:
+    found = judged(spec, moving([0.2, 0.2]))
+    assert (found.outcome, found.reason) == (Outcome.UNKNOWN, reason)
+
+
+def by_code(folder: Path, module: str, body: str) -> Verdict:
+    (folder / f"{module}.py").write_text(f"import numpy as np\n\n\ndef judge(evidence, arguments):\n    {body}\n")
+    return judged(spec_of(Rule("python", f"{module}:judge"), model=str(folder / "m.bddx")), moving([0.2, 0.4]))
+
+
+@pytest.mark.parametrize(
+    ("module", "body", "outcome", "robustness"),
+    [
+        ("by_margin", "return 0.5 - evidence.position(arguments['thing'])[:, 0]", Outcome.HOLDS, 0.1),
+        ("by_truth", "return evidence.position(arguments['thing'])[:, 0] < 0.3", Outcome.VIOLATED, -1.0),
+        ("by_one_answer", "return bool(evidence.stamps('env:bin')[0] == 0.0)", Outcome.HOLDS, 1.0),
+        ("by_nothing_known", "return np.full(len(evidence.times), np.nan)", Outcome.UNKNOWN, None),
+    ],
+)
+def test_code_of_the_user_judges(
+    tmp_path: Path, module: str, body: str, outcome: Outcome, robustness: float | None
+) -> None:
+    found = by_code(tmp_path, module, body)
+    assert found.outcome is outcome
+    assert found.robustness == (None if robustness is None else pytest.approx(robustness))
+
+
+@pytest.mark.parametrize(
+    ("module", "body", "reason"),
+    [
+        ("divides", "return 1 / 0", "divides:judge failed: ZeroDivisionError: division by zero ({}:5)"),
+        ("gives_up", "raise SystemExit(3)", "gives_up:judge failed: SystemExit: 3 ({}:5)"),
+        ("looks_away", "return evidence.position('env:lamp')", "looks_away:judge failed: KeyError: 'env:lamp' ({}:5)"),
+        ("broken", "return (", "broken:judge failed: SyntaxError: '(' was never closed ({}:5)"),
+        ("says", "return 'yes'", "says:judge must return one number or truth value, or one for each of the 2 samples"),
+    ],
+)
+def test_a_failure_of_the_users_code_is_told_as_theirs(tmp_path: Path, module: str, body: str, reason: str) -> None:
+    found = by_code(tmp_path, module, body)
+    assert (found.outcome, found.reason) == (Outcome.UNKNOWN, reason.format(tmp_path / f"{module}.py"))
+
+
+def test_a_module_that_is_not_there_is_explained(tmp_path: Path) -> None:
+    spec = spec_of(Rule("python", "no_such_module:judge"), model=str(tmp_path / "m.bddx"))
+    found = judged(spec, moving([0.2]))
+    assert found.reason == ("no_such_module:judge failed: ModuleNotFoundError: No module named 'no_such_module'")
+
+
+@pytest.fixture(scope="module")
+def carried() -> Execution:
+    run = execution([pick_place()])
+    run.advance_until(lambda _: False)
+    return run
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize(("bound", "outcome"), [(0.15, Outcome.HOLDS), (0.001, Outcome.VIOLATED)])
+def test_in_physics_a_distance_to_the_goal_is_observed(carried: Execution, bound: float, outcome: Outcome) -> None:
+    spec = spec_of(Rule("distance", form="less-than", bounds=(bound,)), targets=("t:var-thing", BIN_WS))
+    clause = with_policies(read_clause('it is near after event "t:place-end"'), STATED, spec)
+    assert decide(clause, carried.trace, carried.regions, {"t:place-end"}).outcome is outcome
+
+
+@pytest.mark.physics
+def test_in_physics_latency_and_noise_are_seen(carried: Execution) -> None:
+    window = 'the tool is slow from "t:pick-start" until "t:place-end"'
+    tool = (CUBE, PANDA)
+    within = Rule("distance", form="less-than", bounds=(2.0,))
+    margins: list[float] = []
+    for provider in (TRUTH, replace(TRUTH, noise=0.02), replace(TRUTH, latency=0.2)):
+        clause = with_policies(read_clause(window), STATED, spec_of(within, provider, tool))
+        found = decide(clause, carried.trace, carried.regions, {"t:pick-start", "t:place-end"})
+        assert found.robustness is not None
+        margins.append(found.robustness)
+    assert np.ptp(margins[:2]) > 1e-4
+    assert len(set(margins)) == 3
+
+
+def test_users_code_gets_what_fills_the_slots_and_quantified_variables_of_its_clause(tmp_path: Path) -> None:
+    (tmp_path / "own_arguments.py").write_text(
+        "import numpy as np\n\n\ndef judge(evidence, arguments):\n"
+        "    assert arguments == {'thing': 'env:bin', 'part': 'env:cube1', 'others': ['a', 'b']}, arguments\n"
+        "    return 0.3 - evidence.position(arguments['part'])[:, 0]\n"
+    )
+    arguments = {"thing": "env:bin", "part": CUBE, "others": ["a", "b"]}
+    spec = spec_of(Rule("python", "own_arguments:judge"), targets=("t:part",), model=str(tmp_path / "m.bddx"))
+    clause = with_policies(read_clause(SENTENCE), replace(STATED, arguments=(arguments,)), spec)
+    found = decide(clause, moving([0.2, 0.4]), {}, {"t:a", "t:b"})
+    assert (found.outcome, found.robustness, found.reason) == (Outcome.VIOLATED, pytest.approx(-0.1), "")

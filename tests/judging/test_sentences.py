@@ -1,0 +1,110 @@
+"""Reading sentences of features back into clauses, behaviours and events."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robbdd_tools.judging.sentences import (
+    AnyOf,
+    Fluent,
+    Junction,
+    Unmatched,
+    fluents_of,
+    read_clause,
+    read_doing,
+    read_event,
+)
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+
+AT = '"env:cube" is located at "env:bin_ws"'
+
+
+def fluent(text: str) -> Fluent:
+    found = read_clause(text)
+    assert isinstance(found, Fluent)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("words", "constraint"),
+    [
+        ('before event "t:e"', Before("t:e")),
+        ('after event "t:e"', After("t:e")),
+        ('within 0.5 seconds before event "t:e"', Before("t:e", 0.5)),
+        ('within 2 seconds after event "t:e"', After("t:e", 2.0)),
+        ('within 1e-05 seconds after event "t:e"', After("t:e", 1e-05)),
+        ('from "t:a" until "t:b"', During("t:a", "t:b")),
+    ],
+)
+def test_reads_every_time_constraint(words: str, constraint: TimeConstraint) -> None:
+    assert fluent(f"{AT} {words}").time == constraint
+
+
+def test_reads_sets_and_existential_choices_inside_the_quotes() -> None:
+    found = fluent("\"['p:a', 'p:b']\" are sorted into \"any of ['p:x', 'p:y']\" after event \"t:e\"")
+    assert found.arguments == {"objects": ("p:a", "p:b"), "workspaces": AnyOf(("p:x", "p:y"))}
+
+
+def test_a_value_may_hold_anything() -> None:
+    found = fluent('"env:bin" has config "height" = "0.9 of [the usual" before event "t:e"')
+    assert found.arguments["value"] == "0.9 of [the usual"
+
+
+def test_reads_nested_junctions() -> None:
+    text = f'( {AT} after event "t:e" or not ( "env:cube" is held by "env:arm" after event "t:e" ) )'
+    found = read_clause(text)
+    assert isinstance(found, Junction)
+    assert found.operator == "or"
+    assert isinstance(found.operands[1], Junction)
+    assert found.operands[1].operator == "not"
+    assert [one.predicate.name for one in fluents_of(found)] == ["located-at", "held-by"]
+
+
+def test_reads_an_enumeration_without_parentheses() -> None:
+    found = read_clause(f'{AT} before event "t:a" and {AT} after event "t:b"')
+    assert isinstance(found, Junction)
+    assert (found.operator, len(found.operands)) == ("and", 2)
+
+
+def test_words_within_quotes_do_not_split_a_sentence() -> None:
+    text = '"this and that" is located at "( here or there" after event "t:e"'
+    assert fluent(text).arguments == {"object": "this and that", "workspace": "( here or there"}
+
+
+def test_what_nothing_says_is_unmatched() -> None:
+    assert read_clause("the lamp is green") == Unmatched("the lamp is green")
+    assert read_clause(AT) == Unmatched(AT)
+
+
+def test_a_part_that_nothing_says_does_not_hide_the_others() -> None:
+    found = read_clause(f'( the lamp is green or {AT} after event "t:e" )')
+    assert isinstance(found, Junction)
+    assert found.operands[0] == Unmatched("the lamp is green")
+    assert isinstance(found.operands[1], Fluent)
+
+
+def test_the_longer_behaviour_is_not_taken_for_the_shorter() -> None:
+    both = read_doing('"env:arm" picks "env:cube" and places it at "env:bin_ws"')
+    pick = read_doing('"env:arm" picks "env:cube"')
+    assert both is not None
+    assert pick is not None
+    assert (both.behaviour.name, pick.behaviour.name) == ("pick-place", "pick")
+    assert read_doing('"env:arm" juggles "env:cube"') is None
+
+
+def test_reads_an_event() -> None:
+    assert read_event('event "t:e" occurs') == "t:e"
+    assert read_event('"env:arm" picks "env:cube"') is None
+
+
+@given(st.text(max_size=80))
+def test_no_text_raises(text: str) -> None:
+    read_clause(text)
+    read_doing(text)
+
+
+@given(st.text(alphabet='()"andor not', max_size=60))
+def test_no_arrangement_of_parentheses_raises(text: str) -> None:
+    read_clause(f"( {text} )")

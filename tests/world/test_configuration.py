@@ -1,0 +1,177 @@
+"""Configurations are applied before a scenario starts and read back from the world that came of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.objects.bin import HEIGHT
+from robbdd_tools.judging.clauses import decide
+from robbdd_tools.judging.sentences import read_clause
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.protocol.specs import ConfigSpec, SceneSpec
+from robbdd_tools.world.errors import SceneError
+from world.worlds import BALL, BIN, BIN_WS, CUBE, OTHER_BIN, PANDA, SCENE, execution, pick_place
+
+pytestmark = pytest.mark.physics
+
+
+def configured(*wanted: tuple[str, str, str]) -> SceneSpec:
+    return replace(SCENE, config=tuple(ConfigSpec(*one) for one in wanted))
+
+
+def verdict(run: Execution, target: str, name: str, value: str) -> Outcome:
+    clause = read_clause(f'"{target}" has config "{name}" = "{value}" before event "t:start"')
+    return decide(clause, run.measured(clause, run.trace), run.regions, {"t:start"}).outcome
+
+
+def started(scene: SceneSpec = SCENE, seed: int = 1) -> Execution:
+    run = execution([pick_place()], scene, seed)
+    run.advance_until(lambda trace: trace.event_time("t:start") is not None)
+    return run
+
+
+@pytest.mark.parametrize(
+    ("target", "name", "value"),
+    [
+        (CUBE, "mass", "0.2"),
+        (CUBE, "friction", "0.3"),
+        (BIN, "height_scale", "0.8"),
+        (BIN_WS, "height_scale", "1.2"),
+        (PANDA, "ee_speed", "0.25"),
+        (PANDA, "approach_speed", "0.1"),
+        (PANDA, "travel_height", "0.4"),
+        (PANDA, "grip_time", "0.08"),
+        (PANDA, "release_time", "1"),
+        (PANDA, "position_range", "dense"),
+        (BALL, "position_range", "0.4 0.5 -0.1 0.1"),
+        (PANDA, "seed", "17"),
+        ("env:bench_scene", "seed", "17"),
+    ],
+)
+def test_a_configuration_holds_once_it_is_applied_and_not_before(target: str, name: str, value: str) -> None:
+    run = started(configured((target, name, value)))
+    assert verdict(run, target, name, value) is Outcome.HOLDS
+    plain = verdict(started(), target, name, value)
+    assert plain is (Outcome.UNKNOWN if target == "env:bench_scene" else Outcome.VIOLATED)
+
+
+def test_the_verdict_comes_from_the_world_and_not_from_the_wish() -> None:
+    run = started(configured((CUBE, "mass", "0.2")))
+    assert run.simulation.model.body(CUBE).mass[0] == pytest.approx(0.2)
+    assert verdict(run, CUBE, "mass", "0.3") is Outcome.VIOLATED
+
+
+def test_a_taller_bin_is_taller_and_so_is_its_workspace() -> None:
+    run = started(configured((BIN, "height_scale", "1.5")))
+    model = run.simulation.model
+    tops = {
+        name: max(float(model.geom_pos[g, 2] + model.geom_size[g, 2]) for g in range(model.ngeom) if owner[g] == body)
+        for name in (BIN, OTHER_BIN)
+        for owner, body in [(model.geom_bodyid, model.body(name).id)]
+    }
+    # Above the middle.
+    assert tops == {BIN: pytest.approx(1.5 * HEIGHT / 2), OTHER_BIN: pytest.approx(HEIGHT / 2)}
+    ((_, region),) = run.regions[BIN_WS]
+    assert region.center[2] + region.half[2] == pytest.approx(1.5 * HEIGHT / 2)
+
+
+def test_things_lie_within_the_range_that_is_asked_for() -> None:
+    scene = configured((PANDA, "position_range", "0.35 0.45 0.1 0.3"), (BALL, "position_range", "dense"))
+    for seed in range(5):
+        run = started(scene, seed)
+        x, y, _ = run.trace.positions[0, run.trace.column(CUBE)]
+        assert 0.35 - 1e-3 <= x <= 0.45 + 1e-3
+        assert 0.1 - 1e-3 <= y <= 0.3 + 1e-3
+
+
+def test_a_slower_arm_takes_longer_and_stays_below_its_speed() -> None:
+    ends: list[float] = []
+    for speed in (0.2, 0.5):
+        run = execution([pick_place()], configured((PANDA, "ee_speed", str(speed))))
+        trace = run.advance_until(lambda _: False)
+        tool = trace.positions[:, trace.column(PANDA)]
+        speeds = np.linalg.norm(np.diff(tool, axis=0), axis=1) / np.diff(trace.times)
+        assert speeds.max() < 1.1 * speed
+        ends.append(trace.event_time("t:place-end") or 0.0)
+    assert ends[0] > 1.5 * ends[1] > 0.0
+
+
+def ending(*wanted: tuple[str, str, str], robot: str = PANDA) -> Execution:
+    run = execution([pick_place(agent=robot)], replace(configured(*wanted), agents=(robot,)))
+    run.advance_until(lambda _: False)
+    assert run.completed == 1
+    return run
+
+
+def lasts(run: Execution, start: str, end: str) -> float:
+    """Return the time from one event to another, s."""
+    begins, ends = run.trace.event_time(start), run.trace.event_time(end)
+    assert begins is not None
+    assert ends is not None
+    return ends - begins
+
+
+def highest(run: Execution, robot: str) -> float:
+    """Return the greatest height (m) of the tool while it travels with its load."""
+    start, end = run.trace.event_time("t:place-start"), run.trace.event_time("t:place-end")
+    assert start is not None
+    assert end is not None
+    during = (run.trace.times >= start) & (run.trace.times <= end)
+    return float(run.trace.positions[during, run.trace.column(robot), 2].max())
+
+
+@pytest.mark.parametrize("robot", [PANDA, "env:ur10"])
+def test_the_phases_of_pick_and_place_take_as_long_as_is_asked_for(robot: str) -> None:
+    plain = ending(robot=robot)
+    picks, places = lasts(plain, "t:pick-start", "t:pick-end"), lasts(plain, "t:place-start", "t:place-end")
+    waits = ending((robot, "release_time", "1.32"), robot=robot)
+    assert lasts(waits, "t:place-start", "t:place-end") == pytest.approx(places + 1.0, abs=0.05)
+    assert lasts(waits, "t:pick-start", "t:pick-end") == pytest.approx(picks)
+    watches = ending((robot, "grip_time", "0.66"), robot=robot)
+    times = 2 if robot == PANDA else 1
+    assert lasts(watches, "t:pick-start", "t:pick-end") == pytest.approx(picks + 0.5 * times, abs=0.05)
+    assert lasts(ending((robot, "approach_speed", "0.05"), robot=robot), "t:pick-start", "t:pick-end") > picks + 1.0
+
+
+def test_the_tool_travels_as_high_as_is_asked_for() -> None:
+    assert highest(ending(), PANDA) == pytest.approx(0.30, abs=0.01)
+    assert highest(ending((PANDA, "travel_height", "0.4")), PANDA) == pytest.approx(0.40, abs=0.01)
+
+
+def test_what_is_written_out_as_it_is_by_itself_changes_no_bit() -> None:
+    written = (("ee_speed", "0.5"), ("travel_height", "0.3"), ("grip_time", "0.16"), ("release_time", "0.32"))
+    plain, same = ending(), ending(*((PANDA, name, value) for name, value in written))
+    assert plain.trace.positions.tobytes() == same.trace.positions.tobytes()
+    assert plain.trace.events == same.trace.events
+
+
+def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
+    scene = configured((PANDA, "seed", "5"))
+    one, two, plain = started(scene, 1), started(scene, 2), started(seed=5)
+    assert one.trace.positions[0].tobytes() == two.trace.positions[0].tobytes() == plain.trace.positions[0].tobytes()
+
+
+@pytest.mark.parametrize(
+    ("wanted", "message"),
+    [
+        (
+            [(CUBE, "colour", "red")],
+            "there is no configuration 'colour'; the known ones are approach_speed, belt_speed,",
+        ),
+        ([(CUBE, "mass", "heavy")], "'env:cube1' cannot be configured: 'mass' cannot be 'heavy': it is a number"),
+        ([(CUBE, "ee_speed", "1")], "'env:cube1' has no ee_speed: that is of an agent"),
+        ([(PANDA, "mass", "1")], "'env:panda' has no mass: that is of a loose object"),
+        ([("env:bench", "height_scale", "1")], "'env:bench' has no height_scale: that is of a bin, tray or shelf"),
+        ([("env:bolt", "mass", "1")], "'env:bolt', which is to have mass = 1, is not in the scene"),
+        ([(CUBE, "mass", "1"), (CUBE, "mass", "2")], "'env:cube1' is to have mass = 1 and 2"),
+        ([(CUBE, "position_range", "1.5 1.6 0 0.1")], "no part of 'env:bench', where 'env:cube1' is to be"),
+    ],
+)
+def test_what_cannot_be_set_up_is_explained(wanted: list[tuple[str, str, str]], message: str) -> None:
+    with pytest.raises(SceneError) as error:
+        execution([pick_place()], configured(*wanted))
+    assert message in str(error.value)

@@ -1,0 +1,76 @@
+"""Grasps of objects as they lie."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from robbdd_tools.catalog.api import ObjectModel, Shape, ShapeKind
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.world.errors import BehaviourError
+from robbdd_tools.world.grasp import finger_grasps, suction_grasps
+
+OBJECTS = load_catalog().objects
+AT = np.array([0.4, 0.1, 0.2])
+UPRIGHT = np.eye(3)
+STROKE = 0.08
+
+
+def thing(kind: ShapeKind, *size: float) -> ObjectModel:
+    a, b, c = (*size, 0.0, 0.0)[:3]
+    return ObjectModel("x", ("x",), (Shape(kind, (a, b, c)),), 0.1, 0.5, True, True, c, (1, 1, 1, 1), "X.")
+
+
+def test_a_cube_is_taken_across_its_faces_at_its_middle() -> None:
+    found = finger_grasps("cube", OBJECTS["cube"], AT, UPRIGHT, STROKE)
+    assert sorted(round(grasp.closing % pi, 6) for grasp in found) == [0.0, round(pi / 2, 6)]
+    assert all(grasp.width == pytest.approx(0.0315) for grasp in found)
+    assert all(grasp.position == pytest.approx(AT) for grasp in found)
+
+
+def test_the_grasp_turns_with_the_object() -> None:
+    half = sqrt(0.5)
+    turned = np.array([[half, -half, 0.0], [half, half, 0.0], [0.0, 0.0, 1.0]])
+    found = finger_grasps("cube", OBJECTS["cube"], AT, turned, STROKE)
+    assert sorted(round(grasp.closing % pi, 6) for grasp in found) == [round(pi / 4, 6), round(3 * pi / 4, 6)]
+
+
+def test_a_ball_is_taken_from_every_side() -> None:
+    assert len(finger_grasps("ball", OBJECTS["ball"], AT, UPRIGHT, STROKE)) == 8
+
+
+def test_a_flat_thing_is_taken_only_where_it_is_narrow_enough() -> None:
+    (only,) = finger_grasps("plate", thing(ShapeKind.BOX, 0.06, 0.02, 0.01), AT, UPRIGHT, STROKE)
+    assert only.width == pytest.approx(0.04)
+    assert abs(only.closing) == pytest.approx(pi / 2)
+
+
+def test_a_tipped_thing_is_taken_as_it_lies() -> None:
+    tipped = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    found = finger_grasps("rod", thing(ShapeKind.BOX, 0.1, 0.02, 0.03), AT, tipped, STROKE)
+    assert sorted(grasp.width for grasp in found) == pytest.approx([0.04, 0.06])
+
+
+def test_a_tall_thing_is_taken_no_deeper_than_the_fingers_reach() -> None:
+    found = finger_grasps("post", thing(ShapeKind.CYLINDER, 0.02, 0.1), AT, UPRIGHT, STROKE)
+    assert all(grasp.position[2] == pytest.approx(0.2 + 0.1 - 0.03) for grasp in found)
+
+
+def test_what_is_too_wide_is_explained() -> None:
+    with pytest.raises(BehaviourError, match=r"crate is 0\.200 m wide, the gripper opens 0\.080 m"):
+        finger_grasps("crate", thing(ShapeKind.BOX, 0.1, 0.1, 0.1), AT, UPRIGHT, STROKE)
+
+
+def test_a_cup_takes_hold_on_the_top() -> None:
+    for kind in ("cube", "ball", "box"):
+        model = OBJECTS[kind]
+        found = suction_grasps(kind, model, AT, UPRIGHT, 0.03)
+        assert all(grasp.position == pytest.approx([0.4, 0.1, 0.2 + model.rest_height]) for grasp in found)
+        assert all(grasp.below == pytest.approx(2 * model.rest_height) for grasp in found)
+
+
+def test_what_is_smaller_than_the_cup_is_explained() -> None:
+    with pytest.raises(BehaviourError, match=r"bolt is 0\.020 m wide, the suction cup 0\.030 m"):
+        suction_grasps("bolt", thing(ShapeKind.BOX, 0.01, 0.02, 0.01), AT, UPRIGHT, 0.03)

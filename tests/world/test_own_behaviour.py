@@ -1,0 +1,97 @@
+"""Users' own behaviours: executed, their events stamped, their errors told as theirs."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.executable import Implementation, Origin
+from robbdd_tools.protocol.specs import ExecutionSpec
+from robbdd_tools.world.errors import SceneError
+from world.worlds import BIN_WS, CUBE, PANDA, pick_place, scenario
+
+NOD = """
+class Nod:
+    def reset(self, world, behaviour, arguments):
+        self.world, self.left, self.start = world, 30, world.joints
+        self.told = (behaviour, dict(arguments))
+        world.emit("pick-start")
+
+    def step(self):
+        goal = self.start.copy()
+        goal[5] += 0.1
+        self.world.command(self.start + (goal - self.start) * min(1.0, (31 - self.left) / 25), 1.0)
+        self.left -= 1
+        if self.left == 10:
+            self.world.emit("pick-end")
+        if not self.left:
+            self.world.emit("place-start")
+            self.world.emit("place-end")
+        return not self.left
+"""
+counter = iter(range(1000))
+
+
+def run(folder: Path, code: str, attribute: str = "Nod", kind: str = "python") -> Execution:
+    module = f"own_behaviour_{next(counter)}"
+    (folder / f"{module}.py").write_text(code, encoding="utf-8")
+    origin = Origin(str(folder / "run.bddx"), 5, 3)
+    name = f"{module}:{attribute}" if kind == "python" else attribute
+    execution = ExecutionSpec("x:run", "x:run", Implementation("x:own", kind, name, origin))
+    return Execution(replace(scenario(), execution=execution), [pick_place(CUBE, BIN_WS, PANDA)])
+
+
+@pytest.mark.physics
+def test_a_behaviour_moves_the_arm_and_stamps_its_events(tmp_path: Path) -> None:
+    execution = run(tmp_path, NOD)
+    robot = execution.simulation.robots[PANDA]
+    start = execution.simulation.joint_positions(robot).copy()
+    assert execution.run_behaviour(0), execution.trace.remark
+    assert execution.simulation.joint_positions(robot)[5] - start[5] == pytest.approx(0.1, abs=0.01)
+    names = [stamp.name for stamp in execution.trace.events]
+    assert names[:5] == ["t:start", "t:pick-start", "t:pick-end", "t:place-start", "t:place-end"]
+    times = [stamp.time for stamp in execution.trace.events]
+    assert times == sorted(times)
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        (
+            NOD.replace("self.left -= 1", "self.left -= none"),
+            r"failed: NameError: .*own_behaviour_\d+\.py:12\) at",
+        ),
+        (NOD.replace("world.joints", "world.knees"), r"AttributeError: .*knees.*own_behaviour_\d+\.py:4\)"),
+        ("class Other: pass", r"run\.bddx:5:3: the Python module own_behaviour_\d+ has no function 'Nod'"),
+        ("import no_such_module_at_all", r"run\.bddx:5:3: .* failed: ModuleNotFoundError"),
+    ],
+)
+def test_an_error_in_the_code_is_told_as_the_users(tmp_path: Path, code: str, words: str) -> None:
+    execution = run(tmp_path, code)
+    assert not execution.run_behaviour(0)
+    assert re.search(words, execution.broken), execution.broken
+    # Nothing is known of what would have come after: the scenario does not come to its end.
+    assert "t:end" not in [stamp.name for stamp in execution.trace.events]
+
+
+@pytest.mark.physics
+def test_a_behaviour_that_says_that_it_failed_has_failed(tmp_path: Path) -> None:
+    code = "from robbdd_tools.catalog.own_behaviour import BehaviourFailed\n" + NOD.replace(
+        "self.left -= 1", "raise BehaviourFailed('the door is locked')"
+    )
+    execution = run(tmp_path, code)
+    assert not execution.run_behaviour(0)
+    assert execution.broken == ""
+    assert "the door is locked at 0.5" in execution.advance_until(lambda trace: trace.finished).remark
+
+
+def test_what_this_installation_cannot_execute_is_said(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"run\.bddx:5:3: the ROS action '/pick' is not available in simulation"):
+        run(tmp_path, "", "/pick", "ros-action")
+    with pytest.raises(SceneError, match=r"'place' of the catalog does not execute 'pick-place'"):
+        run(tmp_path, "", "place", "catalog")

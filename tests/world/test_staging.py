@@ -1,0 +1,341 @@
+"""Executable scenes: files as objects, poses along frames, samples from distributions, and what is wrong with them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, pi, sin, sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.executable import (
+    Body,
+    Implementation,
+    Law,
+    Link,
+    ModelSource,
+    Origin,
+    Realisation,
+    SceneInstance,
+)
+from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, SceneSpec
+from robbdd_tools.world.composition import World, build_world
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.frames import Frames
+from world.worlds import BENCH_WS, BIN, BIN_WS, CUBE, PANDA, SCENE, pick_place, scenario
+
+ROOT = "x:g.world.root"
+HALF = sqrt(0.5)
+BLOCK = """<mujoco><worldbody>
+  <body name="plate"><geom type="box" size=".1 .1 .01"/></body>
+  <body name="block"><freejoint/><geom type="box" size=".012 .02 .03" mass="0.05" friction="0.7"/></body>
+</worldbody></mujoco>"""
+TRAY = """<mujoco><worldbody><body name="tray"><geom type="box" size=".1 .15 .01"/>
+<site name="workspace" type="box" size=".09 .14 .05" pos="0 0 .06"/></body></worldbody></mujoco>"""
+
+
+def link(frame: str, position: tuple[float, ...], base: str = ROOT, turn: tuple[float, ...] = (1, 0, 0, 0)) -> Link:
+    return Link(frame, base, "pose", position, turn, origin=Origin("/w/cell.scenex", 9, 5))
+
+
+def instance(*links: Link, laws: tuple[Law, ...] = (), elements: tuple[Realisation, ...] = ()) -> SceneInstance:
+    frames = dict.fromkeys(end for one in links for end in (one.base, one.frame))
+    bodies = tuple(Body(frame.rpartition(".")[0], (frame,), Origin("/w/cell.scenex", 4, 9)) for frame in frames)
+    return SceneInstance("x:cell", (), elements, bodies, links, laws, ROOT)
+
+
+def catalog(element: str, name: str, body: str = "") -> Realisation:
+    bodies = ((body, "body"),) if body else ()
+    return Realisation(element, (ModelSource(f"x:{name}", "mjcf", "catalog", name, bodies=bodies),))
+
+
+def file(folder: Path, element: str, text: str, body: tuple[str, str] | None = None) -> Realisation:
+    (folder / "thing.xml").write_text(text, encoding="utf-8")
+    origin = Origin(str(folder / "cell.scenex"), 7, 11)
+    bodies = () if body is None else (body,)
+    return Realisation(element, (ModelSource("x:thing", "mjcf", "file", "thing.xml", bodies=bodies, origin=origin),))
+
+
+def world(staged: SceneInstance, seed: int = 1, scene: SceneSpec = SCENE) -> World:
+    return build_world(scene, seed, None, staged)
+
+
+def test_frames_are_composed_along_what_they_are_relative_to() -> None:
+    quarter = (HALF, 0.0, 0.0, HALF)
+    staged = instance(
+        link("x:g.table.top", (1.0, 0.0, 0.5), turn=quarter), link("x:g.cube.mid", (0.2, 0.0, 0.1), "x:g.table.top")
+    )
+    pose = Frames(staged, 1).pose("x:g.cube", CUBE)
+    assert pose is not None
+    assert pose[0] == pytest.approx((1.0, 0.2, 0.6))
+    assert pose[1] == pytest.approx(quarter)
+
+
+def test_a_pose_leads_both_ways_and_goes_before_a_joint() -> None:
+    mount = Link("x:g.arm.foot", "x:g.table.top", "fixed")
+    hinge = Link("x:g.door.edge", "x:g.arm.foot", "revolute", (0.0, 0.0, 0.1), axes=("z", "x"))
+    staged = instance(
+        link(ROOT, (0.0, 0.0, -1.0), "x:g.table.top"), link("x:g.arm.foot", (0.0, 2.0, 0.0)), mount, hinge
+    )
+    frames = Frames(staged, 1)
+    table, arm, door = (frames.pose(f"x:g.{name}", "e") for name in ("table", "arm", "door"))
+    assert table is not None
+    assert arm is not None
+    assert door is not None
+    assert table[0] == pytest.approx((0.0, 0.0, 1.0))
+    assert arm[0] == pytest.approx((0.0, 2.0, 0.0))
+    assert door[0] == pytest.approx((0.0, 2.0, 0.1))
+    assert door[1] == pytest.approx((HALF, 0.0, -HALF, 0.0))
+
+
+def test_what_no_frame_leads_to_is_an_error_with_its_place() -> None:
+    staged = instance(link("x:g.cube.mid", (0, 0, 0), "x:g.shelf.board"))
+    with pytest.raises(
+        SceneError, match=r"cell\.scenex:4:9: the body 'x:g\.cube' is placed nowhere.*'x:g\.world\.root'"
+    ):
+        Frames(staged, 1).pose("x:g.cube", CUBE)
+
+
+SAMPLED = replace(link("x:g.cube.mid", ()), position_law="x:spread", scale=0.01)
+
+
+def drawn(law: Law, seed: int = 1, element: str = CUBE, attempt: int = 0) -> np.ndarray:
+    pose = Frames(instance(SAMPLED, laws=(law,)), seed).pose("x:g.cube", element, attempt)
+    assert pose is not None
+    return pose[0]
+
+
+UNIFORM = Law("x:spread", "uniform", (25.0, -40.0, 2.0), (60.0, 40.0, 2.0))
+
+
+def test_samples_follow_from_the_seed_and_differ_between_the_members_of_a_set() -> None:
+    assert drawn(UNIFORM).tolist() == drawn(UNIFORM).tolist()
+    others = [drawn(UNIFORM, 2), drawn(UNIFORM, element="env:cube2"), drawn(UNIFORM, attempt=1)]
+    assert all(drawn(UNIFORM).tolist() != other.tolist() for other in others)
+
+
+def test_a_uniform_sample_keeps_within_its_bounds_and_unit() -> None:
+    found = np.array([drawn(UNIFORM, seed) for seed in range(200)])
+    assert found.min(axis=0) == pytest.approx((0.25, -0.40, 0.02), abs=0.02)
+    assert found.max(axis=0) == pytest.approx((0.60, 0.40, 0.02), abs=0.02)
+    assert (found[:, 0] >= 0.25).all()
+    assert (found[:, 0] <= 0.60).all()
+
+
+def test_a_normal_sample_has_its_mean_and_covariance() -> None:
+    law = Law("x:spread", "normal", mean=(10.0, 0.0, 50.0), covariance=(4.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.25))
+    found = np.array([drawn(law, seed) for seed in range(3000)]) / 0.01
+    assert found.mean(axis=0) == pytest.approx((10.0, 0.0, 50.0), abs=0.15)
+    assert np.cov(found.T) == pytest.approx(np.array(law.covariance).reshape(3, 3), abs=0.3)
+
+
+def test_every_rotation_is_drawn_alike() -> None:
+    turned = replace(link("x:g.cube.mid", (0, 0, 0)), rotation=(), rotation_law="x:tumble")
+    law = Law("x:tumble", "uniform-rotation")
+    poses = [Frames(instance(turned, laws=(law,)), seed).pose("x:g.cube", CUBE) for seed in range(2000)]
+    turns = np.array([pose[1] for pose in poses if pose is not None])
+    assert np.linalg.norm(turns, axis=1) == pytest.approx(np.ones(2000))
+    # The mean angle of uniform random rotations is π/2 + 2/π.
+    assert (2 * np.arccos(np.abs(turns[:, 0]))).mean() == pytest.approx(pi / 2 + 2 / pi, abs=0.04)
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        (
+            Law("x:spread", "normal", mean=(0, 0, 0), covariance=(1, 0, 0, 0, 1, 0, 0, 0, 0)),
+            "has a singular covariance",
+        ),
+        (Law("x:spread", "normal", mean=(0, 0, 0), covariance=(1, 2, 0, 0, 1, 0, 0, 0, 1)), "is not symmetric"),
+        (Law("x:spread", "normal", mean=(0, 0, 0), covariance=(1.0,)), "needs a covariance of 3 × 3 numbers"),
+        (Law("x:spread", "uniform", (0.0,), (1.0,)), "a position needs 3 numbers, not 1"),
+    ],
+)
+def test_a_distribution_that_cannot_be_drawn_from_is_an_error(law: Law, words: str) -> None:
+    with pytest.raises(SceneError, match=words):
+        drawn(law)
+
+
+def test_elements_stand_where_the_scene_says() -> None:
+    staged = instance(
+        link("x:g.cube.mid", (0.5, 0.1, 0.2)),
+        link("x:g.bin.mid", (0.4, -0.3, 0.1)),
+        link("x:g.foot.mid", (0.0, 0.2, 0.15)),
+        elements=(
+            catalog(CUBE, "cube", "x:g.cube"),
+            catalog(BIN, "bin", "x:g.bin"),
+            catalog(PANDA, "franka-panda", "x:g.foot"),
+        ),
+    )
+    made = world(staged)
+    assert made.poses[CUBE].position == pytest.approx((0.5, 0.1, 0.2))
+    # Its frame is at its bottom, its middle 75 mm higher.
+    assert made.poses[BIN].position == pytest.approx((0.4, -0.3, 0.175))
+    assert made.bases[PANDA].position == pytest.approx((0.0, 0.2, 0.15))
+
+
+def test_position_range_goes_before_the_pose_of_the_scene() -> None:
+    staged = instance(link("x:g.cube.mid", (0.5, 0.1, 0.2)), elements=(catalog(CUBE, "cube", "x:g.cube"),))
+    config = ConfigSpec(CUBE, "position_range", "0.3 0.31 0.1 0.11")
+    x, y, _ = world(staged, scene=replace(SCENE, config=(config,))).poses[CUBE].position
+    assert 0.3 <= x <= 0.31
+    assert 0.1 <= y <= 0.11
+
+
+def test_members_of_a_set_that_are_drawn_onto_one_another_are_drawn_again() -> None:
+    near = Law("x:spread", "uniform", (40.0, -15.0, 20.0), (55.0, 15.0, 20.0))
+    cubes = (CUBE, "env:cube2", "env:cube3")
+    scene = replace(SCENE, objects=(*SCENE.objects, *cubes[1:]))
+    staged = instance(SAMPLED, laws=(near,), elements=tuple(catalog(name, "cube", "x:g.cube") for name in cubes))
+    for seed in range(20):
+        poses = [np.array(world(staged, seed, scene).poses[name].position) for name in cubes]
+        distances = [np.linalg.norm((poses[a] - poses[b])[:2]) for a, b in ((0, 1), (0, 2), (1, 2))]
+        assert min(distances) > 0.03
+
+
+@pytest.mark.physics
+def test_an_object_from_a_file_is_picked_and_placed(tmp_path: Path) -> None:
+    thing = file(tmp_path, CUBE, BLOCK, ("x:g.cube", "block"))
+    staged = instance(link("x:g.cube.mid", (0.45, 0.1, 0.14)), elements=(thing,))
+    spec = scenario()
+    run = Execution(replace(spec, execution=None), [])
+    assert run.simulation.world.cast.objects[CUBE].mass == pytest.approx(0.031)
+    how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
+    run = Execution(replace(spec, execution=how), [pick_place(CUBE, BIN_WS)])
+    model = run.simulation.world.cast.objects[CUBE]
+    assert (model.mass, model.friction, model.free) == (pytest.approx(0.05), pytest.approx(0.7), True)
+    assert model.shapes[0].size == pytest.approx((0.012, 0.02, 0.03))
+    assert run.simulation.pose(CUBE)[0] == pytest.approx((0.45, 0.1, 0.13), abs=0.002)
+    assert run.run_behaviour(0), run.trace.remark
+
+
+def test_a_file_says_where_a_workspace_is(tmp_path: Path) -> None:
+    staged = instance(
+        link("x:g.tray.mid", (0.5, 0.0, 0.11)), elements=(file(tmp_path, BIN, TRAY, ("x:g.tray", "tray")),)
+    )
+    ((carrier, region),) = world(staged).cast.regions[BIN_WS]
+    assert carrier == BIN
+    assert region.center == pytest.approx((0.0, 0.0, 0.06))
+    assert region.half == pytest.approx((0.09, 0.14, 0.05))
+    assert BENCH_WS in world(staged).cast.regions
+
+
+CRATE = """<mujoco><worldbody><body name="crate"><freejoint/>
+  <geom type="box" size=".15 .1 .004" pos="0 0 .004" mass=".4"/>
+  <geom type="cylinder" size=".01 .05" pos=".14 .09 .05" mass=".1"/>
+  <geom type="cylinder" size=".01 .05" pos="-.14 -.09 .05" mass=".1"/>
+  <site name="workspace" type="box" size=".13 .08 .05" pos="0 0 .058"/></body></worldbody></mujoco>"""
+BOARD = """<mujoco><worldbody><body name="board">
+  <geom type="box" size=".35 .75 .02" pos="0 0 .02"/></body></worldbody></mujoco>"""
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("factor", ["1", "1.5"])
+def test_a_users_bin_takes_things_and_has_a_height(tmp_path: Path, factor: str) -> None:
+    crate = file(tmp_path, BIN, CRATE, ("x:g.crate", "crate"))
+    staged = instance(link("x:g.crate.foot", (0.45, 0.4, 0.1)), elements=(crate,))
+    how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
+    taller = replace(SCENE, config=(ConfigSpec(BIN, "height_scale", factor),))
+    run = Execution(replace(scenario(taller), execution=how), [pick_place(CUBE, BIN_WS)])
+    assert float(run.course.settings[BIN, "height_scale"]) == pytest.approx(float(factor))
+    middle = 0.1 + 0.05 * float(factor)
+    assert run.simulation.pose(BIN)[0] == pytest.approx((0.45, 0.4, middle), abs=0.002)
+    assert run.run_behaviour(0), run.trace.remark
+    place = run.simulation.pose(CUBE)[0] - run.simulation.pose(BIN)[0]
+    assert np.abs(place[:2]).max() < 0.13
+
+
+@pytest.mark.physics
+def test_things_stand_on_a_users_table_wherever_its_origin_is(tmp_path: Path) -> None:
+    """The top of this one is 0.04 m above its origin."""
+    board = file(tmp_path, "env:bench", BOARD, ("x:g.board", "board"))
+    staged = instance(link("x:g.board.foot", (0.5, 0.0, 0.06)), elements=(board,))
+    found = world(staged)
+    assert found.poses[CUBE].position[2] == pytest.approx(0.1 + 0.01575)
+    assert found.poses[BIN].position[2] == pytest.approx(0.1 + 0.075)
+    how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
+    run = Execution(replace(scenario(), execution=how), [pick_place(CUBE, BIN_WS)])
+    assert run.run_behaviour(0), run.trace.remark
+
+
+def test_a_fixed_thing_without_workspace_is_not_taken_for_the_table(tmp_path: Path) -> None:
+    post = file(tmp_path, "env:a_post", BOARD.replace(".35 .75", ".02 .02"), ("x:g.post", "board"))
+    staged = instance(link("x:g.post.foot", (0.9, 0.6, 0.1)), elements=(post,))
+    found = world(staged, scene=replace(SCENE, objects=("env:a_post", *SCENE.objects)))
+    assert found.cast.tables == ("env:bench", "env:a_post")
+    assert found.poses[BIN].position == world(instance()).poses[BIN].position
+
+
+def test_a_users_table_without_a_pose_is_reported(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"'env:bench' has no pose: place it in the \.scenex"):
+        world(instance(elements=(file(tmp_path, "env:bench", BOARD),)))
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize("yaw", [0.0, 0.7])
+def test_where_a_file_has_its_origin_does_not_matter(tmp_path: Path, yaw: float) -> None:
+    found: list[Any] = []
+    for number, (x, y, z) in enumerate(((0.0, 0.0, 0.0), (0.0, 0.0, 0.03), (0.1, -0.2, 0.3))):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        block = BLOCK.replace('size=".012 .02 .03"', f'size=".012 .02 .03" pos="{x} {y} {z}"')
+        frame = (0.45 - x * cos(yaw) + y * sin(yaw), 0.1 - x * sin(yaw) - y * cos(yaw), 0.13 - z)
+        place = link("x:g.cube.foot", frame, turn=(cos(yaw / 2), 0.0, 0.0, sin(yaw / 2)))
+        staged = instance(place, elements=(file(folder, CUBE, block, ("x:g.cube", "block")),))
+        how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), staged)
+        run = Execution(replace(scenario(), execution=how), [pick_place(CUBE, BIN_WS)])
+        assert run.simulation.pose(CUBE)[0] == pytest.approx((0.45, 0.1, 0.13), abs=5e-4)
+        assert run.run_behaviour(0), run.trace.remark
+        found.append(run.simulation.pose(CUBE)[0])
+    assert all(place == pytest.approx(found[0], abs=1e-4) for place in found)
+
+
+def test_a_body_of_a_world_file_is_the_element_of_its_name(tmp_path: Path) -> None:
+    text = BLOCK.replace('name="block"', 'name="cube1" pos=".4 .2 .5"')
+    whole = replace(file(tmp_path, "", text).models[0], iri="x:world")
+    made = world(SceneInstance("x:cell", (whole,)))
+    assert made.poses[CUBE].position == pytest.approx((0.4, 0.2, 0.5))
+    assert made.cast.objects[CUBE].mass == pytest.approx(0.05)
+    assert made.model.body("scenery0/plate").id > 0
+    assert "scenery0/cube1" not in {made.model.body(index).name for index in range(made.model.nbody)}
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"name": "gone.xml"}, r"cell\.scenex:7:11: there is no model file .*gone\.xml"),
+        ({"bodies": (("x:g.cube", "brick"),)}, "thing.xml has no body 'brick'; it has plate, block"),
+        ({"format": "usd"}, "'env:cube1' has a USD model only"),
+        ({"kind": "ros", "package": "parts"}, "the ROS package 'parts' cannot be found: AMENT_PREFIX_PATH is not set"),
+        ({"kind": "python", "name": "no_such_module:make"}, "no_such_module:make failed: ModuleNotFound"),
+    ],
+)
+def test_a_model_that_cannot_be_had_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: dict[str, Any], words: str
+) -> None:
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    thing = file(tmp_path, CUBE, BLOCK)
+    broken = replace(thing.models[0], **change)
+    with pytest.raises(SceneError, match=words):
+        world(instance(link("x:g.cube.mid", (0, 0, 1)), elements=(replace(thing, models=(broken,)),)))
+
+
+def test_a_ros_package_is_found_where_the_environment_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    share = tmp_path / "share" / "parts"
+    share.mkdir(parents=True)
+    thing = file(share, CUBE, BLOCK, ("x:g.cube", "block"))
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    packaged = replace(thing.models[0], kind="ros", package="parts", origin=None)
+    staged = instance(link("x:g.cube.mid", (0.5, 0, 0.2)), elements=(replace(thing, models=(packaged,)),))
+    assert world(staged).cast.objects[CUBE].mass == pytest.approx(0.05)
+
+
+def test_code_makes_a_model(tmp_path: Path) -> None:
+    (tmp_path / "maker_of_blocks.py").write_text(f'def block():\n    return """{BLOCK}"""\n', encoding="utf-8")
+    thing = file(tmp_path, CUBE, BLOCK, ("x:g.cube", "block"))
+    made = replace(thing.models[0], kind="python", name="maker_of_blocks:block")
+    staged = instance(link("x:g.cube.mid", (0.5, 0, 0.2)), elements=(replace(thing, models=(made,)),))
+    assert world(staged).cast.objects[CUBE].mass == pytest.approx(0.05)
