@@ -97,3 +97,21 @@ def test_the_arm_waits_until_the_thing_has_come_to_rest() -> None:
     assert places["pick-start"] == pytest.approx(-LENGTH / 2 + STOP + HALF_EDGE, abs=2e-3)
     bin_place, _ = simulation.pose("env:bin")
     assert np.abs(simulation.pose(CUBE)[0] - bin_place)[:2].max() < 0.1
+
+
+def test_the_arm_approaches_again_when_the_thing_has_moved_meanwhile() -> None:
+    simulation = line()
+    address = int(simulation.model.joint(simulation.model.body(CUBE).jntadr[0]).qposadr[0])
+    begun: list[int] = []
+    events: list[str] = []
+
+    def note(event: str) -> None:
+        events.append(event)
+        begun.append(simulation.ticks)
+
+    for _ in PickPlace(simulation, PANDA, note).pick(CUBE):
+        if begun and simulation.ticks == begun[0] + 30:
+            simulation.data.qpos[address] += 0.04
+        simulation.tick()
+    assert events == ["pick-start", "pick-end"]
+    assert simulation.holds(PANDA, CUBE)

@@ -5,7 +5,7 @@ It knows the object's pose when it begins and follows its plan from there, feeli
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -66,13 +66,12 @@ class PickPlace:
     def pick(self, name: str) -> Step:
         """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``.
 
-        Where a belt runs, it first waits until the object has come to rest.
+        Where a belt runs, it first waits until the object has come to rest, and approaches again while the object
+        has moved during the approach.
         """
         yield from self._until_at_rest(name)
         self._emit("pick-start")
-        best = self._choose_grasp(name)
-        yield from self._gripper.release(self)
-        yield from self.move(best.above)
+        best = yield from self._approach(name)
         yield from self._gripper.take(self, best.at, name)
         self._held, self._grasp = name, best.grasp
         yield from self.move(self._at_travel(best.at))
@@ -111,6 +110,24 @@ class PickPlace:
             yield from self.move(self._at_travel(present_pose(self._arm, self._joints)))
         except BehaviourError:
             return
+
+    def _approach(self, name: str) -> Generator[None, None, Approach]:
+        """Open the gripper and move above the grasp to take, which is returned; raises ``BehaviourError``.
+
+        A part that balances with a corner against a belt's stop seems to be at rest for a while and then turns, ever
+        faster: a grasp that was chosen before that would come down on top of it.
+        """
+        given_up = self.time + PATIENCE
+        while True:
+            best = self._choose_grasp(name)
+            planned = self._simulation.pose(name)
+            yield from self._gripper.release(self)
+            yield from self.move(best.above)
+            if not self._simulation.belts or not _has_moved(planned, self._simulation.pose(name)):
+                return best
+            if self.time > given_up:
+                raise BehaviourError(f"{name} has not come to rest within {PATIENCE:g} s")
+            yield from self._until_at_rest(name)
 
     def _until_at_rest(self, name: str) -> Step:
         if not self._simulation.belts or name not in self._simulation.world.cast.objects:
