@@ -15,60 +15,102 @@ if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Severity
     from robbdd_tools.base.exceptions import RobbddError
     from robbdd_tools.gherkin.select import SelectionError
-    from robbdd_tools.monitor.trace import Trace
+    from robbdd_tools.monitor.trace import EventStamp, Trace
     from robbdd_tools.monitor.verdict import Outcome
-    from robbdd_tools.run.store import NoSuchRun
+    from robbdd_tools.protocol.specs import ScenarioSpec
+    from robbdd_tools.run.store import NoSuchRun, RunRecord
+    from robbdd_tools.run.stored_results import RunStatus
+    from robbdd_tools.run.user_code import UserCodeRefused
+    from robbdd_tools.traces.mcap_file import UnreadableTrace
     from robbdd_tools.workbench.executions import ClauseResult, ExecutionResult
-    from robbdd_tools.workbench.findings import Finding
+    from robbdd_tools.workbench.findings import Finding, Place, QuickFix, RelatedPlace, TextEdit
     from robbdd_tools.workbench.folder import Keeping
+    from robbdd_tools.workbench.judging import Judged, NothingToJudge, judge
     from robbdd_tools.workbench.model import Model, ModelErrors, NotAModel, NothingToRun, load
-    from robbdd_tools.workbench.plan import Plan
+    from robbdd_tools.workbench.plan import Coverage, Plan
+    from robbdd_tools.workbench.replaying import CannotReplay, Replayed, ReplayedTrace, replay
     from robbdd_tools.workbench.run import Run
     from robbdd_tools.workbench.stored import PastRun, find_run, runs
 
 _HOMES = {
+    "CannotReplay": "workbench.replaying",
     "ClauseResult": "workbench.executions",
+    "Coverage": "workbench.plan",
+    "EventStamp": "monitor.trace",
     "ExecutionResult": "workbench.executions",
     "Finding": "workbench.findings",
+    "Judged": "workbench.judging",
     "Keeping": "workbench.folder",
     "Model": "workbench.model",
     "ModelErrors": "workbench.model",
     "NoSuchRun": "run.store",
     "NotAModel": "workbench.model",
+    "NothingToJudge": "workbench.judging",
     "NothingToRun": "workbench.model",
     "Outcome": "monitor.verdict",
     "PastRun": "workbench.stored",
+    "Place": "workbench.findings",
     "Plan": "workbench.plan",
+    "QuickFix": "workbench.findings",
+    "RelatedPlace": "workbench.findings",
+    "Replayed": "workbench.replaying",
+    "ReplayedTrace": "workbench.replaying",
     "RobbddError": "base.exceptions",
     "Run": "workbench.run",
+    "RunRecord": "run.store",
+    "RunStatus": "run.stored_results",
+    "ScenarioSpec": "protocol.specs",
     "SelectionError": "gherkin.select",
     "Severity": "base.diagnostic",
+    "TextEdit": "workbench.findings",
     "Trace": "monitor.trace",
+    "UnreadableTrace": "traces.mcap_file",
+    "UserCodeRefused": "run.user_code",
     "find_run": "workbench.stored",
+    "judge": "workbench.judging",
     "load": "workbench.model",
+    "replay": "workbench.replaying",
     "runs": "workbench.stored",
 }
 
 __all__ = [
+    "CannotReplay",
     "ClauseResult",
+    "Coverage",
+    "EventStamp",
     "ExecutionResult",
     "Finding",
+    "Judged",
     "Keeping",
     "Model",
     "ModelErrors",
     "NoSuchRun",
     "NotAModel",
+    "NothingToJudge",
     "NothingToRun",
     "Outcome",
     "PastRun",
+    "Place",
     "Plan",
+    "QuickFix",
+    "RelatedPlace",
+    "Replayed",
+    "ReplayedTrace",
     "RobbddError",
     "Run",
+    "RunRecord",
+    "RunStatus",
+    "ScenarioSpec",
     "SelectionError",
     "Severity",
+    "TextEdit",
     "Trace",
+    "UnreadableTrace",
+    "UserCodeRefused",
     "find_run",
+    "judge",
     "load",
+    "replay",
     "runs",
 ]
 

@@ -12,6 +12,8 @@ import pytest
 
 import robbdd_tools as robbdd
 from kit import DOCS, EXAMPLES
+from robbdd_tools.traces.mcap_file import read_trace, write_trace
+from workbench import reference
 
 pytestmark = pytest.mark.physics
 
@@ -20,6 +22,11 @@ pytestmark = pytest.mark.physics
 def model(tmp_path: Path) -> robbdd.Model:
     folder = shutil.copytree(EXAMPLES / "pickplace", tmp_path / "cell")
     return robbdd.load(folder / "pickplace.bdd")
+
+
+def test_the_reference_lists_every_public_name_and_signature() -> None:
+    page = (DOCS / "python-reference.md").read_text(encoding="utf-8")
+    assert page == reference.page(), "run .venv/bin/python tests/workbench/reference.py, and note it in the changelog"
 
 
 def test_every_public_name_is_there() -> None:
@@ -77,6 +84,91 @@ def test_a_run_can_be_awaited(model: robbdd.Model) -> None:
     assert sorted(asyncio.run(names())) == [spec.name for spec in model.scenarios(first=2).scenarios]
 
 
+@pytest.fixture
+def stored(model: robbdd.Model) -> robbdd.Run:
+    with model.scenarios(first=1).run(jobs=1) as run:
+        return run.wait()
+
+
+def edited(model: robbdd.Model, old: str, new: str) -> robbdd.Model:
+    text = model.path.read_text(encoding="utf-8")
+    assert old in text
+    model.path.write_text(text.replace(old, new), encoding="utf-8")
+    return robbdd.load(model.path)
+
+
+def test_an_unchanged_model_judges_a_run_as_the_run_did(model: robbdd.Model, stored: robbdd.Run) -> None:
+    judged = robbdd.judge(stored, model)
+    assert judged.results == stored.results
+    assert judged.rows() == stored.rows()
+    assert judged.ending == ""
+
+
+def test_a_judged_execution_has_its_index_in_the_run(model: robbdd.Model) -> None:
+    with model.scenarios().run(jobs=2) as run:
+        run.wait()
+    half = edited(model, "<cubes.cube0>, <balls.ball0>", "<balls.ball0>")
+    judged = robbdd.judge(run, half)
+    assert [result.index for result in judged.results] == [
+        result.index for result in run.results if result.values["crit:var-thing"] == "env:ball0"
+    ]
+
+
+def test_an_edited_clause_is_judged_on_the_stored_trace(model: robbdd.Model, stored: robbdd.Run) -> None:
+    tightened = edited(model, "located at <goal>, after <evt-place-end>", "located at <goal>, before <evt-pick-start>")
+    judged = asyncio.run(asyncio.to_thread(robbdd.judge, robbdd.find_run("latest", model.path), tightened))
+    verdicts = {clause.name: clause.verdict for result in judged.results for clause in result.clauses}
+    assert verdicts["at-goal"] is robbdd.Outcome.VIOLATED
+    assert verdicts["at-source"] is robbdd.Outcome.HOLDS
+    assert robbdd.find_run("latest", model.path).results == stored.results
+
+
+def test_a_run_that_has_nothing_to_judge_is_refused(model: robbdd.Model) -> None:
+    with (
+        model.scenarios(first=1).run() as run,
+        pytest.raises(robbdd.NothingToJudge, match="has finished no execution yet"),
+    ):
+        robbdd.judge(run, model)
+    with model.scenarios(first=1).run(keeping=robbdd.Keeping(keep=False)) as gone:
+        gone.wait()
+    with pytest.raises(robbdd.NoSuchRun):
+        robbdd.judge(gone, model)
+
+
+def test_a_replay_of_a_run_has_the_same_traces(model: robbdd.Model, stored: robbdd.Run) -> None:
+    replayed = robbdd.replay(stored, jobs=1)
+    assert [(trace.index, trace.name, trace.difference) for trace in replayed.traces] == [
+        (0, stored.results[0].name, "")
+    ]
+    assert replayed.is_identical
+    assert replayed.simulator == robbdd.find_run("latest", model.path).record.simulator
+
+
+def test_a_replay_reports_a_trace_that_differs(model: robbdd.Model, stored: robbdd.Run) -> None:
+    (path,) = (stored.folder / "traces").glob("*.mcap")
+    evidence = read_trace(path)
+    evidence.trace.positions[-1] += 1e-9
+    write_trace(path, evidence, [])
+    replayed = robbdd.replay(robbdd.find_run("latest", model.path), jobs=1)
+    assert not replayed.is_identical
+    assert "position of env:" in replayed.traces[0].difference
+
+
+def test_a_replay_of_a_changed_model_is_refused_unless_it_is_forced(model: robbdd.Model, stored: robbdd.Run) -> None:
+    edited(model, "after <evt-place-end>", "1 seconds after <evt-place-end>")
+    with pytest.raises(robbdd.CannotReplay, match="was changed since the run"):
+        robbdd.replay(stored)
+    assert robbdd.replay(stored, force=True).is_identical
+
+
+def test_a_trace_that_is_gone_is_an_error_of_the_package(stored: robbdd.Run) -> None:
+    (path,) = (stored.folder / "traces").glob("*.mcap")
+    path.unlink()
+    with pytest.raises(robbdd.UnreadableTrace) as caught:
+        stored.trace(0)
+    assert isinstance(caught.value, robbdd.RobbddError)
+
+
 def test_the_examples_of_the_python_page_run(
     model: robbdd.Model, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -87,3 +179,5 @@ def test_the_examples_of_the_python_page_run(
     printed = capsys.readouterr().out
     assert "crit:part-to-bin" in printed
     assert "finished 4 4" in printed
+    assert "\nreplayed True\n" in printed
+    assert "\njudged holds\n" in printed

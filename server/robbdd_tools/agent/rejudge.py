@@ -69,6 +69,11 @@ class StoredTraces:
             else:
                 yield clause, _decided(clause, evidence, spec, stored)
 
+    def duration(self, spec: ScenarioSpec) -> float:
+        """Return the simulated time (s) of the stored execution of a scenario, 0 when there is none."""
+        index, stored = self._specs.get(scenario_key(spec), (0, None))
+        return 0.0 if stored is None else self._results[index].get("duration") or 0.0
+
     def ranges(self, number: int, spec: ScenarioSpec) -> Iterator[MarginRanges]:
         """Yield what the trace of a scenario says of clauses that prove little; ``number`` is the scenario's."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
@@ -141,7 +146,7 @@ def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
             yield judged(index, clause.line, verdict)
         yield from traces.ranges(index, spec)
         finish_output()
-        yield ScenarioFinished(index, 0.0, 0.0, 0.0)
+        yield ScenarioFinished(index, traces.duration(spec), 0.0, 0.0)
     yield RunFinished(True)
 
 

@@ -10,11 +10,12 @@ import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from time import monotonic
+from typing import Self
 
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import (
@@ -57,6 +58,13 @@ class Policy:
     timeout: float = TIMEOUT
     stop_on_failure: bool = False
     log_limit: int = LIMIT
+
+    @classmethod
+    def of(cls, *, jobs: int | None = None, timeout: float | None = None, stop_on_failure: bool = False) -> Self:
+        """Return a policy with the defaults for ``None``."""
+        policy = cls(stop_on_failure=stop_on_failure)
+        policy = policy if jobs is None else replace(policy, jobs=jobs)
+        return policy if timeout is None else replace(policy, timeout=timeout)
 
 
 @dataclass(slots=True, eq=False)

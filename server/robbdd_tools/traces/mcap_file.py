@@ -16,6 +16,7 @@ from typing import Any
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import open_regular
 from robbdd_tools.base.writing import replacing_bytes
 from robbdd_tools.traces.codec import Evidence, pack, unpack
@@ -72,7 +73,7 @@ View = tuple[float, str, Any]
 """Something to be seen: simulated time (s), topic, message."""
 
 
-class UnreadableTrace(Exception):
+class UnreadableTrace(RobbddError):
     """A file is no trace of ours; the message says why."""
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import tempfile
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.writing import replace_file
@@ -17,6 +19,7 @@ from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.results import RunResults, finished_in
 from robbdd_tools.run.scheduler import CANCELLED
 from robbdd_tools.run.user_code import refuse_user_code
+from robbdd_tools.workbench.executions import ExecutionResult, execution_results, rows_of
 from robbdd_tools.workbench.plan import NothingSelected, Plan, Selection
 
 if TYPE_CHECKING:
@@ -24,12 +27,53 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import Manifest
     from robbdd_tools.run.store import StoredRun
     from robbdd_tools.workbench.model import Model
+    from robbdd_tools.workbench.run import Run
+    from robbdd_tools.workbench.stored import PastRun
 
 JUDGE = "robbdd_tools.agent.rejudge"
 
 
 class NothingToJudge(RobbddError):
     """A stored run has no execution that the model can judge."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """What a model's clauses say of the executions of a stored run.
+
+    ``results`` are in the order of the model's plan and have the ``index`` of the execution in the run, so that
+    ``run.trace(result)`` is its trace; they are not stored. ``ending`` says why clauses were left open
+    (they are unknown), empty when all were judged.
+    """
+
+    results: tuple[ExecutionResult, ...]
+    ending: str
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return one flat dictionary per clause of each execution: ``pandas.DataFrame(judged.rows())``."""
+        return rows_of(self.results)
+
+
+def judge(run: Run | PastRun, model: Model) -> Judged:
+    """Judge the executions of a run by the clauses that a model has now, without simulating.
+
+    An execution of the run belongs to the scenario of the model with the same variant, values, execution and
+    repetition; executions of other scenarios are left out. A clause whose trace is missing, or whose scene or
+    behaviour differs from the run's, is unknown. Blocks until all is judged: in an asyncio program, call it by
+    ``asyncio.to_thread``.
+
+    Raises ``ModelErrors``, ``NothingToRun``, ``NothingToJudge`` when no finished execution belongs to the model,
+    ``NoSuchRun`` when the run is damaged or was not kept, and ``UserCodeRefused``.
+    """
+    with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
+        judgement = Judgement(run.place, model, Path(folder))
+        for _ in judgement.messages():
+            pass
+    indices = {scenario_key(spec): index for index, spec in enumerate(run.place.manifest().scenarios)}
+    results = zip(execution_results(judgement.progress.as_json()), judgement.progress.manifest.scenarios, strict=True)
+    return Judged(
+        tuple(replace(result, index=indices[scenario_key(spec)]) for result, spec in results), judgement.ending
+    )
 
 
 class Judgement:

@@ -184,9 +184,7 @@ class Plan:
         from robbdd_tools.workbench.run import Run
 
         place = new_folder(self.path or Path(), keeping or Keeping())
-        policy = Policy(stop_on_failure=stop_on_failure)
-        policy = policy if jobs is None else replace(policy, jobs=jobs)
-        policy = policy if timeout is None else replace(policy, timeout=timeout)
+        policy = Policy.of(jobs=jobs, timeout=timeout, stop_on_failure=stop_on_failure)
         return Run.begin(self, place.place, policy, seed=seed, repeat=repeat, on_close=place.remove)
 
     def prepare(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import tempfile
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.messages import RunMessage
     from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
     from robbdd_tools.run.store import StoredRun
+    from robbdd_tools.workbench.run import Run
+    from robbdd_tools.workbench.stored import PastRun
 
 COMPARE = "robbdd_tools.agent.compare_traces"
 
@@ -42,6 +45,48 @@ class ReplayedTrace:
     index: int
     name: str
     difference: str
+
+
+@dataclass(frozen=True, slots=True)
+class Replayed:
+    """How the traces of a replay compare with those of its run.
+
+    ``without_trace`` names finished scenarios that could not be replayed because the run kept no trace of them.
+    ``simulator`` is name and version of the one that replayed. ``ending`` says why scenarios were left open, empty
+    when all were simulated.
+    """
+
+    traces: tuple[ReplayedTrace, ...]
+    without_trace: tuple[str, ...]
+    simulator: str
+    ending: str
+
+    @property
+    def is_identical(self) -> bool:
+        """Whether every trace of the run came out the same, to the last bit."""
+        return not self.ending and not self.without_trace and not any(trace.difference for trace in self.traces)
+
+
+def replay(
+    run: Run | PastRun, *names: str, jobs: int | None = None, timeout: float | None = None, force: bool = False
+) -> Replayed:
+    """Simulate the finished executions of a run again and compare their traces bit by bit.
+
+    ``names`` selects scenarios or variants by local name (all without any). ``jobs`` is the number of agent processes
+    (default: the number of cores), ``timeout`` the wall time (s) of one scenario (0: any). ``force`` simulates with the
+    run's files as they are now, changed or not. Blocks until all is simulated: in an asyncio program, call it by
+    ``asyncio.to_thread``.
+
+    Raises ``CannotReplay`` when the model or its files have changed or no trace was kept, ``NoSuchRun`` when the run is
+    damaged or was not kept, ``UserCodeRefused`` and ``OSError``.
+    """
+    policy = Policy.of(jobs=jobs, timeout=timeout)
+    with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
+        replaying = Replay(run.place, Path(folder), policy, names, force=force)
+        for _ in replaying.messages():
+            pass
+        traces = tuple(replaying.traces())
+    return Replayed(traces, tuple(replaying.without_trace), replaying.simulator, replaying.ending)
 
 
 class Replay:

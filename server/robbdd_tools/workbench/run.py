@@ -35,7 +35,8 @@ class Run(Recorded):
 
     Consume it once, in one of three ways: iterate over it (results as executions finish), over ``messages`` (messages
     in the manifest's order), or call ``wait``. ``cancel`` may be called from any thread. Leaving the context cancels
-    what is still open, and keeps what is finished.
+    what is still open, and keeps what is finished. ``ending`` then says why executions were left open (empty for a
+    complete run), ``problem`` what kept the run from continuing, such as a full disk.
     """
 
     def __init__(
