@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 
 import pytest
@@ -102,6 +102,41 @@ def forbidden_imports(module: str, path: Path) -> Iterator[str]:
 def test_a_module_imports_only_from_layers_to_its_left() -> None:
     layered = [(module, path) for module, path in modules() if "." in module or module in ("cli", "start")]
     assert [fault for module, path in layered for fault in forbidden_imports(module, path)] == []
+
+
+OBJECTS_OF_THE_API = {"workbench.model", "workbench.plan", "workbench.run"}
+"""Public objects that lead to each other: a model has plans, a plan has runs, and each knows where it comes from."""
+HUB_OF_THE_SERVER = "lsp.server"
+"""The server's parts know the server, which holds them."""
+
+
+def imported_modules(path: Path, known: Container[str]) -> Iterator[str]:
+    """Yield the modules of ours that a module imports, those for types and inside functions included."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            package = node.module.removeprefix("robbdd_tools.")
+            for alias in node.names:
+                inner = f"{package}.{alias.name}"
+                yield inner if inner in known else package
+
+
+def circles(graph: Mapping[str, set[str]]) -> list[list[str]]:
+    """Return the modules that import each other, if only by way of others."""
+    left = {module: set(targets) for module, targets in graph.items()}
+    while ends := {module for module, targets in left.items() if not targets & left.keys()}:
+        left = {module: targets for module, targets in left.items() if module not in ends}
+    while beginnings := left.keys() - {target for targets in left.values() for target in targets}:
+        left = {module: targets for module, targets in left.items() if module not in beginnings}
+    return [sorted(left)] if left else []
+
+
+def test_no_imports_go_in_a_circle() -> None:
+    known = dict(modules())
+    graph = {module: {name for name in imported_modules(path, known) if name != module} for module, path in modules()}
+    graph[HUB_OF_THE_SERVER] = set()
+    for module in OBJECTS_OF_THE_API:
+        graph[module] -= OBJECTS_OF_THE_API
+    assert circles(graph) == []
 
 
 def test_a_library_has_one_home() -> None:

@@ -12,7 +12,7 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.completion import complete
 from robbdd_tools.features.diagnostics import all_diagnostics, fast_diagnostics
 from robbdd_tools.names import imports
-from robbdd_tools.names.analysis import Definition
+from robbdd_tools.names.definition import Definition
 from robbdd_tools.names.project import Project
 
 ARM = """ktree arm_tree {

@@ -7,9 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kit import EXAMPLES, MODEL, SCENE, corpus
-from robbdd_tools.syntax.chunk import Parsed, Rejected, parse_chunk
+from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.convert import convert
 from robbdd_tools.syntax.grammar import GrammarError, read_grammar
+from robbdd_tools.syntax.parsed import Parsed, Rejected
 from robbdd_tools.syntax.split import split
 from robbdd_tools.syntax.textx import parse_with_textx
 

@@ -11,9 +11,10 @@ from tests.bench.models import long_story
 
 from kit import EXAMPLES, STORY, corpus
 from robbdd_tools.syntax import piece, tree
-from robbdd_tools.syntax.chunk import Parsed, Rejected, parse_chunk
+from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.convert import convert
 from robbdd_tools.syntax.parse import parse_declaration
+from robbdd_tools.syntax.parsed import Parsed, Rejected
 from robbdd_tools.syntax.split import split
 from robbdd_tools.syntax.story import cut_story, quotes_braces
 from robbdd_tools.syntax.symbols import references, symbols

@@ -8,9 +8,9 @@ import pytest
 from robbdd_tools.catalog.objects.conveyor import LENGTH, STOP
 from robbdd_tools.protocol.specs import ConfigSpec, SceneSpec
 from robbdd_tools.world.composition import build_world
+from robbdd_tools.world.configured_values import read_back
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.pick_place import PickPlace
-from robbdd_tools.world.scene_configuration import read_back
 from robbdd_tools.world.simulation import Simulation
 from world.worlds import pick_place
 

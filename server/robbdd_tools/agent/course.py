@@ -13,6 +13,7 @@ import numpy as np
 from robbdd_tools.catalog.coordination import emitter
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.world.composition import build_world
+from robbdd_tools.world.configured_values import read_back
 from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError, SceneError, SimulationError, UserError
 from robbdd_tools.world.extent import outline_of
@@ -20,7 +21,6 @@ from robbdd_tools.world.frames import at
 from robbdd_tools.world.pick_place import PickPlace
 from robbdd_tools.world.reaching import ReachSampler
 from robbdd_tools.world.scene import contents_of
-from robbdd_tools.world.scene_configuration import read_back
 from robbdd_tools.world.simulation import Simulation
 from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
 

@@ -13,7 +13,7 @@ from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Site
 
 

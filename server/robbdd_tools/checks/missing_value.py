@@ -16,7 +16,7 @@ from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Site
 
 

@@ -17,7 +17,7 @@ from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Site
 
 CODE = "no-emitter"

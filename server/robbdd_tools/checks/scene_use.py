@@ -11,7 +11,7 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
 
 Key = tuple[str, str]
 _ELEMENTS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)

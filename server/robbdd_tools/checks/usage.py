@@ -12,7 +12,8 @@ from robbdd_tools.checks.finding import removal
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition, FileAnalysis
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration, SymbolKind
 

@@ -13,7 +13,7 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Element, Site
     from robbdd_tools.names.types import Written
     from robbdd_tools.names.uses import Kinds

@@ -20,12 +20,15 @@ from robbdd_tools.features.value_types import fits, kinds_in_text, may_be, scene
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.uses import ANYTHING, Kinds
-from robbdd_tools.syntax.chunk import Expectation, Parsed, grammar_text, parse_chunk
+from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.grammar_files import grammar_text
+from robbdd_tools.syntax.parsed import Expectation, Parsed
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Edit
-    from robbdd_tools.names.analysis import Definition, FileAnalysis
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 MOST_BROKEN_LINES = 50

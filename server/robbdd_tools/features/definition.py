@@ -9,7 +9,8 @@ from robbdd_tools.features.cursor import cursor_at
 from robbdd_tools.names.parts import find_path, parts_of
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition, FileAnalysis
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 

@@ -27,7 +27,7 @@ from robbdd_tools.syntax.symbols import walk
 if TYPE_CHECKING:
     from robbdd_tools.features.clause_results import ResultHint
     from robbdd_tools.features.results import Findings
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Element, Site
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.variants import PlacedVariant

@@ -11,7 +11,7 @@ from robbdd_tools.names.variants import PlacedVariant, variants_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 _HOW = (".bddx", ".scenex", ".ktree")

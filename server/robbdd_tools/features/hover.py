@@ -17,7 +17,7 @@ from robbdd_tools.syntax.symbols import walk_at
 
 if TYPE_CHECKING:
     from robbdd_tools.features.results import Findings, Judged
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 

@@ -19,7 +19,7 @@ from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 Place = tuple[str, Span]

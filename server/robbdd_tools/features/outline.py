@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 

@@ -22,7 +22,7 @@ from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.features.clause_edits import Change
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 

@@ -16,7 +16,8 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition, FileAnalysis
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 

@@ -11,7 +11,7 @@ from robbdd_tools.features.definition import symbol_at
 from robbdd_tools.features.references import uses
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 _NAME = re.compile(r"[^\W\d][\w\-]*")

@@ -17,7 +17,7 @@ from robbdd_tools.names.variants import variants_of
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.features.executions import PlacedExecution
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.variants import PlacedVariant
 

@@ -19,7 +19,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.table import changed_paths
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.chunk import grammar_text
+from robbdd_tools.syntax.grammar_files import grammar_text
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ from functools import cache
 from itertools import dropwhile, takewhile
 
 from robbdd_tools.features.layout import lay_out
-from robbdd_tools.syntax.chunk import grammar_name, grammar_text
 from robbdd_tools.syntax.grammar import (
     Assignment,
     Choice,
@@ -21,6 +20,7 @@ from robbdd_tools.syntax.grammar import (
     Use,
     read_grammar,
 )
+from robbdd_tools.syntax.grammar_files import grammar_name, grammar_text
 from robbdd_tools.syntax.phrases import PREDICATE_RULE
 
 _CHOSEN: Mapping[str, str] = {

@@ -16,7 +16,8 @@ from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
-    from robbdd_tools.names.analysis import Definition, PlacedDeclaration
+    from robbdd_tools.names.analysis import PlacedDeclaration
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 _TOLD = {".bdd": re.compile(r"\bUser\s+Story\b"), ".bddx": re.compile(r"\bScenario\s+Exec\b")}

@@ -15,7 +15,7 @@ from robbdd_tools.names.uses import ANYTHING, Kinds, slot_kinds
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 _REFERENCE = r"<\s*([\w\-.]+)\s*>"

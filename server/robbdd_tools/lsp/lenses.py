@@ -21,7 +21,7 @@ from robbdd_tools.names.variants import variants_of
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.features.results import Findings
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 

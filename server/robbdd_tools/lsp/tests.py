@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.lsp.convert import Converter
     from robbdd_tools.lsp.server import RobbddServer
-    from robbdd_tools.names.analysis import Definition
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 TESTS = "robbdd/tests"

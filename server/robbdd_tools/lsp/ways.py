@@ -16,7 +16,7 @@ from robbdd_tools.features.selection import selections
 from robbdd_tools.features.type_definition import type_definition
 from robbdd_tools.lsp.convert import document_of, symbol_kind
 from robbdd_tools.lsp.server import RobbddServer
-from robbdd_tools.names.analysis import Definition
+from robbdd_tools.names.definition import Definition
 from robbdd_tools.names.project import Snapshot
 
 Targets = Callable[[Snapshot, str, int], list[tuple[str, Span]]]

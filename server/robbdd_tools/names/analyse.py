@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity, sort_key
-from robbdd_tools.names.analysis import Definition, FileAnalysis, ImportLink, PlacedDeclaration
+from robbdd_tools.names.analysis import FileAnalysis, ImportLink, PlacedDeclaration
+from robbdd_tools.names.definition import Definition
 from robbdd_tools.names.namespaces import without_namespace
 from robbdd_tools.names.problems import repeated, unresolved
 from robbdd_tools.names.resolve import Resolution, Target, Targets, resolve_file

@@ -8,32 +8,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
-from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
     from robbdd_tools.base.document import Document
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.resolve import Targets
-    from robbdd_tools.syntax.declaration import Declaration, Symbol
-
-
-@dataclass(frozen=True, slots=True)
-class Definition:
-    """Where a name is declared: ``span`` and ``extent`` are absolute in the document ``uri``.
-
-    ``iri`` is ``None`` while the namespace of the declaration is unknown.
-    """
-
-    uri: str
-    symbol: Symbol
-    span: Span
-    extent: Span
-    iri: str | None
-
-    @property
-    def kind(self) -> SymbolKind:
-        """What the name stands for."""
-        return self.symbol.kind
+    from robbdd_tools.syntax.declaration import Declaration
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,8 @@ from robbdd_tools.syntax.symbols import MOST_COPIES
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
-    from robbdd_tools.names.analysis import Definition, FileAnalysis, PlacedDeclaration
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
 

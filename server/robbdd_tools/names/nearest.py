@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robbdd_tools.names.indirect_names import ROLES, instances
 from robbdd_tools.names.suggest import closest
-from robbdd_tools.names.through import ROLES, instances
 
 if TYPE_CHECKING:
     from robbdd_tools.names.scope import Scope
@@ -16,7 +16,7 @@ def nearest(scope: Scope, reference: Reference, kinds: tuple[SymbolKind, ...]) -
     """Return the names nearest to a reference, and whether there is any: ``closest``, but through instances too."""
     path = reference.ref.path
     if reference.ref.role in ROLES:
-        for name, target in instances(scope):
+        for name, target in instances(scope.files):
             if path.startswith(f"{name}."):
                 close, _ = closest(scope.tables, kinds, (), target + path[len(name) :])
                 parts = tuple(name + other[len(target) :] for other in close if other.startswith(f"{target}."))

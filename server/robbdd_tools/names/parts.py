@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.names.indirect_names import paths_through
 from robbdd_tools.names.resolve import candidates
-from robbdd_tools.names.through import paths_through
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition, PlacedDeclaration
+    from robbdd_tools.names.analysis import PlacedDeclaration
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.scope import Scope
     from robbdd_tools.syntax.declaration import Reference
@@ -34,7 +35,7 @@ def parts_of(snapshot: Snapshot, uri: str, placed: PlacedDeclaration, reference:
 
 def find_path(scope: Scope, paths: tuple[str, ...]) -> Definition | None:
     """Return what the first of some qualified names means, by itself or through another name; ``None`` if nothing."""
-    for path in (*paths, *paths_through(scope, paths)):
+    for path in (*paths, *paths_through(scope.files, paths)):
         for file, declared in scope.find(path):
             return scope.define(file, declared)
     return None
@@ -52,7 +53,7 @@ def _owners_through(scope: Scope, reference: Reference, target: Definition) -> l
     """Return what the parts before the last one stand for where one of them stands for another name."""
     written = reference.ref.path.split(".")
     for full in candidates(reference):
-        if target.symbol.path in paths_through(scope, (full,)):
+        if target.symbol.path in paths_through(scope.files, (full,)):
             path = full.split(".")
             ends = range(len(path) - len(written) + 1, len(path))
             return [find_path(scope, (".".join(path[:end]),)) for end in ends]

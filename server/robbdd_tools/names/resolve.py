@@ -9,10 +9,10 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.checkpoint import checkpoint
-from robbdd_tools.names.analysis import Definition
+from robbdd_tools.names.definition import Definition
+from robbdd_tools.names.indirect_names import ROLES, paths_through
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.table import changed_paths
-from robbdd_tools.names.through import ROLES, paths_through
 from robbdd_tools.syntax.move import moved_ref, moved_reference
 
 if TYPE_CHECKING:
@@ -187,7 +187,7 @@ def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
         looked_up.update(paths)
         if found is None and ref.role in ROLES:
             through_others = True
-            found, other = _lookup(tables, ref.role, (*paths, *paths_through(scope, paths)))
+            found, other = _lookup(tables, ref.role, (*paths, *paths_through(scope.files, paths)))
         if found is not None:
             targets[ref] = found
         else:

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.names.analysis import Definition
+from robbdd_tools.names.definition import Definition
+from robbdd_tools.names.indirect_names import instance_parts
 from robbdd_tools.names.namespaces import only_namespace
 from robbdd_tools.names.roles import ROLE_KINDS
-from robbdd_tools.names.through import instance_parts
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE, SymbolKind
 from robbdd_tools.syntax.tree import Namespace
 
@@ -64,7 +64,7 @@ class Scope:
             for path, entry in found.items():
                 written = shortened(path, scopes) if position == 0 else path
                 names.setdefault(written, (file, file.at(entry)))
-        for written, file, declared in instance_parts(self, wanted):
+        for written, file, declared in instance_parts(self.files, wanted):
             names.setdefault(written, (file, declared))
         return names
 

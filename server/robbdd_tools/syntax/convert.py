@@ -10,7 +10,7 @@ from typing import Any, cast
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.chunk import RawNode
+from robbdd_tools.syntax.parsed import RawNode
 from robbdd_tools.syntax.phrases import word_of_rule
 from robbdd_tools.syntax.published import complete_template, complete_variant, unnamed_at
 from robbdd_tools.syntax.scene_tree import field_names

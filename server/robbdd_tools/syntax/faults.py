@@ -6,8 +6,8 @@ import re
 from dataclasses import replace
 
 from robbdd_tools.base.document import Span
-from robbdd_tools.syntax.chunk import Expectation, Rejected
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.parsed import Expectation, Rejected
 from robbdd_tools.syntax.recover import Fault
 
 LONGEST_WORD = 40

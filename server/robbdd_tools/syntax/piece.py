@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from robbdd_tools.syntax.chunk import Parsed, parse_chunk
+from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.convert import convert
 from robbdd_tools.syntax.declaration import SyntaxFault
 from robbdd_tools.syntax.faults import fault_in
+from robbdd_tools.syntax.parsed import Parsed
 from robbdd_tools.syntax.recover import recover
 
 

@@ -15,7 +15,8 @@ from difflib import SequenceMatcher
 from itertools import islice
 
 from robbdd_tools.base.document import Span
-from robbdd_tools.syntax.chunk import Expectation, Parsed, Rejected, parse_chunk
+from robbdd_tools.syntax.chunk import parse_chunk
+from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
 
 MOST_FAULTS = 12
 MOST_PARSES = 48

@@ -10,7 +10,8 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-from robbdd_tools.syntax.chunk import ROOTS, Expectation, Parsed, Rejected, grammar_text
+from robbdd_tools.syntax.grammar_files import ROOTS, grammar_text
+from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
 
 
 def parse_with_textx(language: str, text: str) -> Parsed | Rejected:

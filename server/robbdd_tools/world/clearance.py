@@ -10,7 +10,8 @@ from robbdd_tools.world.engine import mujoco
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.world.simulation import Robot, Simulation
+    from robbdd_tools.world.robot import Robot
+    from robbdd_tools.world.simulation import Simulation
 
 
 class Clearance:

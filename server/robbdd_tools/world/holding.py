@@ -12,7 +12,7 @@ from robbdd_tools.catalog.api import GripperKind
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.world.simulation import Robot
+    from robbdd_tools.world.robot import Robot
 
 ASKEW = cos(radians(20.0))
 """Cosine of the largest angle between a cup's axis and what it holds at which its lip still seals."""

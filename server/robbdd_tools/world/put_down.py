@@ -14,7 +14,8 @@ from robbdd_tools.world.placement import BEARING, HAND_GAP, Pose, bearing, field
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Region, Vector
-    from robbdd_tools.world.simulation import Robot, Simulation
+    from robbdd_tools.world.robot import Robot
+    from robbdd_tools.world.simulation import Simulation
 
 ALONG = (0.0, -0.03, 0.03)
 """Places along a bin's length, m from its middle, where a hand fits in."""

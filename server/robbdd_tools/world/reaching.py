@@ -21,7 +21,8 @@ from robbdd_tools.world.motion import ToolPose, frame_of, tool_pose
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.world.arm_kinematics import Arm
-    from robbdd_tools.world.simulation import Robot, Simulation
+    from robbdd_tools.world.robot import Robot
+    from robbdd_tools.world.simulation import Simulation
 
 NONE = -pi
 """Reach margin (rad) where there is no clear grasp within the joint limits."""

@@ -1,21 +1,19 @@
-"""Sets a scene up as its Given clauses want it, and reads the values back from the world that came of it."""
+"""Sets a scene up as its Given clauses want it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, Shape, ShapeKind, Vector
-from robbdd_tools.catalog.settings import NORMAL, SETTINGS, Numbers, SettingError, setting_of, written
-from robbdd_tools.world.belts import belt_speed, belts_of
+from robbdd_tools.catalog.settings import SETTINGS, Numbers, SettingError, setting_of, written
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of
 
 if TYPE_CHECKING:
-    from robbdd_tools.protocol.specs import ConfigSpec, SceneSpec
-    from robbdd_tools.world.simulation import Simulation
+    from robbdd_tools.protocol.specs import ConfigSpec
 
 
 CONTROLLER = {
@@ -61,34 +59,6 @@ def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, .
             _apply(found, element, config, value)
 
 
-def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, str], str]:
-    """Return element and name → value of every configuration, as the simulated world has it."""
-    cast, model = simulation.world.cast, simulation.model
-    settings: dict[tuple[str, str], Numbers] = dict(cast.judged)
-    for name, thing in cast.objects.items():
-        body = model.body(name)
-        geoms = range(int(body.geomadr[0]), int(body.geomadr[0] + body.geomnum[0]))
-        settings[name, "friction"] = (float(model.geom_friction[geoms[0], 0]),)
-        if thing.free:
-            settings[name, "mass"] = (float(body.mass[0]),)
-        if thing.graspable:
-            settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
-        for servo in belts_of(model, name)[:1]:
-            settings[name, "belt_speed"] = (belt_speed(model, servo),)
-        if _is_scalable(thing):
-            settings[name, "height_scale"] = (_height(model, geoms) / cast.heights[name],)
-    for name, robot in simulation.robots.items():
-        for setting, attribute in CONTROLLER.items():
-            settings[name, setting] = (getattr(robot.model, attribute),)
-        if robot.model.approach_speed is None:
-            settings[name, "approach_speed"] = settings[name, "ee_speed"]
-        settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
-    # A seed may be asked for of anything, such as the scene.
-    for name in (*cast.objects, *cast.agents, *(config.target for config in scene.config)):
-        settings[name, "seed"] = (float(simulation.world.seed),)
-    return {pair: written(value) for pair, value in settings.items()}
-
-
 def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) -> None:
     thing, robot = found.objects.get(element), found.agents.get(element)
     judged = {"agent": robot, "object": thing}.get(SETTINGS[config.name].judges)
@@ -110,7 +80,7 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
             found.objects[element] = replace(thing, friction=value[0])
         case "belt_speed" if thing is not None and _has_belt(thing):
             found.objects[element] = _driven(thing, value[0])
-        case "height_scale" if thing is not None and _is_scalable(thing):
+        case "height_scale" if thing is not None and is_scalable(thing):
             found.objects[element] = _scaled(thing, value[0])
         case name if thing is None and robot is None:
             raise SceneError(f"'{config.target}', which is to have {name} = {config.value}, is not in the scene")
@@ -123,7 +93,7 @@ def _loose(found: Configured) -> list[str]:
     return [name for name in found.objects if found.objects[name].graspable and name not in found.ranges]
 
 
-def _is_scalable(model: ObjectModel) -> bool:
+def is_scalable(model: ObjectModel) -> bool:
     """Tell whether an object is a loose container. A sphere keeps its proportions."""
     round_ones = any(shape.kind is ShapeKind.SPHERE for shape in model.shapes)
     return model.free and model.region is not None and not round_ones
@@ -175,10 +145,3 @@ def height_of(model: ObjectModel) -> float:
     """Return the height (m) of an object without its belts."""
     low, high = bounds_of(tuple(shape for shape in model.shapes if shape.surface is None))
     return float(high[2] - low[2])
-
-
-def _height(model: Any, geoms: range) -> float:
-    """Return the height (m) of the box around the geoms of a body, which are in line with it."""
-    middle = model.geom_pos[geoms, 2] + model.geom_aabb[geoms, 2]
-    half = model.geom_aabb[geoms, 5]
-    return float((middle + half).max() - (middle - half).min())

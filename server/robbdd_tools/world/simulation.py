@@ -16,6 +16,7 @@ from robbdd_tools.world.engine import SUBSTEPS, TICK, mujoco
 from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.holding import Grips
 from robbdd_tools.world.recorder import Bodies, Recorder
+from robbdd_tools.world.robot import Robot
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -28,33 +29,6 @@ REST_TICKS = 6
 """Ticks in a row that everything must be at rest."""
 SETTLE_TICKS = 190
 """Ticks (about three seconds) after which a world counts as settled, come what may."""
-
-
-class Robot:
-    """One robot of a running simulation: its places in the engine's arrays.
-
-    ``joints`` (n,) indexes joint positions, ``speeds`` (n,) velocities, ``motors`` (n,) and ``gripper`` controls,
-    ``targets`` (n,) the positions that the arm's servos hold at the moment.
-    """
-
-    def __init__(self, world: World, name: str) -> None:
-        model, robot = world.model, world.cast.agents[name]
-        self.name = name
-        self.model = robot
-        self.base = world.bases[name]
-        joints = [model.joint(f"{name}/{joint}") for joint in robot.joints]
-        self.joints = np.array([joint.qposadr[0] for joint in joints])
-        self.speeds = np.array([joint.dofadr[0] for joint in joints])
-        on_joint = np.flatnonzero(model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_JOINT))
-        driven = {int(model.actuator_trnid[motor, 0]): int(motor) for motor in on_joint}
-        self.motors = np.array([driven[joint.id] for joint in joints])
-        self.targets = model.actuator_actadr[self.motors]
-        self.gripper = int(model.actuator(f"{name}/{robot.gripper_actuator}").id)
-        self.tool = int(model.site(f"{name}/{robot.tool_site}").id)
-        self.pads = tuple(int(model.geom(f"{name}/{pad}").id) for pad in robot.pads)
-        gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
-        self.lead: FloatArray = -bias / gain
-        """Seconds by which a joint's target must run ahead to make up for the servo's damping, shape (n,)."""
 
 
 class Simulation:

@@ -14,7 +14,8 @@ from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import Definition, FileAnalysis, PlacedDeclaration
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
+    from robbdd_tools.names.definition import Definition
     from robbdd_tools.syntax.declaration import Declaration
 
 Key = tuple[str, int]

@@ -7,7 +7,7 @@ user story around it. All of these have their declaration under another path, wh
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.memory import kept_with_key
@@ -16,7 +16,6 @@ from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.names.index import Declared, FileIndex
-    from robbdd_tools.names.scope import Scope
     from robbdd_tools.syntax.declaration import Declaration
 
 ROLES = frozenset({"Frame", "Body", "Joint", "Tree", "Fluent"})
@@ -26,25 +25,27 @@ MOST_PATHS = 50
 _PARTS = frozenset({SymbolKind.BODY, SymbolKind.FRAME, SymbolKind.POSE, SymbolKind.JOINT})
 
 
-def paths_through(scope: Scope, paths: Iterable[str]) -> list[str]:
+def paths_through(files: Sequence[FileIndex], paths: Iterable[str]) -> list[str]:
     """Return the paths under which what some qualified names mean may be declared, nearest first."""
     waiting = list(paths)
     found: dict[str, None] = {}
     for path in waiting:
-        for other in _rewritten(scope, path):
+        for other in _rewritten(files, path):
             if other not in found and len(found) < MOST_PATHS:
                 found[other] = None
                 waiting.append(other)
     return list(found)
 
 
-def instance_parts(scope: Scope, kinds: Iterable[SymbolKind]) -> Iterator[tuple[str, FileIndex, Declared]]:
+def instance_parts(
+    files: Sequence[FileIndex], kinds: Iterable[SymbolKind]
+) -> Iterator[tuple[str, FileIndex, Declared]]:
     """Yield each part of each instance of a tree as it is written, with the declaration in the template."""
     wanted = _PARTS.intersection(kinds)
     if not wanted:
         return
-    for name, target in instances(scope):
-        for file in scope.files:
+    for name, target in instances(files):
+        for file in files:
             for path, entries in file.names.entries.items():
                 if path.startswith(f"{target}."):
                     fitting = (entry for entry in entries if entry.kind in wanted)
@@ -52,21 +53,21 @@ def instance_parts(scope: Scope, kinds: Iterable[SymbolKind]) -> Iterator[tuple[
                         yield name + path[len(target) :], file, file.at(entry)
 
 
-def instances(scope: Scope) -> Iterator[tuple[str, str]]:
+def instances(files: Sequence[FileIndex]) -> Iterator[tuple[str, str]]:
     """Yield the name of each instance of a tree with that of its template."""
-    for file in scope.files:
+    for file in files:
         for placed in file.declarations:
             for symbol in placed.declaration.symbols[:1]:
                 if symbol.target is not None:
                     yield symbol.path, symbol.target
 
 
-def _rewritten(scope: Scope, path: str) -> Iterator[str]:
+def _rewritten(files: Sequence[FileIndex], path: str) -> Iterator[str]:
     """Replace the beginning of a path by what it stands for."""
     parts = path.split(".")
     for length in range(1, len(parts) + 1):
         head, rest = ".".join(parts[:length]), path[len(".".join(parts[:length])) :]
-        for file in scope.files:
+        for file in files:
             for target in _targets(file).get(head, ()):
                 yield target + rest
 

@@ -1,0 +1,29 @@
+"""What a reference leads to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.document import Span
+    from robbdd_tools.syntax.declaration import Symbol, SymbolKind
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """Where a name is declared: ``span`` and ``extent`` are absolute in the document ``uri``.
+
+    ``iri`` is ``None`` while the namespace of the declaration is unknown.
+    """
+
+    uri: str
+    symbol: Symbol
+    span: Span
+    extent: Span
+    iri: str | None
+
+    @property
+    def kind(self) -> SymbolKind:
+        """What the name stands for."""
+        return self.symbol.kind

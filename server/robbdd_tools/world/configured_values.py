@@ -1,0 +1,49 @@
+"""Reads the configuration of a scene back from the world that was built of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.catalog.settings import NORMAL, Numbers, written
+from robbdd_tools.world.belts import belt_speed, belts_of
+from robbdd_tools.world.scene_configuration import CONTROLLER, is_scalable
+
+if TYPE_CHECKING:
+    from robbdd_tools.protocol.specs import SceneSpec
+    from robbdd_tools.world.simulation import Simulation
+
+
+def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, str], str]:
+    """Return element and name → value of every configuration, as the simulated world has it."""
+    cast, model = simulation.world.cast, simulation.model
+    settings: dict[tuple[str, str], Numbers] = dict(cast.judged)
+    for name, thing in cast.objects.items():
+        body = model.body(name)
+        geoms = range(int(body.geomadr[0]), int(body.geomadr[0] + body.geomnum[0]))
+        settings[name, "friction"] = (float(model.geom_friction[geoms[0], 0]),)
+        if thing.free:
+            settings[name, "mass"] = (float(body.mass[0]),)
+        if thing.graspable:
+            settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
+        for servo in belts_of(model, name)[:1]:
+            settings[name, "belt_speed"] = (belt_speed(model, servo),)
+        if is_scalable(thing):
+            settings[name, "height_scale"] = (_height(model, geoms) / cast.heights[name],)
+    for name, robot in simulation.robots.items():
+        for setting, attribute in CONTROLLER.items():
+            settings[name, setting] = (getattr(robot.model, attribute),)
+        if robot.model.approach_speed is None:
+            settings[name, "approach_speed"] = settings[name, "ee_speed"]
+        settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
+    # A seed may be asked for of anything, such as the scene.
+    for name in (*cast.objects, *cast.agents, *(config.target for config in scene.config)):
+        settings[name, "seed"] = (float(simulation.world.seed),)
+    return {pair: written(value) for pair, value in settings.items()}
+
+
+def _height(model: Any, geoms: range) -> float:
+    """Return the height (m) of the box around the geoms of a body, which are in line with it."""
+    middle = model.geom_pos[geoms, 2] + model.geom_aabb[geoms, 2]
+    half = model.geom_aabb[geoms, 5]
+    return float((middle + half).max() - (middle - half).min())
