@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 
@@ -137,6 +138,25 @@ def test_no_imports_go_in_a_circle() -> None:
     for module in OBJECTS_OF_THE_API:
         graph[module] -= OBJECTS_OF_THE_API
     assert circles(graph) == []
+
+
+SAME_ROLE = {
+    **dict.fromkeys(
+        ("behaviour_trees", "clauses", "executions", "instances", "scenes", "stories", "variations"),
+        "one part of a model: written to the graph, read from it, expanded, or made text again",
+    ),
+    **dict.fromkeys(
+        ("graph_picture", "preview", "user_errors", "layout", "query", "judge", "run", "runs", "steps", "diagnostics"),
+        "one feature: what it does in the core, and how the server, a command or a program asks for it",
+    ),
+    "pick_place": "one behaviour: its words in the catalog, its controller in the world",
+    "pose": "where something is: the type, and the diagnostic of a pose that is none",
+}
+
+
+def test_a_file_name_stands_once_or_means_one_thing() -> None:
+    names = Counter(path.stem for _, path in modules() if path.stem != "__init__")
+    assert {name for name, count in names.items() if count > 1} == set(SAME_ROLE)
 
 
 def test_a_library_has_one_home() -> None:

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from robbdd_tools.run.stored_results import RunStatus
     from robbdd_tools.run.user_code import UserCodeRefused
     from robbdd_tools.traces.mcap_file import UnreadableTrace
-    from robbdd_tools.workbench.executions import ClauseResult, ExecutionResult
-    from robbdd_tools.workbench.findings import Finding, Place, QuickFix, RelatedPlace, TextEdit
+    from robbdd_tools.workbench.diagnostics import Finding, Place, QuickFix, RelatedPlace, TextEdit
+    from robbdd_tools.workbench.execution_rows import ClauseResult, ExecutionResult
     from robbdd_tools.workbench.folder import Keeping
     from robbdd_tools.workbench.judging import Judged, NothingToJudge, judge
     from robbdd_tools.workbench.model import Model, ModelErrors, NotAModel, NothingToRun, load

@@ -18,7 +18,7 @@ import psutil
 import pytest
 
 from kit import MODEL, SCENE
-from robbdd_tools.features import results
+from robbdd_tools.features import run_verdicts as results
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.semantic_tokens import semantic_tokens
 from robbdd_tools.graph.shapes.project_shapes import EditorShapes

@@ -19,7 +19,7 @@ _SCRIPT = """
 import json, resource, shutil, sys, time
 from pathlib import Path
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.gherkin.files import whole_plan
+from robbdd_tools.gherkin.feature_files import whole_plan
 from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.names.project import Project

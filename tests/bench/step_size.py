@@ -15,8 +15,8 @@ from unittest.mock import patch
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from robbdd_tools.judging.clauses import decide
-from robbdd_tools.judging.sentences import read_clause
+from robbdd_tools.judging.decisions import decide
+from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.protocol.specs import ConfigSpec
 from robbdd_tools.world import composition, simulation
 from robbdd_tools.world.engine import SUBSTEPS, TIMESTEP

@@ -12,7 +12,7 @@ import pytest
 
 from robbdd_tools.catalog.api import Behaviour, ObjectModel, Predicate, RobotModel
 from robbdd_tools.catalog.registry import DuplicateWord, build_catalog, load_catalog
-from robbdd_tools.judging.sentences import Fluent, fluent_pattern, read_clause, read_doing
+from robbdd_tools.judging.parsed_sentences import Fluent, fluent_pattern, read_clause, read_doing
 from robbdd_tools.world.composition import mjcf_path
 from robbdd_tools.world.engine import mujoco
 

@@ -14,12 +14,12 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.call_hierarchy import callable_at, calls_from, calls_to
 from robbdd_tools.features.clause_results import clause_hints, row_hints
 from robbdd_tools.features.completion import complete
-from robbdd_tools.features.definition import definition
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.document_links import document_links
 from robbdd_tools.features.fixes_on_demand import fixes_on_demand
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.format_range import format_on_type, format_range
+from robbdd_tools.features.goto_definition import definition
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.implementation import implementation
 from robbdd_tools.features.layout import lay_out
@@ -29,9 +29,9 @@ from robbdd_tools.features.refactor_declarations import modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.references import highlights, references
 from robbdd_tools.features.rename import RenameRefused, linked_places, prepare_rename, rename
-from robbdd_tools.features.results import NOTHING
+from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.scenario_hints import scenario_hints
-from robbdd_tools.features.selection import selections
+from robbdd_tools.features.selection_ranges import selections
 from robbdd_tools.features.semantic_tokens import semantic_tokens
 from robbdd_tools.features.type_definition import type_definition
 from robbdd_tools.features.type_hints import type_hints

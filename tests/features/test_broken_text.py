@@ -13,11 +13,11 @@ from kit import FOLDER, SCENE
 from names.test_kinds import ARM, CELL, RUN, VARIANT
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.completion import Completion, complete
-from robbdd_tools.features.definition import definition
 from robbdd_tools.features.folding import folds
+from robbdd_tools.features.goto_definition import definition
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.outline import Item, outline
-from robbdd_tools.features.selection import selections
+from robbdd_tools.features.selection_ranges import selections
 from robbdd_tools.features.semantic_tokens import Token, semantic_tokens
 from robbdd_tools.names.project import Project, Snapshot
 from syntax.test_scenex import TREE

@@ -10,7 +10,7 @@ from gherkin_kit import edited
 from kit import MODEL, Fixture, fixture
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.features.clause_results import clause_diagnostics, clause_hints, pass_rate, row_hints
-from robbdd_tools.features.results import (
+from robbdd_tools.features.run_verdicts import (
     Findings,
     JudgedScenario,
     Judgement,
@@ -20,7 +20,7 @@ from robbdd_tools.features.results import (
     from_json,
 )
 from robbdd_tools.features.scenarios import number_of_scenarios
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.names.variant_places import variants_of
 
 NS = "https://example.org/t/"
 IRI = f"{NS}in-tray"

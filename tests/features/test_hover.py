@@ -10,7 +10,7 @@ from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE, fixture
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.features.describe import describe_path, describe_words
 from robbdd_tools.features.hover import hover
-from robbdd_tools.features.results import NOTHING, Findings, JudgedScenario, Judgement, Results, digests_of
+from robbdd_tools.features.run_verdicts import NOTHING, Findings, JudgedScenario, Judgement, Results, digests_of
 
 
 def shown(text: str, findings: Findings = NOTHING) -> str:

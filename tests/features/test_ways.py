@@ -13,7 +13,7 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.call_hierarchy import callable_at, calls_from, calls_to
 from robbdd_tools.features.document_links import document_links
 from robbdd_tools.features.implementation import implementation
-from robbdd_tools.features.selection import selections
+from robbdd_tools.features.selection_ranges import selections
 from robbdd_tools.features.type_definition import type_definition
 from robbdd_tools.names.project import Project
 

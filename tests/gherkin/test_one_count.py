@@ -14,7 +14,7 @@ from robbdd_tools.gherkin.variations import bindings, count
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph
 from robbdd_tools.names.project import Project, Snapshot
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.names.variant_places import variants_of
 
 GOALS = "                set var <fetch.goals>: "
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.steps import StepWriter
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Exists, Fluent, Iri, Junction, TextClause
-from robbdd_tools.judging import sentences as read
+from robbdd_tools.judging import parsed_sentences as read
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 
 MODEL = AcceptanceModel((), {}, {Iri("x:set"): (Iri("x:a"), Iri("x:b"))}, {"x": "x:"})

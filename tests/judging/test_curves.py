@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from judging.test_clauses import EVENTS, REGIONS, a_trace
+from judging.test_decisions import EVENTS, REGIONS, a_trace
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
-from robbdd_tools.judging.sentences import read_clause, read_doing
+from robbdd_tools.judging.parsed_sentences import read_clause, read_doing
 from robbdd_tools.world.drawn_shapes import thinned
 
 

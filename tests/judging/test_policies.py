@@ -11,9 +11,9 @@ import pytest
 from monitor.traces import still, trace_of
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import Implementation
-from robbdd_tools.judging.clauses import decide
+from robbdd_tools.judging.decisions import decide
+from robbdd_tools.judging.parsed_sentences import Fluent, Junction, fluents_of, read_clause
 from robbdd_tools.judging.policies import with_policies
-from robbdd_tools.judging.sentences import Fluent, Junction, fluents_of, read_clause
 from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
 from robbdd_tools.monitor.time import After, During
 from robbdd_tools.monitor.trace import Trace

@@ -9,8 +9,8 @@ import pytest
 from monitor.traces import heights, still, trace_of
 from robbdd_tools.catalog.api import Region
 from robbdd_tools.judging.margin_ranges import margin_ranges
+from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.judging.scenario_clauses import stated_clause
-from robbdd_tools.judging.sentences import read_clause
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.protocol.specs import ClauseSpec
 from world.worlds import EVENTS, PANDA, scenario

@@ -25,7 +25,7 @@ from robbdd_tools.features.scenario_hints import scenario_hints
 from robbdd_tools.features.semantic_tokens import semantic_tokens
 from robbdd_tools.features.type_hints import type_hints
 from robbdd_tools.names.analysis import FileAnalysis
-from robbdd_tools.names.clauses import clauses_in
+from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.project import Project
 
 IN_CI = 340

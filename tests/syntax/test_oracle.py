@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from kit import EXAMPLES, MODEL, SCENE, corpus
 from robbdd_tools.syntax.chunk import parse_chunk
-from robbdd_tools.syntax.convert import convert
 from robbdd_tools.syntax.grammar import GrammarError, read_grammar
 from robbdd_tools.syntax.parsed import Parsed, Rejected
 from robbdd_tools.syntax.split import split
 from robbdd_tools.syntax.textx import parse_with_textx
+from robbdd_tools.syntax.to_trees import convert
 
 LANGUAGES = ("bdd", "scene", "scenex", "ktree", "bddx")
 

@@ -12,13 +12,13 @@ from tests.bench.models import long_story
 from kit import EXAMPLES, STORY, corpus
 from robbdd_tools.syntax import piece, tree
 from robbdd_tools.syntax.chunk import parse_chunk
-from robbdd_tools.syntax.convert import convert
 from robbdd_tools.syntax.parse import parse_declaration
 from robbdd_tools.syntax.parsed import Parsed, Rejected
 from robbdd_tools.syntax.split import split
 from robbdd_tools.syntax.story import cut_story, quotes_braces
 from robbdd_tools.syntax.symbols import references, symbols
 from robbdd_tools.syntax.textx import parse_with_textx
+from robbdd_tools.syntax.to_trees import convert
 
 LONG = next(chunk.text for chunk in split("bdd", long_story(120)) if chunk.text.startswith("User"))
 PUBLISHED = """User Story s {

@@ -11,7 +11,7 @@ from robbdd_tools.agent.beginning import call_of
 from robbdd_tools.agent.course import Call
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import Implementation, Origin
-from robbdd_tools.judging.sentences import read_doing
+from robbdd_tools.judging.parsed_sentences import read_doing
 from robbdd_tools.protocol.specs import ExecutionSpec
 from robbdd_tools.world.errors import SceneError
 from world.worlds import BALL, BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, execution, scenario

@@ -10,8 +10,8 @@ import pytest
 from robbdd_tools.agent.course import Call
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.robots.ur10 import UR10
-from robbdd_tools.judging.clauses import decide
-from robbdd_tools.judging.sentences import read_clause
+from robbdd_tools.judging.decisions import decide
+from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict
 from robbdd_tools.protocol.specs import ConfigSpec

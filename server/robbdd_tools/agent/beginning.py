@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.course import TIMEOUT, Call, Course, Timing
 from robbdd_tools.catalog.api import Kind
-from robbdd_tools.judging.sentences import AnyOf, Clause, Doing, fluents_of, read_doing
+from robbdd_tools.judging.parsed_sentences import AnyOf, Clause, Doing, fluents_of, read_doing
 from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.world.errors import SceneError
 

@@ -15,7 +15,7 @@ from robbdd_tools.world.engine import TICK
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.judging.sentences import Clause
+    from robbdd_tools.judging.parsed_sentences import Clause
     from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.protocol.specs import ScenarioSpec

@@ -17,10 +17,10 @@ from robbdd_tools.agent.printed_output import Printed, finish_output
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
-from robbdd_tools.judging.clauses import decide
+from robbdd_tools.judging.decisions import decide
 from robbdd_tools.judging.margin_ranges import margin_ranges
+from robbdd_tools.judging.parsed_sentences import fluents_of, read_event
 from robbdd_tools.judging.scenario_clauses import stated_clause, stated_iteration
-from robbdd_tools.judging.sentences import fluents_of, read_event
 from robbdd_tools.monitor.time import never_occurred, occurrences
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.protocol.manifest_file import STORED_RESULTS, read_manifest

@@ -104,7 +104,7 @@ def _videos(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
     from robbdd_tools.agent.execution import Execution
     from robbdd_tools.agent.moments import Moments
     from robbdd_tools.agent.video import Violation, write_video
-    from robbdd_tools.judging.sentences import read_clause
+    from robbdd_tools.judging.parsed_sentences import read_clause
 
     moments = list(Moments(folder))
     for index, spec in enumerate(manifest.scenarios):

@@ -13,11 +13,11 @@ from robbdd_tools.agent.beginning import Courses, call_of, calls_of, timing_of
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.printed_output import finish_output
-from robbdd_tools.judging.clauses import decide, is_closed
+from robbdd_tools.judging.decisions import decide, is_closed
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
+from robbdd_tools.judging.parsed_sentences import Fluent, Unmatched, read_clause, read_doing, read_event
 from robbdd_tools.judging.scenario_clauses import stated_clause, stated_iteration
-from robbdd_tools.judging.sentences import Fluent, Unmatched, read_clause, read_doing, read_event
 from robbdd_tools.monitor.time import never_occurred
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.protocol.messages import (

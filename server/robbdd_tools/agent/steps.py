@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.judging.sentences import GROUP, NOT, OCCURS, fluent_pattern, sentence_pattern
+from robbdd_tools.judging.parsed_sentences import GROUP, NOT, OCCURS, fluent_pattern, sentence_pattern
 from robbdd_tools.monitor.verdict import Outcome, Verdict
 from robbdd_tools.world.errors import SceneError
 

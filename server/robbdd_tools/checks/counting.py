@@ -10,7 +10,7 @@ from robbdd_tools.names.elements import elements_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
-    from robbdd_tools.checks.variants import Scenario
+    from robbdd_tools.checks.template_variants import Scenario
     from robbdd_tools.names.elements import Site
     from robbdd_tools.names.types import Written
 

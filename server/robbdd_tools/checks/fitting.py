@@ -12,7 +12,7 @@ from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Fix
-    from robbdd_tools.checks.variants import Column, Scenario
+    from robbdd_tools.checks.template_variants import Column, Scenario
     from robbdd_tools.names.elements import Site
     from robbdd_tools.names.uses import Clauses, Kinds, Use
 

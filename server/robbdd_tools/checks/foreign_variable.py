@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Related, Severity
 from robbdd_tools.checks.finding import change, finding
-from robbdd_tools.checks.variants import VARIABLES, Scenario, scenarios
+from robbdd_tools.checks.template_variants import VARIABLES, Scenario, scenarios
 from robbdd_tools.names.types import variable_key
 from robbdd_tools.syntax import tree
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.checks.counting import MOST_SCENARIOS, UNCOUNTED, factors_of
 from robbdd_tools.checks.finding import finding
-from robbdd_tools.checks.variants import scenarios
+from robbdd_tools.checks.template_variants import scenarios
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.checks.facts import facts_of
 from robbdd_tools.names.anchors import Anchored, Anchors
 from robbdd_tools.names.elements import Site
-from robbdd_tools.names.table import changed_paths
+from robbdd_tools.names.name_table import changed_paths
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
     from robbdd_tools.names.analysis import FileAnalysis
     from robbdd_tools.names.index import FileIndex
+    from robbdd_tools.names.name_table import NameTable
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.scope import Scope
-    from robbdd_tools.names.table import NameTable
     from robbdd_tools.syntax.declaration import Declaration
 
 Rule = Callable[[Site], "Iterator[Diagnostic]"]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Edit, Fix, Related, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks.finding import MOST_OFFERED, finding, listed
-from robbdd_tools.checks.tables import columns_added
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.table_edits import columns_added
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.types import variable_key
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind

@@ -11,7 +11,7 @@ from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.finding import MOST_OFFERED, change, finding
-from robbdd_tools.checks.variants import scenarios
+from robbdd_tools.checks.template_variants import scenarios
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 

@@ -14,7 +14,7 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.checks.finding import finding
 from robbdd_tools.checks.fitting import SET_WORDS
 from robbdd_tools.checks.lines import import_edit
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.elements import Element, elements_of, scene_members
 from robbdd_tools.names.imports import import_path
 from robbdd_tools.names.types import written_elements

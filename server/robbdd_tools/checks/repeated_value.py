@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Fix, Severity
 from robbdd_tools.checks.finding import finding, related_to, removal
-from robbdd_tools.checks.tables import column_removed
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.table_edits import column_removed
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.types import variable_key
 from robbdd_tools.syntax import tree
 

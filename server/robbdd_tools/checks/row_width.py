@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Edit, Fix, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks.finding import finding, related_to
-from robbdd_tools.checks.tables import cell_span
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.table_edits import cell_span
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

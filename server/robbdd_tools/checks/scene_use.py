@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.elements import Site, elements_of, site_of, story_sites
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind

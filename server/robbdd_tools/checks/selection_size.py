@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.checks.finding import change, finding, related_to
-from robbdd_tools.checks.variants import scenarios
+from robbdd_tools.checks.template_variants import scenarios
 from robbdd_tools.names.elements import elements_of
 from robbdd_tools.syntax import tree
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.catalog.settings import SETTINGS, Setting, SettingError, setting_of
 from robbdd_tools.checks.finding import change, finding, related_to
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.types import Written, variable_key, written_elements
 from robbdd_tools.names.uses import Clauses, clauses_of
 from robbdd_tools.syntax import tree

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.commands import FAILED, OK
+from robbdd_tools.commands.graph_results import graph_with_results
 from robbdd_tools.commands.models import sound_model
 from robbdd_tools.commands.output import fail, print_document
-from robbdd_tools.commands.results import graph_with_results
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.write.built import BuiltGraph

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.commands import FAILED, OK
+from robbdd_tools.commands.chosen_scenarios import selection
 from robbdd_tools.commands.models import sound_model
 from robbdd_tools.commands.output import fail, print_line
-from robbdd_tools.commands.selection import selection
 
 if TYPE_CHECKING:
-    from robbdd_tools.gherkin.files import FeaturePlan
+    from robbdd_tools.gherkin.feature_files import FeaturePlan
     from robbdd_tools.gherkin.select import Wanted
 
 EVERY = 200
@@ -34,7 +34,7 @@ class GherkinOptions:
 
 def write_gherkin(options: GherkinOptions) -> int:
     """Write the features of a model with all that behave needs and print their paths; returns the exit code."""
-    from robbdd_tools.gherkin.files import clause_origins, whole_plan
+    from robbdd_tools.gherkin.feature_files import clause_origins, whole_plan
     from robbdd_tools.gherkin.render import TemplateProblem, sheet
     from robbdd_tools.graph.rdf.serialize import serialize
 

@@ -12,7 +12,7 @@ from robbdd_tools.base.user_settings import user_file
 from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.graph.write.foreign import graph_format
 from robbdd_tools.names.project import Project
-from robbdd_tools.workbench.findings import Finding, findings
+from robbdd_tools.workbench.diagnostics import Finding, findings
 from robbdd_tools.workbench.model import ModelFile, NotAModel, load
 
 HOSTS = "context-hosts"

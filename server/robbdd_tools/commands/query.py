@@ -12,9 +12,9 @@ from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text
 from robbdd_tools.base.printable import printable, printable_json
 from robbdd_tools.commands import FAILED, OK
+from robbdd_tools.commands.graph_results import graph_with_results
 from robbdd_tools.commands.models import sound_model
 from robbdd_tools.commands.output import print_document, print_line, print_note
-from robbdd_tools.commands.results import graph_with_results
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.ask.query import Rows, Term

@@ -12,11 +12,11 @@ from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, OK, signal_code
+from robbdd_tools.commands.chosen_scenarios import print_coverage
 from robbdd_tools.commands.execute import follow_run
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.runs import say_unfinished
-from robbdd_tools.commands.selection import print_coverage
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import VIEWER
 from robbdd_tools.run.pictures import NoPictures, no_display, render_moments, render_videos

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
-from robbdd_tools.features.definition import symbol_at
 from robbdd_tools.features.describe import variants_of
+from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.names.elements import site_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind

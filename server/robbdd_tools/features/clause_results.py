@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
-from robbdd_tools.features.results import digest, execution_digest, variant_digest
-from robbdd_tools.names.clauses import clauses_in
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.features.run_verdicts import digest, execution_digest, variant_digest
+from robbdd_tools.names.clause_places import clauses_in
+from robbdd_tools.names.variant_places import variants_of
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.features.executions import PlacedExecution
-    from robbdd_tools.features.results import Findings, Judged, JudgedScenario
+    from robbdd_tools.features.run_verdicts import Findings, Judged, JudgedScenario
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.names.variants import PlacedVariant
+    from robbdd_tools.names.variant_places import PlacedVariant
 
 SIGNS = {"holds": "✔", "violated": "✗", "unknown": "?", "undefined": "?"}
 STALE, VACUOUS = "(stale)", "(vacuous)"

@@ -9,28 +9,28 @@ from urllib.parse import unquote
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.features.clause_results import clause_hints, pass_rate
 from robbdd_tools.features.markdown import code, code_block, literal
 from robbdd_tools.features.references import uses
-from robbdd_tools.features.results import NOTHING
+from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import clause_sentence, time_meaning, word_meaning, word_of
 from robbdd_tools.names.elements import elements_of, scene_members, site_of, story_sites
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.names.types import variable_type
-from robbdd_tools.names.variants import variants_of as placed_variants
+from robbdd_tools.names.variant_places import variants_of as placed_variants
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.features.clause_results import ResultHint
-    from robbdd_tools.features.results import Findings
+    from robbdd_tools.features.run_verdicts import Findings
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.elements import Element, Site
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.names.variants import PlacedVariant
+    from robbdd_tools.names.variant_places import PlacedVariant
 
 _ENDS = {"sequence": "fails", "selector": "succeeds"}
 """Kind of a behaviour tree's composite → what its parts must do for it to be over."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.names.elements import Site, site_of
-from robbdd_tools.names.variants import PlacedVariant, variants_of
+from robbdd_tools.names.variant_places import PlacedVariant, variants_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

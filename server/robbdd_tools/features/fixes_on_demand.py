@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix
 from robbdd_tools.checks.finding import MOST_OFFERED, change, removal
-from robbdd_tools.checks.tables import column_removed
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.table_edits import column_removed
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.features.fixes import imports_of, reference_at
 from robbdd_tools.features.fixes_of_files import cycle_fixes, import_fixes, model_file_fixes
 from robbdd_tools.features.model_choices import model_choices

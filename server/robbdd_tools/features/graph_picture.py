@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.write.source_map import Location
-from robbdd_tools.names.clauses import clauses_in
+from robbdd_tools.names.clause_places import clauses_in
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.ask.structure import Node

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.clause_results import clause_hints
-from robbdd_tools.features.definition import symbol_at
 from robbdd_tools.features.describe import describe, describe_import, result_words
-from robbdd_tools.features.results import NOTHING
+from robbdd_tools.features.goto_definition import symbol_at
+from robbdd_tools.features.run_verdicts import NOTHING
 from robbdd_tools.features.sentences import time_meaning, word_meaning, word_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk_at
 
 if TYPE_CHECKING:
-    from robbdd_tools.features.results import Findings, Judged
+    from robbdd_tools.features.run_verdicts import Findings, Judged
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.features.definition import symbol_at
 from robbdd_tools.features.describe import variants_of
+from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.sentences import word_of
 from robbdd_tools.names.elements import Site, site_of
 from robbdd_tools.syntax import tree

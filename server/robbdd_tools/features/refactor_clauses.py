@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit, Fix
 from robbdd_tools.base.document import Span
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.features.clause_edits import additions, changed, column, operands, removals, unindented
 from robbdd_tools.names.elements import Site
 from robbdd_tools.names.index import FileIndex

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit, Fix
 from robbdd_tools.base.document import Span
-from robbdd_tools.checks.variants import Scenario, scenarios
+from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.elements import Site, element_of, elements_of, scene_members, story_sites
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit
 from robbdd_tools.base.document import Span
-from robbdd_tools.features.definition import symbol_at
+from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.references import uses
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.checks.counting import scenario_count
-from robbdd_tools.checks.variants import scenarios
+from robbdd_tools.checks.template_variants import scenarios
 from robbdd_tools.names.elements import story_sites
 
 if TYPE_CHECKING:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robbdd_tools.checks.counting import scenario_count
-from robbdd_tools.checks.variants import scenarios
+from robbdd_tools.checks.template_variants import scenarios
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.variants import PlacedVariant
+    from robbdd_tools.names.variant_places import PlacedVariant
 
 
 def number_of_scenarios(variant: PlacedVariant) -> int | None:

@@ -17,16 +17,16 @@ from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.index import language_of
-from robbdd_tools.names.table import changed_paths
+from robbdd_tools.names.name_table import changed_paths
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.grammar_files import grammar_text
 from robbdd_tools.syntax.symbols import walk
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
+    from robbdd_tools.names.name_table import NameTable
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.resolve import Resolution
-    from robbdd_tools.names.table import NameTable
     from robbdd_tools.syntax.declaration import Declaration, Reference
 
 COMMENT, STRING, NUMBER, KEYWORD = "comment", "string", "number", "keyword"

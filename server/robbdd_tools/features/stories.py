@@ -11,7 +11,7 @@ from robbdd_tools.base.files import read_text, uri_to_path
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.names.index import FileIndex
-from robbdd_tools.names.variants import PlacedVariant, variants_of
+from robbdd_tools.names.variant_places import PlacedVariant, variants_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

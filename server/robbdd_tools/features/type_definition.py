@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robbdd_tools.features.definition import symbol_at
 from robbdd_tools.features.describe import variants_of
+from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.names.elements import Site, site_of
 from robbdd_tools.names.types import variable_key, written_elements
 from robbdd_tools.syntax import tree

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import load_bytes
 from robbdd_tools.features.executions import executions_of
-from robbdd_tools.features.results import digests_of
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.features.run_verdicts import digests_of
+from robbdd_tools.names.variant_places import variants_of
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.features.executions import PlacedExecution
-    from robbdd_tools.features.results import JudgedScenario
+    from robbdd_tools.features.run_verdicts import JudgedScenario
     from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.names.project import Snapshot
 

@@ -9,7 +9,7 @@ from itertools import combinations, product
 from math import comb, prod
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.gherkin.outline import variable_name
+from robbdd_tools.gherkin.scenario_outline import variable_name
 from robbdd_tools.gherkin.variations import cells_of, size_of
 from robbdd_tools.graph.acceptance_model import Cell, Product, Table
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from robbdd_tools.base.file_names import safe_stem
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin import text
-from robbdd_tools.gherkin.outline import Outline, outline, variable_name
+from robbdd_tools.gherkin.background_tables import SceneTable, extra_elements, members, scene_tables, variable_table
 from robbdd_tools.gherkin.render import Sheet, our_sheet
+from robbdd_tools.gherkin.scenario_outline import Outline, outline, variable_name
 from robbdd_tools.gherkin.steps import Step, StepWriter
-from robbdd_tools.gherkin.tables import SceneTable, extra_elements, members, scene_tables, variable_table
 from robbdd_tools.gherkin.variations import Binding, bindings
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Clause, Iri, Story, Variant
 

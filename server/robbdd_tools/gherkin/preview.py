@@ -8,11 +8,11 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from robbdd_tools.gherkin.feature import FeaturePiece, Numbered, ScenarioText, every_scenario, feature_pieces
-from robbdd_tools.gherkin.files import only
+from robbdd_tools.gherkin.feature_files import only
 from robbdd_tools.gherkin.variations import count
 from robbdd_tools.graph.write.source_map import Location
-from robbdd_tools.names.clauses import clauses_in
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.names.clause_places import clauses_in
+from robbdd_tools.names.variant_places import variants_of
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.acceptance_model import AcceptanceModel, Story, Variant

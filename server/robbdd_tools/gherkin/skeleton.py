@@ -14,8 +14,8 @@ from robbdd_tools.base.step_files import defined_steps
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin import text
+from robbdd_tools.gherkin.background_tables import scene_tables
 from robbdd_tools.gherkin.steps import StepWriter
-from robbdd_tools.gherkin.tables import scene_tables
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,

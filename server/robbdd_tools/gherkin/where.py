@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from robbdd_tools.gherkin.outline import variable_name
+from robbdd_tools.gherkin.scenario_outline import variable_name
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, Value, Variant
 
 Condition = Callable[[Sequence[Cell]], bool | None]

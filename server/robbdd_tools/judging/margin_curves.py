@@ -12,8 +12,8 @@ import numpy as np
 
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.catalog.coordination import END, START, emitter
-from robbdd_tools.judging.clauses import ways
-from robbdd_tools.judging.sentences import Clause, Doing, Fluent, Junction, Unmatched
+from robbdd_tools.judging.decisions import ways
+from robbdd_tools.judging.parsed_sentences import Clause, Doing, Fluent, Junction, Unmatched
 from robbdd_tools.monitor.curve import Curve, curve
 from robbdd_tools.monitor.judge import WindowEvidence
 from robbdd_tools.monitor.time import Window

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.coordination import START, emitter
-from robbdd_tools.judging.clauses import decide, ranges
-from robbdd_tools.judging.sentences import Clause, Fluent, Junction, fluents_of, read_doing
+from robbdd_tools.judging.decisions import decide, ranges
+from robbdd_tools.judging.parsed_sentences import Clause, Fluent, Junction, fluents_of, read_doing
 from robbdd_tools.monitor.time import Before, During
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Outcome

@@ -11,7 +11,7 @@ import numpy as np
 
 from robbdd_tools.catalog.api import Predicate
 from robbdd_tools.judging.observation_streams import Stream, Unobserved
-from robbdd_tools.judging.sentences import Clause, Fluent, Junction, Unmatched, read_timed_text
+from robbdd_tools.judging.parsed_sentences import Clause, Fluent, Junction, Unmatched, read_timed_text
 from robbdd_tools.monitor.time import After, Before, TimeConstraint
 from robbdd_tools.protocol.specs import plain_name
 from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused

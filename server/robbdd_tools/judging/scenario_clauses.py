@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from robbdd_tools.judging.parsed_sentences import Clause, Fluent, Junction, Unmatched, read_clause
 from robbdd_tools.judging.policies import with_policies
-from robbdd_tools.judging.sentences import Clause, Fluent, Junction, Unmatched, read_clause
 from robbdd_tools.monitor.time import in_iterations
 
 if TYPE_CHECKING:

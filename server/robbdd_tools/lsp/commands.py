@@ -16,7 +16,7 @@ from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.checks.no_evaluator import no_evaluator
 from robbdd_tools.features.clause_results import clause_diagnostics
-from robbdd_tools.gherkin.files import write_features
+from robbdd_tools.gherkin.feature_files import write_features
 from robbdd_tools.gherkin.skeleton import add_steps, free_patterns
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan

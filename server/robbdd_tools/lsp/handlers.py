@@ -9,6 +9,7 @@ from lsprotocol import types
 
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.fixes_on_demand import fixes_on_demand
+from robbdd_tools.lsp.client_settings import follow_settings, register_settings
 from robbdd_tools.lsp.commands import register_commands, step_fixes
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.editing import edit_of, refactorings, register_editing
@@ -20,7 +21,6 @@ from robbdd_tools.lsp.projects import register_projects
 from robbdd_tools.lsp.pull import can_pull, register_pull
 from robbdd_tools.lsp.reading import register_reading
 from robbdd_tools.lsp.server import RobbddServer
-from robbdd_tools.lsp.settings import follow_settings, register_settings
 from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.test_results import register_test_results
 from robbdd_tools.lsp.tests import register_tests

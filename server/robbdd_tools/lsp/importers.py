@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.files import uri_to_path
-from robbdd_tools.features.definition import symbol_at
+from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.import_graph import ImportGraph
 from robbdd_tools.features.unimported import Elsewhere
 from robbdd_tools.features.workspace_files import model_files, model_files_near

@@ -10,7 +10,7 @@ from pathlib import Path
 from robbdd_tools.base.files import load_text, uri_to_path
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.writing import replace_file
-from robbdd_tools.features.results import JudgedScenario, as_json, from_json
+from robbdd_tools.features.run_verdicts import JudgedScenario, as_json, from_json
 
 FOLDER = ".robbdd"
 FILE = "results.json"

@@ -16,11 +16,11 @@ from robbdd_tools.lsp.commands import GHERKIN, RECORD, RERUN, RUN
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.result_hover import REPLAY
 from robbdd_tools.lsp.server import RobbddServer
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.names.variant_places import variants_of
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
-    from robbdd_tools.features.results import Findings
+    from robbdd_tools.features.run_verdicts import Findings
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 

@@ -19,7 +19,7 @@ from robbdd_tools.run.store import NoSuchRun
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from robbdd_tools.features.results import Judged, JudgedScenario
+    from robbdd_tools.features.run_verdicts import Judged, JudgedScenario
     from robbdd_tools.lsp.stores import Stores
     from robbdd_tools.run.store import RunStore, StoredRun
 

@@ -10,11 +10,11 @@ from lsprotocol import types
 
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.features.diagnostics import all_diagnostics
-from robbdd_tools.features.results import Digests, digests_of
-from robbdd_tools.gherkin.files import FeaturePlan
+from robbdd_tools.features.run_verdicts import Digests, digests_of
+from robbdd_tools.gherkin.feature_files import FeaturePlan
 from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
-from robbdd_tools.names.clauses import clauses_in
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.names.clause_places import clauses_in
+from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest
 
 if TYPE_CHECKING:
@@ -213,7 +213,7 @@ def _sound_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
 
 
 def _plan(built: BuiltGraph, snapshot: Snapshot) -> FeaturePlan:
-    from robbdd_tools.gherkin.files import clause_origins, whole_plan
+    from robbdd_tools.gherkin.feature_files import clause_origins, whole_plan
     from robbdd_tools.graph.places import placed_model
 
     model = placed_model(built, snapshot)

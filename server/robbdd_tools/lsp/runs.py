@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools import __version__
 from robbdd_tools.base.files import path_to_uri, uri_to_path
-from robbdd_tools.features.results import JudgedScenario, Judgement
+from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
 from robbdd_tools.lsp.kept_results import save_results
 from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.result_hover import picture_violations

@@ -19,9 +19,10 @@ from robbdd_tools.base.checkpoint import Abandoned
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics
-from robbdd_tools.features.results import NOTHING, Results
-from robbdd_tools.lsp.analysis import AnalysisThread
+from robbdd_tools.features.run_verdicts import NOTHING, Results
+from robbdd_tools.lsp.analysis_thread import AnalysisThread
 from robbdd_tools.lsp.background import Background
+from robbdd_tools.lsp.client_settings import Settings
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.importers import Importers
@@ -30,7 +31,6 @@ from robbdd_tools.lsp.newest import Newest
 from robbdd_tools.lsp.protocol import Protocol
 from robbdd_tools.lsp.refresh import COLOURS, DIAGNOSTICS, GATHERING, HINTS, LENSES, SETTLING, Refreshes
 from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
-from robbdd_tools.lsp.settings import Settings
 from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.stores import Stores

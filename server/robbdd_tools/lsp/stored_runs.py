@@ -15,7 +15,7 @@ from pygls.exceptions import JsonRpcException
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.run.shown import NoTrace, find_trace, scenarios, shown_trace, summary
 from robbdd_tools.run.store import NoSuchRun, RunStore
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools.base.files import Unreadable, read_text, uri_to_path
 from robbdd_tools.features.clause_results import verdict_of
 from robbdd_tools.features.executions import executions_of
-from robbdd_tools.features.results import Digests, JudgedScenario, digests_of
+from robbdd_tools.features.run_verdicts import Digests, JudgedScenario, digests_of
 from robbdd_tools.features.stories import stories_in, story_files
 from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.run.imported import BrokenResults, ImportedScenario, read_results

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
 from robbdd_tools.features.executions import PlacedExecution, executions_of
-from robbdd_tools.features.results import execution_digest, variant_digest
+from robbdd_tools.features.run_verdicts import execution_digest, variant_digest
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.features.stories import ListedStory, ListedVariant, stories_in, story_files
 from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
-from robbdd_tools.names.clauses import clauses_in
+from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.run.listing import ListedScenario, listed_scenarios
 
 if TYPE_CHECKING:

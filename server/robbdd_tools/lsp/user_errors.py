@@ -14,7 +14,7 @@ from robbdd_tools.lsp.convert import SOURCE, document_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from robbdd_tools.features.results import JudgedScenario
+    from robbdd_tools.features.run_verdicts import JudgedScenario
     from robbdd_tools.lsp.convert import Converter
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.monitor.fault import Frame

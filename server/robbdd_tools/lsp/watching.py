@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
+from robbdd_tools.lsp.client_settings import read_settings
 from robbdd_tools.lsp.refresh import LENSES
-from robbdd_tools.lsp.settings import read_settings
 from robbdd_tools.run.store import FOLDER, RESULTS
 from robbdd_tools.syntax.parse import LANGUAGES
 

@@ -9,10 +9,10 @@ from lsprotocol import types
 
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.features.call_hierarchy import Call, callable_at, calls_from, calls_to
-from robbdd_tools.features.definition import definition
 from robbdd_tools.features.document_links import document_links
+from robbdd_tools.features.goto_definition import definition
 from robbdd_tools.features.implementation import implementation
-from robbdd_tools.features.selection import selections
+from robbdd_tools.features.selection_ranges import selections
 from robbdd_tools.features.type_definition import type_definition
 from robbdd_tools.lsp.convert import document_of, symbol_kind
 from robbdd_tools.lsp.server import RobbddServer

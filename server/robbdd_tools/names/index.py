@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Document, Span
 from robbdd_tools.names.imports import BACKSLASH, import_uri
-from robbdd_tools.names.table import Entry, NameTable, make_table, update_table
+from robbdd_tools.names.name_table import Entry, NameTable, make_table, update_table
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import Placed
 from robbdd_tools.syntax.parse import LANGUAGES, parse_declaration

@@ -12,7 +12,7 @@ from robbdd_tools.syntax.declaration import FILE_NAMESPACE, SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.names.index import FileIndex
-    from robbdd_tools.names.table import NameTable
+    from robbdd_tools.names.name_table import NameTable
 
 
 def only_namespace(names: NameTable) -> str | None:

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.names.definition import Definition
 from robbdd_tools.names.indirect_names import ROLES, paths_through
+from robbdd_tools.names.name_table import changed_paths
 from robbdd_tools.names.roles import ROLE_KINDS
-from robbdd_tools.names.table import changed_paths
 from robbdd_tools.syntax.move import moved_ref, moved_reference
 
 if TYPE_CHECKING:
+    from robbdd_tools.names.name_table import NameTable
     from robbdd_tools.names.scope import Scope
-    from robbdd_tools.names.table import NameTable
     from robbdd_tools.syntax.declaration import Declaration, Reference
     from robbdd_tools.syntax.tree import Ref
 

@@ -15,7 +15,7 @@ from robbdd_tools.syntax.tree import Namespace
 
 if TYPE_CHECKING:
     from robbdd_tools.names.index import Declared, FileIndex
-    from robbdd_tools.names.table import Entry, NameTable
+    from robbdd_tools.names.name_table import Entry, NameTable
     from robbdd_tools.syntax.declaration import Symbol
 
 

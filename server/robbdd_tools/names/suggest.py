@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.names.scope import shortened
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.table import NameTable
+    from robbdd_tools.names.name_table import NameTable
     from robbdd_tools.syntax.declaration import SymbolKind
 
 MOST = 3

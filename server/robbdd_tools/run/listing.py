@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.gherkin.feature import ScenarioText, feature_pieces
-from robbdd_tools.gherkin.files import only
+from robbdd_tools.gherkin.feature_files import only
 from robbdd_tools.gherkin.variations import at, count
 from robbdd_tools.run.report import plain_sentence, value_words
 

@@ -11,13 +11,13 @@ from robbdd_tools.base.files import load_bytes, uri_to_path
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.gherkin.feature import Numbered, every_scenario
-from robbdd_tools.gherkin.files import FeaturePlan, only, whole_plan, written_scenarios
+from robbdd_tools.gherkin.feature_files import FeaturePlan, only, whole_plan, written_scenarios
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Iri, Story, Variant
 from robbdd_tools.protocol.manifest_file import written_manifest
 from robbdd_tools.protocol.run_folder import OWN_STEPS
 from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
 from robbdd_tools.run.related import Relations
-from robbdd_tools.run.specs import SpecWriter
+from robbdd_tools.run.scenario_specs import SpecWriter
 
 DEFAULT_SEED = 1
 FEATURES = "features"

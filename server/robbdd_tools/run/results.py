@@ -11,7 +11,7 @@ from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, RunMessage
 from robbdd_tools.protocol.messages import ScenarioFinished as Finished
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
-from robbdd_tools.run.vacuity import Vacuity
+from robbdd_tools.run.vacuous_clauses import Vacuity
 
 
 @dataclass(slots=True)

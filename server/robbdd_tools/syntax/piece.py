@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from robbdd_tools.syntax.chunk import parse_chunk
-from robbdd_tools.syntax.convert import convert
 from robbdd_tools.syntax.declaration import SyntaxFault
 from robbdd_tools.syntax.faults import fault_in
 from robbdd_tools.syntax.parsed import Parsed
 from robbdd_tools.syntax.recover import recover
+from robbdd_tools.syntax.to_trees import convert
 
 
 @dataclass(frozen=True, slots=True)

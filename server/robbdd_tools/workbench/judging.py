@@ -19,7 +19,7 @@ from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.results import RunResults, finished_in
 from robbdd_tools.run.scheduler import CANCELLED
 from robbdd_tools.run.user_code import refuse_user_code
-from robbdd_tools.workbench.executions import ExecutionResult, execution_results, rows_of
+from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_results, rows_of
 from robbdd_tools.workbench.plan import NothingSelected, Plan, Selection
 
 if TYPE_CHECKING:

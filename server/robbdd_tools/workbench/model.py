@@ -17,7 +17,7 @@ from robbdd_tools.graph.write.foreign import GRAPH_FORMATS, graph_format
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.syntax.parse import LANGUAGES
-from robbdd_tools.workbench.findings import Finding, Place, findings
+from robbdd_tools.workbench.diagnostics import Finding, Place, findings
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.acceptance_model import AcceptanceModel

@@ -16,7 +16,7 @@ from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
 from robbdd_tools.run.store import RunRecord, origin, shown_path
 from robbdd_tools.run.used_files import digests, prepared_digest
 from robbdd_tools.run.user_code import refuse_user_code
-from robbdd_tools.workbench.executions import ExecutionResult, execution_result, execution_results
+from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_result, execution_results
 from robbdd_tools.workbench.stored import Recorded
 
 if TYPE_CHECKING:

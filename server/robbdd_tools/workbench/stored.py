@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.run.store import LATEST, RunStore, StoredRun, store_beside
-from robbdd_tools.workbench.executions import ExecutionResult, execution_results, rows_of
+from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_results, rows_of
 
 if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace

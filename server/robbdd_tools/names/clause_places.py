@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 
 from robbdd_tools.gherkin import text
+from robbdd_tools.gherkin.background_tables import SceneTable, elements_of
 from robbdd_tools.gherkin.steps import Placeholder, Step, StepWriter, UnknownElements
-from robbdd_tools.gherkin.tables import SceneTable, elements_of
 from robbdd_tools.graph.acceptance_model import Cell, Clause, Iri, Product, Selection, Table
 
 

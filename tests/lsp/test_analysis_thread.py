@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from robbdd_tools.base.checkpoint import Abandoned, checkpoint
-from robbdd_tools.lsp.analysis import AnalysisThread
+from robbdd_tools.lsp.analysis_thread import AnalysisThread
 
 
 class Steps:

@@ -6,8 +6,8 @@ import pytest
 
 from monitor.traces import still, trace_of
 from robbdd_tools.catalog.api import Region
-from robbdd_tools.judging.clauses import decide, is_closed
-from robbdd_tools.judging.sentences import read_clause
+from robbdd_tools.judging.decisions import decide, is_closed
+from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.monitor.verdict import Outcome
 

@@ -1,7 +1,7 @@
 """Definition and hover lead from a use to its declaration, across files and in broken text."""
 
 from kit import MODEL, fixture
-from robbdd_tools.features.definition import definition
+from robbdd_tools.features.goto_definition import definition
 from robbdd_tools.features.hover import hover
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robbdd_tools.judging.sentences import (
+from robbdd_tools.judging.parsed_sentences import (
     AnyOf,
     Fluent,
     Junction,

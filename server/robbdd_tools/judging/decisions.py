@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.judging.observation_streams import Unobserved
-from robbdd_tools.judging.sentences import AnyOf, Clause, Filler, Fluent, Junction, Unmatched, fluents_of
+from robbdd_tools.judging.parsed_sentences import AnyOf, Clause, Filler, Fluent, Junction, Unmatched, fluents_of
 from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import NoWindow, occurrences, window
 from robbdd_tools.monitor.vacuity import Range, joined

@@ -9,9 +9,9 @@ from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.gherkin.background_tables import elements_of
 from robbdd_tools.gherkin.feature import ScenarioText
 from robbdd_tools.gherkin.steps import AnyOf, Bound, Filler, Placeholder, Step, StepWriter
-from robbdd_tools.gherkin.tables import elements_of
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,

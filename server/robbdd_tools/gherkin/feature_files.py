@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, TextIO
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.writing import replacing
 from robbdd_tools.gherkin.feature import Numbered, ScenarioText, every_scenario, feature_file_name, feature_pieces
-from robbdd_tools.gherkin.outline import variable_name
 from robbdd_tools.gherkin.render import Sheet, our_sheet
+from robbdd_tools.gherkin.scenario_outline import variable_name
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Iri, Story, Variant
 
 if TYPE_CHECKING:

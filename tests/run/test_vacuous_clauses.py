@@ -10,7 +10,7 @@ from kit import schema_errors
 from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunMessage, decode, encode
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.vacuity import HELD_BEFORE
+from robbdd_tools.run.vacuous_clauses import HELD_BEFORE
 
 IRI = "https://x/c"
 SPEC = ScenarioSpec(

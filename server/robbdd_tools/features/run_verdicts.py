@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.features.executions import executions_of, what_matters
 from robbdd_tools.monitor.fault import Fault
-from robbdd_tools.names.clauses import clauses_in
-from robbdd_tools.names.variants import variants_of
+from robbdd_tools.names.clause_places import clauses_in
+from robbdd_tools.names.variant_places import variants_of
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.features.executions import PlacedExecution
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
-    from robbdd_tools.names.variants import PlacedVariant
+    from robbdd_tools.names.variant_places import PlacedVariant
 
 _TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|//[^\n]*|\s+|.", re.DOTALL)
 MOST_DIGESTS = 20_000

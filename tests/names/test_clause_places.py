@@ -6,7 +6,7 @@ from gherkin_kit import edited
 from kit import EXAMPLES, MODEL, fixture
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.write.build import build_graph
-from robbdd_tools.names.clauses import clauses_in
+from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.project import Project, Snapshot
 
 EVERYTHING = edited(
