@@ -232,7 +232,36 @@ def test_does_not_collide_by_force_is_in_newtons() -> None:
         )
         assert (found.robustness, found.unit) == (pytest.approx(robustness), "N")
     unwatched = limited(world(3), "tray", "force_limit", "10")
-    assert judged("does-not-collide", unwatched, agent="arm", target="tray").outcome is Outcome.UNKNOWN
+    found = judged("does-not-collide", unwatched, agent="arm", target="tray")
+    assert found.reason == "the trace has no record of 'contact forces of arm on tray'"
+
+
+@pytest.mark.parametrize(("peak", "outcome"), [(139.0, Outcome.HOLDS), (742.0, Outcome.VIOLATED)])
+def test_what_cannot_be_pushed_is_judged_by_contact_force(peak: float, outcome: Outcome) -> None:
+    pressed = replace(world(3), forces={("arm", "tray"): np.array([0.0, peak, 3.0])}, immovable=("tray",))
+    found = judged("does-not-collide", pressed, agent="arm", target="tray_ws")
+    assert (found.outcome, found.robustness, found.unit) == (outcome, pytest.approx(140.0 - peak), "N")
+
+
+def test_what_cannot_be_pushed_and_is_never_touched_holds_by_the_whole_limit() -> None:
+    watched = replace(world(3), watched=("arm",), immovable=("tray",))
+    assert judged("does-not-collide", watched, agent="arm", target="tray").robustness == 140.0
+
+
+def test_a_fixed_target_without_a_record_of_forces_is_unknown() -> None:
+    found = judged("does-not-collide", replace(world(3), immovable=("tray",)), agent="arm", target="tray")
+    assert found.outcome is Outcome.UNKNOWN
+    assert found.reason == "the trace has no record of 'contact forces of arm on tray'"
+
+
+def test_a_target_of_which_a_part_can_be_pushed_has_the_smaller_share_as_its_margin() -> None:
+    far = [[1.0, 0.0, 0.0], [1.04, 0.0, 0.0], [1.04, 0.0, 0.0]]
+    forces = {("arm", "tray"): np.array([0.0, 14.0, 0.0])}
+    pushed = replace(world(3, far=far), forces=forces, immovable=("tray",))
+    found = judged("does-not-collide", pushed, agent="arm", target="both_ws")
+    assert (found.robustness, found.unit) == (pytest.approx(0.2), "")
+    hit = replace(pushed, forces={("arm", "tray"): np.array([0.0, 126.0, 0.0])})
+    assert judged("does-not-collide", hit, agent="arm", target="both_ws").robustness == pytest.approx(0.1)
 
 
 def test_an_agent_moves_safely_as_long_as_its_tool_is_slow() -> None:

@@ -69,6 +69,8 @@ def _divergences(one: Trace, other: Trace) -> Iterator[_Divergence | None]:
         yield _first(one.grips[agent], other.grips[agent], f"grip of {agent}", (one.names,))
     for pair in one.forces.keys() & other.forces.keys():
         yield _first(one.forces[pair], other.forces[pair], f"force between {' and '.join(pair)}", ())
+    for pair in one.impulses.keys() & other.impulses.keys():
+        yield _first(one.impulses[pair], other.impulses[pair], f"impulse between {' and '.join(pair)}", ())
     for pair in one.reaches.keys() & other.reaches.keys():
         yield _first(one.reaches[pair], other.reaches[pair], f"reach of {' for '.join(pair)}", ())
 

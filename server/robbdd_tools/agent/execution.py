@@ -121,12 +121,16 @@ class Execution:
 
     def complete(self, trace: Trace) -> Trace:
         """Return a trace with all that is known beside its samples."""
-        size, forces = len(trace.times), self.simulation.forces
+        size, forces, cast = len(trace.times), self.simulation.forces, self.simulation.world.cast
         return replace(
             trace,
             reaches=self.course.reaches.record(size),
             settings=self.course.settings,
-            forces={} if forces is None else forces.record_of(size),
+            forces=forces.peaks(size),
+            impulses=forces.impulses(size),
+            watched=forces.agents,
+            contacts=forces.contacts(trace.times),
+            immovable=(*(name for name, model in cast.objects.items() if not model.free), *cast.agents),
             outlines=self.course.outlines,
         )
 

@@ -119,7 +119,14 @@ class Evidence(Protocol):
         ...
 
     def force(self, agent: str, name: str) -> FloatArray:
-        """Largest force (N) since the sample before between the object and the agent or what it grips, shape (n,)."""
+        """Largest force (N) since the sample before between an element and the agent or what it grips, shape (n,).
+
+        The weight of what the agent grips is not counted.
+        """
+        ...
+
+    def is_immovable(self, name: str) -> bool:
+        """Whether an element is not pushed when it is hit: a fixed object, or an agent."""
         ...
 
     def setting(self, target: str, name: str) -> str:

@@ -118,7 +118,8 @@ _EVERY = (
         "an object or a workspace",
         0.1,
         10000.0,
-        "contact force up to which it does not count as collided with; takes the place of displacement_limit",
+        "contact force up to which it does not count as collided with; takes the place of displacement_limit; 140 for "
+        "what is fixed",
         judges="object",
     ),
     Setting(

@@ -76,7 +76,16 @@ class WindowEvidence:
 
     def force(self, agent: str, name: str) -> FloatArray:
         """Largest force since the sample before, N, shape (n,); raises ``KeyError``."""
-        return self._of_pair(self.trace.forces, agent, name)[self._rows]
+        trace, pair = self.trace, (agent, name)
+        if pair in trace.forces:
+            return trace.forces[pair][self._rows]
+        if agent in trace.watched and name in trace.names:
+            return np.zeros(self.window.last + 1 - self.window.first)
+        raise KeyError(f"contact forces of {agent} on {name}")
+
+    def is_immovable(self, name: str) -> bool:
+        """Whether an element is not pushed when it is hit: a fixed object, or an agent."""
+        return name in self.trace.immovable
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
         """Regions of a workspace; raises ``KeyError`` when the scene gives it none."""

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from robbdd_tools.monitor.contact import Contact
+
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, Outline
 
@@ -44,8 +46,11 @@ class Trace:
     where its gripping faces hold that body. ``finished`` tells that nothing will be appended; ``remark`` is the
     execution's own last word on what went wrong ("gripper lost env:cube1 at 3.42 s"). ``reaches`` maps agent and
     object to reach margins (n,) rad, not a number where none was sampled; ``settings`` maps an element and the name
-    of a configuration to its value. ``forces`` maps agent and object to the largest contact force (N) since the sample
-    before (n,), where that was watched; ``outlines`` tells how far objects reach around their position. ``unreached``
+    of a configuration to its value. ``forces`` maps an agent and what it touched to the largest contact force (N) in
+    any physics step since the sample before (n,), ``impulses`` to the impulse (N s) since then; of the agents
+    ``watched`` everything that they touched is there. ``contacts`` are those contacts one by one. ``immovable`` are
+    the elements that are not pushed when they are hit: fixed objects, and agents. ``outlines`` tells how far objects
+    reach around their position. ``unreached``
     says why the scenario, a part of a behaviour tree, was never begun, if so: nothing can be told of it then.
     ``contents`` maps a workspace to those that are composed into it, at any depth.
     """
@@ -64,6 +69,10 @@ class Trace:
     outlines: Mapping[str, Outline] = field(default_factory=dict[str, "Outline"])
     unreached: str = ""
     contents: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    impulses: Mapping[tuple[str, str], FloatArray] = field(default_factory=dict[tuple[str, str], "FloatArray"])
+    watched: tuple[str, ...] = ()
+    contacts: tuple[Contact, ...] = ()
+    immovable: tuple[str, ...] = ()
 
     @property
     def end(self) -> float:

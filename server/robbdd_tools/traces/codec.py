@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
 from typing import Any, cast
 
 import numpy as np
 
 from robbdd_tools.catalog.api import Region
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.judge import Regions
 from robbdd_tools.monitor.trace import EventStamp, Trace
 
@@ -22,7 +23,7 @@ class Evidence:
     regions: Regions
 
 
-KINDS: Mapping[str, Any] = {kind.__name__: kind for kind in (Evidence, Trace, EventStamp, Region)}
+KINDS: Mapping[str, Any] = {kind.__name__: kind for kind in (Evidence, Trace, Contact, EventStamp, Region)}
 """The dataclasses that may occur; anything else would not come back."""
 
 
@@ -86,12 +87,28 @@ def _restored(value: Any, arrays: _Arrays) -> Any:
         case {"array": kind, "shape": shape}:
             return arrays.take(kind, shape)
         case {"kind": name, "fields": entries}:
-            if entries.keys() != {field.name for field in fields(KINDS[name])}:
+            missing = [field for field in fields(KINDS[name]) if field.name not in entries]
+            if len(entries) + len(missing) != len(fields(KINDS[name])) or not all(map(_is_optional, missing)):
                 raise TypeError(f"another version wrote this {name}")
-            return KINDS[name](**{field: _restored(inner, arrays) for field, inner in entries.items()})
+            found = KINDS[name](**{field: _restored(inner, arrays) for field, inner in entries.items()})
+            return _completed(found) if name == "Trace" and "immovable" not in entries else found
         case {"map": entries}:
             return {_restored(key, arrays): _restored(inner, arrays) for key, inner in entries}
         case {"tuple": entries}:
             return tuple(_restored(inner, arrays) for inner in entries)
         case _:
             return value
+
+
+def _is_optional(field: Field[Any]) -> bool:
+    return field.default is not MISSING or field.default_factory is not MISSING
+
+
+def _completed(trace: Trace) -> Trace:
+    """Tell of an older trace what cannot be pushed: what has configurations, but no mass.
+
+    Its contact forces cannot be made up for: what is judged by them is unknown.
+    """
+    elements = {element for element, _ in trace.settings}
+    immovable = (name for name in trace.names if name in elements and (name, "mass") not in trace.settings)
+    return replace(trace, immovable=tuple(immovable))

@@ -1,65 +1,211 @@
-"""Contact forces between agents and objects, measured while the simulation steps: nothing recorded tells them."""
+"""Contact forces of agents and of what they grip, measured in every step of the engine.
+
+A blow is over within a sample, and nothing else that is recorded shows it.
+"""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import hypot
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robbdd_tools.world.engine import mujoco
+from robbdd_tools.monitor.contact import Contact
+from robbdd_tools.world.engine import TICK, TIMESTEP, mujoco
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
+UPHOLDING = 0.5
+"""Share of a contact's force that is vertical, from which on the one below supports the one above: within 60°."""
+Pair = tuple[str, str]
 
-class Forces:
-    """The largest force per sample on each of ``targets`` from each agent, together with all that it grips."""
 
-    def __init__(self, model: Any, agents: Iterable[str], things: Iterable[str], targets: Iterable[str]) -> None:
-        """Watch agents and the objects ``targets`` among all ``things``, by the names of their bodies."""
+class ContactForces:
+    """Forces between each agent, together with all that it grips, and everything else.
+
+    Per sample, agent and other: the largest force (N) and the impulse (N s) since the sample before. Others are
+    objects and agents (an agent itself, too) by name, and whatever else there is by the name of its body or geom.
+    What is gripped counts with what it presses beyond its own weight: a part that still stands on a table exerts
+    nothing. The steady force between an agent and what it grips is measured once per sample, but for the things
+    ``in_every_step``; all others in every step.
+    """
+
+    def __init__(self, model: Any, agents: Iterable[str], things: Iterable[str], in_every_step: Iterable[str]) -> None:
+        """Watch ``agents`` among all ``things``, by the names of their bodies."""
         self._model = model
-        owners = [str(model.body(int(body)).name) for body in model.geom_bodyid]
-        self._agents = {name: {geom for geom, o in enumerate(owners) if o.startswith(f"{name}/")} for name in agents}
-        # A belt belongs to the object that it is a part of.
-        bodies = [owner.partition("/belt")[0] for owner in owners]
-        self._things = {name: {geom for geom, owner in enumerate(bodies) if owner == name} for name in things}
-        self._rows: dict[tuple[str, str], list[float]] = {(a, t): [] for t in targets for a in self._agents}
-        self._peaks = dict.fromkeys(self._rows, 0.0)
-
-    def look(self, data: Any, gripped: Mapping[str, list[str]]) -> None:
-        """Measure after one step of the engine; ``gripped`` are the objects that each agent grips."""
-        if not data.ncon:
-            return
-        pairs = data.contact.geom
-        for (agent, target), peak in self._peaks.items():
-            own = set(self._agents[agent])
-            own.update(*(self._things[name] for name in gripped[agent] if name != target))
-            theirs = self._things[target]
-            force = sum(
-                self._force(data, contact)
-                for contact, (one, other) in enumerate(pairs.tolist())
-                if (one in own and other in theirs) or (other in own and one in theirs)
-            )
-            self._peaks[agent, target] = max(peak, force)
-
-    def record(self) -> None:
-        """Take a sample: what was largest since the last one."""
-        for pair, peak in self._peaks.items():
-            self._rows[pair].append(peak)
-            self._peaks[pair] = 0.0
+        self._agents = tuple(agents)
+        self._owners = [_owner_of(model, geom, self._agents) for geom in range(model.ngeom)]
+        gravity = float(np.linalg.norm(model.opt.gravity))
+        self._weights = {thing: float(model.body(thing).subtreemass[0]) * gravity for thing in things}
+        self._in_every_step = frozenset(in_every_step)
+        self._wrench: FloatArray = np.zeros(6)
+        self.clear()
 
     def clear(self) -> None:
         """Forget all samples."""
-        for pair, rows in self._rows.items():
-            rows.clear()
-            self._peaks[pair] = 0.0
+        self._row = 0
+        self._peaks: dict[Pair, dict[int, float]] = defaultdict(dict)
+        self._impulses: dict[Pair, dict[int, float]] = defaultdict(dict)
+        self._contacts: dict[tuple[str, str, str], _Sum] = {}
+        self._ever_gripped: set[Pair] = set()
+        self._supports: set[tuple[str, str]] = set()
+        self._hold(frozenset())
 
-    def record_of(self, size: int) -> Mapping[tuple[str, str], FloatArray]:
-        """Return the first ``size`` samples of each agent and target, N, shape (size,)."""
-        return {pair: np.array(rows[:size]) for pair, rows in self._rows.items()}
+    def look(self, data: Any) -> None:
+        """Measure after one step of the engine."""
+        if not data.ncon:
+            return
+        holders, steady = self._holder_of, self._is_steady
+        counted = [
+            (contact, first, second)
+            for contact, (first, second) in enumerate(data.contact.geom.tolist())
+            if holders[first] != holders[second] or (holders[first] and not (steady[first] or steady[second]))
+        ]
+        if counted:
+            self._measure(data, counted, TIMESTEP)
 
-    def _force(self, data: Any, contact: int) -> float:
-        wrench = np.zeros(6)
-        mujoco.mj_contactForce(self._model, data, contact, wrench)
-        return float(np.linalg.norm(wrench[:3]))
+    def record(self, data: Any, held: Mapping[str, Iterable[str]]) -> None:
+        """Take a sample; from now on each agent grips the things ``held``."""
+        if self._gripped:
+            self._measure_grips(data)
+        gripped = frozenset((agent, thing) for agent, things in held.items() for thing in things)
+        if gripped != self._gripped:
+            for _, thing in gripped ^ self._gripped:
+                self._supports |= {(thing, support) for support in self._supporting(data, thing)}
+            self._ever_gripped |= gripped
+            self._hold(gripped)
+        self._row += 1
+
+    @property
+    def agents(self) -> tuple[str, ...]:
+        """The agents that are watched."""
+        return self._agents
+
+    def peaks(self, size: int) -> Mapping[Pair, FloatArray]:
+        """Return the largest force (N) before each of the first ``size`` samples, of those that touched: (size,)."""
+        return _series(self._peaks, size)
+
+    def impulses(self, size: int) -> Mapping[Pair, FloatArray]:
+        """Return the impulse (N s) before each of the first ``size`` samples, of those that touched: (size,)."""
+        return _series(self._impulses, size)
+
+    def contacts(self, times: FloatArray) -> tuple[Contact, ...]:
+        """Return the contacts so far, the earliest first; ``times`` (n,) are those of the samples, s.
+
+        What an agent grips at some time is left out, and what this stands on where it is taken up or put down.
+        """
+        found = [
+            Contact(*key, float(times[total.first]), total.peak, float(times[total.highest]), total.impulse)
+            for key, total in self._contacts.items()
+            if total.highest < len(times)
+            and (key[0], key[2]) not in self._ever_gripped
+            and (key[1], key[2]) not in self._supports
+        ]
+        return tuple(sorted(found, key=lambda one: (one.time, one.agent, one.part, one.other)))
+
+    def _hold(self, gripped: frozenset[Pair]) -> None:
+        """Note who grips what, and for each geom whom it strikes for and whether it is one of a thing in a grip."""
+        self._gripped = gripped
+        self._holders = {agent: agent for agent in self._agents} | {thing: agent for agent, thing in gripped}
+        self._holder_of = [self._holders.get(owner, "") for owner in self._owners]
+        things = {thing for _, thing in gripped} - self._in_every_step
+        self._is_steady = [owner in things for owner in self._owners]
+
+    def _measure_grips(self, data: Any) -> None:
+        """Measure the forces between agents and what they grip."""
+        counted = [
+            (contact, first, second)
+            for contact, (first, second) in enumerate(data.contact.geom.tolist())
+            if self._holder_of[first] == self._holder_of[second] and self._is_steady[first] != self._is_steady[second]
+        ]
+        self._measure(data, counted, TICK)
+
+    def _measure(self, data: Any, counted: list[tuple[int, int, int]], duration: float) -> None:
+        """Add the forces of contacts (number, geoms), which last for some time (s)."""
+        forces: defaultdict[tuple[str, str, str], list[float]] = defaultdict(lambda: [0.0, 0.0])
+        for contact, *geoms in counted:
+            size, lift = self._force(data, contact)
+            if not size:
+                continue
+            first, second = (self._owners[geom] for geom in geoms)
+            pairs = ((first, second, lift),) if first == second else ((first, second, lift), (second, first, -lift))
+            for mine, theirs, upwards in pairs:
+                agent = self._holders.get(mine)
+                # What an agent grips does not strike the agent, nor another part in the same gripper.
+                if agent is None or (mine != agent and self._holders.get(theirs) == agent):
+                    continue
+                total = forces[agent, "" if mine == agent else mine, theirs]
+                total[0] += size
+                total[1] += max(0.0, -upwards)
+        pressed: defaultdict[Pair, float] = defaultdict(float)
+        for (agent, part, other), (size, down) in forces.items():
+            force = size - min(down, self._weights.get(part, 0.0)) if part else size
+            pressed[agent, other] += force
+            self._contacts.setdefault((agent, part, other), _Sum(self._row, self._row)).add(self._row, force, duration)
+        for pair, force in pressed.items():
+            peaks, impulses = self._peaks[pair], self._impulses[pair]
+            peaks[self._row] = max(peaks.get(self._row, 0.0), force)
+            impulses[self._row] = impulses.get(self._row, 0.0) + force * duration
+
+    def _force(self, data: Any, contact: int) -> tuple[float, float]:
+        """Return the size of a contact's force (N) and its component upwards on the second geom."""
+        mujoco.mj_contactForce(self._model, data, contact, self._wrench)
+        x, y, z, *_ = self._wrench.tolist()
+        if not (x or y or z):
+            return 0.0, 0.0
+        upwards = data.contact.frame[contact, 2::3].tolist()
+        return hypot(x, y, z), x * upwards[0] + y * upwards[1] + z * upwards[2]
+
+    def _supporting(self, data: Any, thing: str) -> set[str]:
+        """Return what bears a thing from below."""
+        found = set[str]()
+        pairs: list[list[int]] = data.contact.geom.tolist()
+        for contact, geoms in enumerate(pairs):
+            first, second = (self._owners[geom] for geom in geoms)
+            if thing in (first, second):
+                size, lift = self._force(data, contact)
+                if (lift if second == thing else -lift) > UPHOLDING * size:
+                    found.add(first if second == thing else second)
+        return found
+
+
+@dataclass(slots=True)
+class _Sum:
+    """One contact's totals: rows of its first sample and of its largest force, that force (N), impulse (N s)."""
+
+    first: int
+    highest: int
+    peak: float = 0.0
+    impulse: float = 0.0
+
+    def add(self, row: int, force: float, duration: float) -> None:
+        if force > self.peak:
+            self.peak, self.highest = force, row
+        self.impulse += force * duration
+
+
+def _owner_of(model: Any, geom: int, agents: tuple[str, ...]) -> str:
+    """Return the agent or object that a geom is a part of, else the name of its body or, of the room's, its own."""
+    name = str(model.body(int(model.geom_bodyid[geom])).name)
+    named = str(model.geom(geom).name)
+    for agent in agents:
+        if name.startswith(f"{agent}/") or named.startswith(f"{agent}/"):
+            return agent
+    # A belt belongs to the object that it is a part of.
+    body = name.partition("/belt")[0]
+    return named or f"geom {geom}" if body == "world" else body
+
+
+def _series(rows: Mapping[Pair, Mapping[int, float]], size: int) -> Mapping[Pair, FloatArray]:
+    found: dict[Pair, FloatArray] = {}
+    for pair, values in sorted(rows.items()):
+        series = np.zeros(size)
+        for row, value in values.items():
+            if row < size:
+                series[row] = value
+        found[pair] = series
+    return found

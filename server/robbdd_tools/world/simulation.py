@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.world.belts import Belts
-from robbdd_tools.world.contact_forces import Forces
+from robbdd_tools.world.contact_forces import ContactForces
 from robbdd_tools.world.engine import SUBSTEPS, TICK, mujoco
 from robbdd_tools.world.errors import SimulationError
 from robbdd_tools.world.holding import Grips
@@ -65,8 +65,8 @@ class Simulation:
         self._tools: list[tuple[FloatArray, FloatArray]] = [
             (self.data.site_xpos[robot.tool], self.data.site_xmat[robot.tool]) for robot in self.robots.values()
         ]
-        watched = {element for element, name in world.cast.judged if name == "force_limit"}
-        self.forces = Forces(self.model, self.robots, world.cast.objects, watched) if watched else None
+        limited = {element for element, name in world.cast.judged if name == "force_limit"}
+        self.forces = ContactForces(self.model, self.robots, world.cast.objects, limited)
         self._go_home()
         things = [self.data.body(name) for name in world.cast.objects]
         unset = len(self.robots)
@@ -107,8 +107,7 @@ class Simulation:
         self.ticks = 0
         self.belts.start(self.data)
         self.recorder.clear()
-        if self.forces is not None:
-            self.forces.clear()
+        self.forces.clear()
         self.record()
 
     def tick(self) -> None:
@@ -127,8 +126,7 @@ class Simulation:
         # Positions in the engine's data are those of one step ago until they are computed anew.
         mujoco.mj_kinematics(self.model, self.data)
         self._grips.find(self.data)
-        if self.forces is not None:
-            self.forces.record()
+        self.forces.record(self.data, {agent: self._held_by(agent) for agent in self.robots})
         rows = self.recorder.append(self.time, self._qpos, self._grips.held)
         for row, (position, rotation) in zip(rows, self._tools, strict=True):
             row[:3] = position
@@ -170,10 +168,9 @@ class Simulation:
 
     def _step(self) -> None:
         began = perf_counter()
-        if self.forces is None:
-            mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
-        else:
-            self._step_and_look(self.forces)
+        for _ in range(SUBSTEPS):
+            mujoco.mj_step(self.model, self.data)
+            self.forces.look(self.data)
         self.belts.set_back(self.data)
         self.stepping += perf_counter() - began
         # A target that nobody moves on stays where it is.
@@ -181,12 +178,9 @@ class Simulation:
         if not isfinite(self._qvel @ self._qvel):
             raise SimulationError(f"the simulation became unstable at {self.time:.2f} s")
 
-    def _step_and_look(self, forces: Forces) -> None:
-        """Step one by one: a blow is over within a tick."""
-        gripped = {agent: [name for name in self._free if self.holds(agent, name)] for agent in self.robots}
-        for _ in range(SUBSTEPS):
-            mujoco.mj_step(self.model, self.data)
-            forces.look(self.data, gripped)
+    def _held_by(self, agent: str) -> list[str]:
+        held = self._grips.held[agent]
+        return [name for name in self._free if held[self._column[name]]] if held.any() else []
 
     def _go_home(self) -> None:
         for robot in self.robots.values():

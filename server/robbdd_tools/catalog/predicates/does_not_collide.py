@@ -12,32 +12,48 @@ if TYPE_CHECKING:
 
 LIMIT = 0.05
 """Metres of accumulated displacement that still count as untouched (paper, section on the experiment)."""
-UNITS = {"displacement_limit": "m", "force_limit": "N"}
-"""What either variant measures, by the name of the configuration that bounds it."""
+FORCE_LIMIT = 140.0
+"""Newtons of contact force on what cannot be pushed. ISO/TS 15066:2016, table A.2: the largest permissible force of a
+quasi-static contact with hands and fingers, which are what is clamped between an arm and a work surface.
+"""
+METRES, NEWTONS, SHARE = "m", "N", ""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Limit minus the path (m) that the target has travelled since the window opened, shape (n,).
+    """Return limit minus displacement (m) or limit minus contact force (N) at each sample, shape (n,).
 
-    Where the target has a ``force_limit``: that limit minus the contact force (N). A target that is a workspace
-    stands for the objects that carry it; the one that moved, or was pressed, most counts.
+    By force are judged a target that has a ``force_limit``, and one that is not pushed: a fixed object, or an agent;
+    by displacement any other: the path that it has travelled since the window opened. A target that is a workspace
+    stands for the objects that carry it; the one with the smallest margin counts. Where some of them can be pushed and
+    others cannot, each margin is divided by its limit.
     """
     import numpy as np
 
-    carriers = carriers_of(evidence, str(arguments["target"]))
-    allowed = limit_of(evidence, carriers, "force_limit")
-    if allowed is not None:
-        forces = [evidence.force(str(arguments["agent"]), carrier) for carrier in carriers]
-        return allowed - np.max(forces, axis=0)
-    limit = limit_of(evidence, carriers, "displacement_limit")
-    travelled = [path_length(evidence.position(carrier)) for carrier in carriers]
-    return (LIMIT if limit is None else limit) - np.max(travelled, axis=0)
+    agent, carriers = str(arguments["agent"]), carriers_of(evidence, str(arguments["target"]))
+    by_force, by_way = _split(evidence, carriers)
+    force_limit = limit_of(evidence, carriers, "force_limit") or FORCE_LIMIT
+    way_limit = limit_of(evidence, carriers, "displacement_limit") or LIMIT
+    forces = [force_limit - evidence.force(agent, carrier) for carrier in by_force]
+    ways = [way_limit - path_length(evidence.position(carrier)) for carrier in by_way]
+    if forces and ways:
+        return np.min([*(one / force_limit for one in forces), *(one / way_limit for one in ways)], axis=0)
+    return np.min(forces or ways, axis=0)
 
 
 def unit(evidence: Evidence, arguments: Arguments) -> str:
-    """Return newtons where the target has a ``force_limit``, else metres."""
-    by_force = limit_of(evidence, carriers_of(evidence, str(arguments["target"])), "force_limit") is not None
-    return UNITS["force_limit" if by_force else "displacement_limit"]
+    """Return newtons for a target judged by force, metres for one judged by displacement, nothing for a mixed one."""
+    by_force, by_way = _split(evidence, carriers_of(evidence, str(arguments["target"])))
+    if by_force and by_way:
+        return SHARE
+    return NEWTONS if by_force else METRES
+
+
+def _split(evidence: Evidence, carriers: list[str]) -> tuple[list[str], list[str]]:
+    """Return the carriers that are judged by force, and those judged by displacement."""
+    if limit_of(evidence, carriers, "force_limit") is not None:
+        return carriers, []
+    by_force = [carrier for carrier in carriers if evidence.is_immovable(carrier)]
+    return by_force, [carrier for carrier in carriers if carrier not in by_force]
 
 
 DOES_NOT_COLLIDE = Predicate(
@@ -49,10 +65,12 @@ DOES_NOT_COLLIDE = Predicate(
         Slot("target", Kind.ANY, "bdd:target"),
     ),
     sentence='"{agent}" does not collide "{target}"',
-    unit="m",
+    unit=METRES,
     doc=(
-        "The target is not pushed: the path it travels within the window stays below 0.05 m (displacement_limit) or, "
-        "with a force_limit, the contact force below that."
+        "The target is not pushed: the path it travels within the window stays below 0.05 m (displacement_limit). What "
+        "cannot be pushed (a fixed object, an agent) is not hit: the contact force of the agent, and of what it grips "
+        "beyond its weight, stays below 140 N (force_limit), the limit of ISO/TS 15066 for a hand that is clamped. "
+        "With a force_limit, any target is judged by force."
     ),
     evaluate=margin,
     unit_for=unit,
