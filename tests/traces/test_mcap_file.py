@@ -18,6 +18,7 @@ from mcap.reader import make_reader
 
 from robbdd_tools.agent.compare_traces import difference
 from robbdd_tools.catalog.api import Region
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.traces.codec import Evidence, pack, unpack
 from robbdd_tools.traces.mcap_file import SCHEMAS, UnreadableTrace, read_trace, write_trace
@@ -51,6 +52,10 @@ def traces(draw: st.DrawFn) -> Trace:
         {("e:a", "mass"): "0.1"},
         {("e:r", "e:b"): draw(floats(size))},
         {"e:a": (((0.0, 0.1, 0.2), 0.3),)},
+        impulses={("e:r", "e:b"): draw(floats(size))},
+        watched=("e:r",),
+        contacts=(Contact("e:r", "e:a", "e:b", 0.1, draw(st.floats(0, 1e3)), 0.2, 0.3),),
+        immovable=("e:b",),
     )
 
 
@@ -67,6 +72,31 @@ def test_a_trace_comes_back_equal_to_the_last_bit(trace: Trace) -> None:
     for entry in fields(Trace):
         assert bits(getattr(back.trace, entry.name)) == bits(getattr(trace, entry.name)), entry.name
     assert back.regions == REGIONS
+
+
+def older(data: bytes, *missing: str) -> bytes:
+    """Return a packed trace as a version wrote it that did not know some fields, none of which holds an array."""
+    size = int.from_bytes(data[:8], "little")
+    head = json.loads(data[8 : 8 + size])
+    for name in missing:
+        del head["fields"]["trace"]["fields"][name]
+    text = json.dumps(head).encode()
+    return len(text).to_bytes(8, "little") + text + data[8 + size :]
+
+
+def test_a_trace_of_a_version_without_contacts_is_read_and_tells_what_is_fixed() -> None:
+    settings = {("e:a", "mass"): "0.1", ("e:b", "friction"): "0.6"}
+    trace = Trace(NAMES, np.zeros(1), np.zeros((1, 2, 3)), np.zeros((1, 2, 4)), settings=settings)
+    lacking = ("impulses", "watched", "contacts", "immovable")
+    back = unpack(older(pack(Evidence(trace, REGIONS)), *lacking)).trace
+    assert (back.immovable, back.watched, back.forces) == (("e:b",), (), {})
+
+
+@pytest.mark.parametrize("missing", ["times", "names"])
+def test_a_trace_that_lacks_what_every_version_wrote_is_refused(missing: str) -> None:
+    trace = Trace(NAMES, np.zeros(0), np.zeros((0, 2, 3)), np.zeros((0, 2, 4)))
+    with pytest.raises(TypeError, match="another version wrote this Trace"):
+        unpack(older(pack(Evidence(trace, REGIONS)), missing))
 
 
 def still(rows: int = 5) -> Trace:

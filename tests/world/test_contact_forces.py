@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.judging.clauses import decide
-from robbdd_tools.judging.sentences import read_clause
+from robbdd_tools.judging.decisions import decide
+from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict
 from robbdd_tools.protocol.specs import ConfigSpec
