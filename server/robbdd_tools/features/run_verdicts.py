@@ -55,6 +55,8 @@ class JudgedScenario:
     ``run`` is the number of the stored run that has it as scenario number ``index``; 0 where none is known.
     ``execution`` is the IRI of the ``.bddx`` execution that it was run by and ``execution_digest`` that of its text,
     both empty for a scenario that was run as it is. ``faults`` are the errors that users' code had in it.
+    ``repetition`` counts the executions of the scenario in the run (from 1); ``seed`` is the one that the user gave the
+    run, ``None`` without one.
     """
 
     model: str
@@ -70,6 +72,8 @@ class JudgedScenario:
     execution: str = ""
     execution_digest: str = ""
     faults: tuple[Fault, ...] = ()
+    repetition: int = 1
+    seed: int | None = None
 
     @property
     def outcome(self) -> str:
@@ -121,10 +125,18 @@ class Results:
         for scenario in scenarios:
             self._scenarios.setdefault((scenario.variant, scenario.variation), []).append(scenario)
 
-    def drop(self, variant: str, variation: int, execution: str = "") -> None:
-        """Forget a scenario; where an execution is to tell of it again, those of others tell on."""
+    def drop(self, variant: str, variation: int, execution: str = "", repetition: int | None = None) -> None:
+        """Remove the results of a scenario that is executed again.
+
+        Results of executions other than ``execution`` stay, and with a ``repetition`` those of the other repetitions.
+        """
+
+        def stays(one: JudgedScenario) -> bool:
+            by_other = execution != "" and one.execution not in ("", execution)
+            return by_other or (repetition is not None and one.repetition != repetition)
+
         known = self._scenarios.pop((variant, variation), [])
-        self.add(one for one in known if execution and one.execution not in ("", execution))
+        self.add(one for one in known if stays(one))
 
     def discard(self, scenario: JudgedScenario) -> None:
         """Forget one result."""

@@ -1,6 +1,6 @@
 """Commands of the server, and the quick fix that offers one of them.
 
-All take one object with the ``uri`` of a model; those that run take the options of ``run_plan.RunOptions`` too.
+All take one object with the ``uri`` of a model; those that run take the options of ``run_options.RunOptions`` too.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.checks.no_evaluator import no_evaluator
@@ -19,7 +20,7 @@ from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.gherkin.feature_files import write_features
 from robbdd_tools.gherkin.skeleton import add_steps, free_patterns
 from robbdd_tools.lsp.convert import document_of
-from robbdd_tools.lsp.run_plan import ModelError, feature_plan
+from robbdd_tools.lsp.document_models import feature_plan, reason
 from robbdd_tools.lsp.runs import cancel_run, start_run
 from robbdd_tools.lsp.server import RobbddServer
 
@@ -113,8 +114,8 @@ async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
     try:
         plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
         written = await asyncio.to_thread(write_features, plan, path.parent / "features")
-    except (ModelError, OSError) as error:
-        ls.tell(str(error))
+    except (RobbddError, OSError) as error:
+        ls.tell(reason(error))
         return []
     return [path_to_uri(file) for file in written]
 
@@ -132,7 +133,7 @@ async def _write_steps(ls: RobbddServer, uri: str) -> list[str]:
     except SyntaxError as error:
         ls.tell(f"{target}:{error.lineno or 1}: {error.msg}: mend the file first")
         return []
-    except (ModelError, OSError, UnicodeDecodeError) as error:
-        ls.tell(f"{target}: {error}")
+    except (RobbddError, OSError, UnicodeDecodeError) as error:
+        ls.tell(f"{target}: {reason(error)}")
         return []
     return [path_to_uri(target)]

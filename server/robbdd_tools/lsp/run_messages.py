@@ -19,17 +19,21 @@ from robbdd_tools.protocol.messages import (
 )
 from robbdd_tools.protocol.specs import ClauseSpec
 from robbdd_tools.run.report import plain_sentence, values_words
-from robbdd_tools.run.scheduler import CANCELLED
 
 if TYPE_CHECKING:
-    from robbdd_tools.lsp.run_plan import RunPlan
+    from robbdd_tools.lsp.run_request import RunText
     from robbdd_tools.run.results import RunResults
 
 RUN_MESSAGE = "robbdd/runMessage"
 
 
-def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage) -> dict[str, Any]:
-    """Return the parameters of the notification about a message of run ``run``."""
+def for_client(
+    run: str, text: RunText, results: RunResults, message: RunMessage, *, cancelled: bool = False
+) -> dict[str, Any]:
+    """Return the parameters of the notification about a message of run ``run``.
+
+    A clause with ``cancelled`` was left open by a run that was cancelled.
+    """
     fields: dict[str, Any] = {"type": type(message).__name__, **asdict(message)}
     match message:
         case ScenarioStarted(index):
@@ -41,8 +45,8 @@ def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage
                 "variation": spec.variation,
                 "execution": None if spec.execution is None else spec.execution.iri,
                 "repetition": spec.repetition,
-                "source": plan.places.get(spec.variant),
-                "row": plan.rows.get((spec.variant, spec.variation)),
+                "source": text.places.declarations.get(spec.variant),
+                "row": text.places.rows.get((spec.variant, spec.variation)),
             }
         case ClauseStarted(index, line) | ClauseJudged(index, line):
             clause = clause_at(results, index, line)
@@ -53,10 +57,10 @@ def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage
                     "name": clause.name,
                     "role": clause.role,
                     "sentence": plain_sentence(clause.sentence),
-                    "source": plan.places.get(clause.iri),
+                    "source": text.places.declarations.get(clause.iri),
                 }
             if isinstance(message, ClauseJudged):
-                fields["cancelled"] = message.reason == CANCELLED
+                fields["cancelled"] = cancelled
         case UserCodeFailed(_, fault):
             fields["id"], fields["lines"] = fault.id, [f"{fault.code} failed", *fault.traceback()]
         case ScenarioFinished(index):
@@ -65,7 +69,7 @@ def for_client(run: str, plan: RunPlan, results: RunResults, message: RunMessage
             fields["vacuous"] = dict(results.vacuous())
         case _:
             pass
-    return {"run": run, "uri": plan.request.name, "message": fields}
+    return {"run": run, "uri": text.uri, "message": fields}
 
 
 def clause_at(results: RunResults, index: int, line: int) -> ClauseSpec | None:

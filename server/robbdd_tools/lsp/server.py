@@ -40,7 +40,7 @@ from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 
 if TYPE_CHECKING:
-    from robbdd_tools.lsp.runs import ActiveRun
+    from robbdd_tools.lsp.active_run import ActiveRun
 
 Result = TypeVar("Result")
 _LOG = logging.getLogger(__name__)

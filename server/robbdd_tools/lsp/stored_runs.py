@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.lsp.document_models import feature_plan
 from robbdd_tools.lsp.parameters import Parameters
-from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
+from robbdd_tools.lsp.locations import places_of
 from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.run.shown import NoTrace, find_trace, scenarios, shown_trace, summary
 from robbdd_tools.run.store import NoSuchRun, RunStore
@@ -39,7 +41,8 @@ def register_stored_runs(server: RobbddServer) -> None:
     @server.feature(TRACE)
     async def trace(ls: RobbddServer, params: Any) -> dict[str, Any]:
         def places(snapshot: Snapshot) -> dict[str, types.Location]:
-            return {iri: place for uri in files for iri, place in places_of(snapshot, ls.convert, uri)[1].items()}
+            found = [places_of(snapshot, ls.convert, uri).declarations for uri in files]
+            return {iri: place for declarations in found for iri, place in declarations.items()}
 
         def now(snapshot: Snapshot) -> set[tuple[str, str]] | None:
             return _stated(snapshot, files, scenario["variant"], scenario["variation"])
@@ -84,7 +87,7 @@ def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: i
         if any(placed.iri == variant for name in known for placed in variants_of(snapshot, name)):
             try:
                 return stated(feature_plan(snapshot, uri).model, variant, variation)
-            except ModelError:
+            except RobbddError:
                 return None
     return set()
 

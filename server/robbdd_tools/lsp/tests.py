@@ -10,12 +10,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.features.executions import PlacedExecution, executions_of
 from robbdd_tools.features.run_verdicts import execution_digest, variant_digest
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.features.stories import ListedStory, ListedVariant, stories_in, story_files
+from robbdd_tools.lsp.document_models import feature_plan, reason
 from robbdd_tools.lsp.parameters import Parameters
-from robbdd_tools.lsp.run_plan import ModelError, feature_plan, places_of
+from robbdd_tools.lsp.locations import Places, places_of
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.run.listing import ListedScenario, listed_scenarios
 
@@ -121,20 +123,20 @@ def _scenarios(snapshot: Snapshot, convert: Converter, uri: str, variant: str, f
 
     try:
         model = feature_plan(snapshot, uri).model
-    except ModelError as error:
-        return {"problem": str(error), "files": [uri], "tests": []}
-    files, places, rows = places_of(snapshot, convert, uri)
+    except RobbddError as error:
+        return {"problem": reason(error), "files": [uri], "tests": []}
+    places = places_of(snapshot, convert, uri)
     # What a behaviour or an event is called in the text reads better than its IRI.
-    names = {clause.iri: clause.name for file in files for clause in clauses_in(snapshot, file)}
+    names = {clause.iri: clause.name for file in places.uris for clause in clauses_in(snapshot, file)}
     listed = listed_scenarios(model, Iri(variant), first, most)
-    tests = [_scenario(each, rows.get((variant, each.number)), places, names) for each in listed]
-    return {"problem": None, "files": files, "tests": tests}
+    tests = [_scenario(each, places.rows.get((variant, each.number)), places, names) for each in listed]
+    return {"problem": None, "files": places.uris, "tests": tests}
 
 
 def _scenario(
     listed: ListedScenario,
     row: types.Location | None,
-    places: Mapping[str, types.Location],
+    places: Places,
     names: Mapping[str, str],
 ) -> dict[str, Any]:
     counted = f"scenario {listed.number}" if row is None else f"row {listed.number}"
@@ -152,7 +154,7 @@ def _scenario(
                 "name": names.get(clause.iri, clause.name),
                 "detail": clause.sentence,
                 "role": clause.role,
-                "place": places.get(clause.iri),
+                "place": places.declarations.get(clause.iri),
                 "tests": [],
             }
             for clause in listed.clauses

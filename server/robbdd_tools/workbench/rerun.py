@@ -19,10 +19,13 @@ class NothingFailed(RobbddError):
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """What did not hold in a run, with the run's seed and its number of repetitions if it had several."""
+    """What did not hold, and how to execute it as then.
+
+    ``seed`` is the one that the user gave, ``repeat`` the number of repetitions; ``None`` without one.
+    """
 
     choice: Choice
-    seed: int
+    seed: int | None
     repeat: int | None
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import tempfile
 import threading
 from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from pathlib import Path
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Self
 
@@ -20,8 +22,6 @@ from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_res
 from robbdd_tools.workbench.stored import Recorded
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from robbdd_tools.protocol.messages import RunMessage
     from robbdd_tools.protocol.specs import Manifest
     from robbdd_tools.run.store import StoredRun
@@ -210,6 +210,20 @@ class Run(Recorded):
             self.problem = self.problem or why(error)
             self.progress.close(self.problem)
         self.ending = self.progress.ending
+
+
+def begin_run(plan: Plan, place: StoredRun, *, repeat: int | None = None, jobs: int | None = None) -> Run:
+    """Prepare the run of a plan in a run folder that the caller made; raises as ``Run.begin``."""
+    return Run.begin(plan, place, Policy.of(jobs=jobs), repeat=repeat)
+
+
+def check_user_code(plan: Plan) -> None:
+    """Raise ``UserCodeRefused`` if a plan executes code of users where that is not allowed.
+
+    Raises ``OSError`` and ``NothingSelected`` as well.
+    """
+    with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
+        refuse_user_code(plan.prepare(Path(folder)), Path(folder))
 
 
 def _record(plan: Plan, folder: Path, manifest: Manifest) -> RunRecord:

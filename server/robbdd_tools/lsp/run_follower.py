@@ -1,0 +1,177 @@
+"""Shows a run in the client while it executes: results at the clauses, messages, progress."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
+from robbdd_tools.lsp.kept_results import save_results
+from robbdd_tools.lsp.refresh import LENSES
+from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
+from robbdd_tools.lsp.run_progress import RunProgress
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.protocol.messages import (
+    NO_STEP,
+    ClauseJudged,
+    RunFinished,
+    RunMessage,
+    ScenarioFinished,
+    ScenarioStarted,
+    UserCodeFailed,
+)
+from robbdd_tools.run.report import margin, values_words, verdict_words
+from robbdd_tools.run.results import RunResults
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.active_run import ActiveRun
+    from robbdd_tools.lsp.run_request import RunText
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.monitor.fault import Fault
+    from robbdd_tools.workbench.run import Run
+
+_BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
+
+
+class RunFollower:
+    """Follows one run. Messages arrive in the run's thread and are handled in the event loop."""
+
+    def __init__(self, ls: RobbddServer, active: ActiveRun, text: RunText, run: Run) -> None:
+        self._ls = ls
+        self._active = active
+        self._run = run
+        self._text = text
+        self._progress = RunProgress(ls, active.progress)
+        self._results = RunResults(run.manifest)
+        self._loop = asyncio.get_running_loop()
+        self._shared_fault = ""
+        self._begun: dict[str, set[tuple[int, str, int | None]]] = {}
+        run.listen(self._hear)
+
+    async def follow(self) -> None:
+        """Execute the run and show it to its end."""
+        uris = self._text.places.uris
+        await self._progress.begin()
+        try:
+            await asyncio.to_thread(self._run.wait)
+            self._conclude()
+        finally:
+            self._progress.end(self._outcome())
+        if self._run.problem:
+            self._ls.tell(self._run.problem)
+        self._ls.show_results(uris)
+        await self._ls.show_changed()
+        await asyncio.to_thread(save_results, self._ls.folders(), list(self._ls.results))
+        # A finished run can be replayed.
+        self._ls.refreshes.want(LENSES)
+
+    def summary(self) -> dict[str, Any]:
+        """Return how the run ended, as the answer to the client that asked for it."""
+        outcomes = Counter(str(scenario.verdict) for scenario in self._results.scenarios)
+        counts = {outcome: outcomes[outcome] for outcome in ("holds", "violated", "unknown")}
+        total, cancelled = len(self._results.scenarios), self._active.cancelled
+        return {"run": self._active.id, "total": total, "cancelled": cancelled, **counts}
+
+    def _hear(self, message: RunMessage) -> None:
+        self._loop.call_soon_threadsafe(self._take, message)
+
+    def _conclude(self) -> None:
+        """Close what the run left open and remove results that no longer belong to the model."""
+        ending = self._run.ending
+        for judged in self._results.close(ending):
+            self._take(judged, open_after_cancel=self._active.cancelled)
+        if self._active.options.is_whole and not ending:
+            for variant, begun in self._begun.items():
+                self._ls.results.drop_others(variant, {number for number, *_ in begun})
+        for scenario in self._active.judged.values():
+            if not scenario.finished and not scenario.clauses:
+                self._ls.results.discard(scenario)
+        self._ls.results.drop_deleted(self._text.uri, self._text.variants, self._text.executions)
+        for scenario in self._active.judged.values():
+            scenario.mark_vacuous(self._results.vacuous())
+        self._take(RunFinished(not ending))
+
+    def _take(self, message: RunMessage, *, open_after_cancel: bool = False) -> None:
+        """Handle a message; a clause that a cancelled run left open is unknown in its report, but has no result."""
+        self._results.apply(message)
+        match message:
+            case ScenarioStarted(index):
+                self._scenario(index)
+            case ClauseJudged() if not open_after_cancel:
+                self._judge(message)
+            case UserCodeFailed(index, fault):
+                self._fault(index, fault)
+            case ScenarioFinished(index):
+                self._scenario(index).finished = True
+                self._report_progress()
+            case _:
+                pass
+        params = for_client(self._active.id, self._text, self._results, message, cancelled=open_after_cancel)
+        self._ls.protocol.notify(RUN_MESSAGE, params)
+
+    def _scenario(self, index: int) -> JudgedScenario:
+        known = self._active.judged.get(index)
+        if known is not None:
+            return known
+        spec, digests = self._results.scenarios[index].spec, self._text.digests
+        execution = "" if spec.execution is None else spec.execution.iri
+        scenario = self._active.judged[index] = JudgedScenario(
+            self._text.uri,
+            spec.variant,
+            spec.variation,
+            values_words(spec),
+            digests.variants.get(spec.variant, ""),
+            digests.rows.get((spec.variant, spec.variation), ""),
+            run=self._run.number,
+            index=index,
+            execution=execution,
+            execution_digest=digests.executions.get(execution, ""),
+            repetition=spec.repetition,
+            seed=self._text.seed,
+        )
+        # A scenario keeps its older results until it is executed again; repetitions that held are not executed again.
+        repetition = spec.repetition if self._active.options.failed else None
+        begun = self._begun.setdefault(spec.variant, set())
+        if (spec.variation, execution, repetition) not in begun:
+            begun.add((spec.variation, execution, repetition))
+            self._ls.results.drop(spec.variant, spec.variation, execution, repetition)
+        self._ls.results.add([scenario])
+        return scenario
+
+    def _fault(self, index: int | None, fault: Fault) -> None:
+        """Keep an error in users' code with the scenario that it stopped, or with all of them."""
+        if index is None:
+            self._shared_fault = fault.id
+        for stopped in range(len(self._results.scenarios)) if index is None else (index,):
+            scenario = self._scenario(stopped)
+            scenario.faults = (*scenario.faults, fault)
+        self._ls.show_results(self._text.places.uris)
+
+    def _judge(self, message: ClauseJudged) -> None:
+        clause = clause_at(self._results, message.index, message.line)
+        if clause is None:
+            return
+        outcome = Outcome(message.verdict)
+        undefined = outcome is Outcome.UNKNOWN and message.reason.startswith(NO_STEP)
+        judgement = Judgement(
+            clause.name,
+            "undefined" if undefined else str(outcome),
+            margin(message.robustness, message.unit),
+            _BADNESS[outcome] + (message.robustness or 0.0),
+            verdict_words(message),
+            self._text.digests.clauses.get(clause.iri, ""),
+            message.line,
+            fault=message.fault or (self._shared_fault if outcome is Outcome.UNKNOWN else ""),
+        )
+        self._scenario(message.index).judge(clause.iri, judgement)
+        self._ls.show_results(self._text.places.uris)
+
+    def _report_progress(self) -> None:
+        finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]
+        failed = sum(scenario.verdict is not Outcome.HOLDS for scenario in finished)
+        self._progress.report(len(finished), failed, len(self._results.scenarios))
+
+    def _outcome(self) -> str:
+        words = f"{self._results.count(Outcome.HOLDS)} of {len(self._results.scenarios)} scenarios hold"
+        return f"cancelled: {words}" if self._active.cancelled else words

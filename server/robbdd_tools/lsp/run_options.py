@@ -1,0 +1,157 @@
+"""The arguments of the commands that run scenarios, and the selection that they ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.workbench.plan import Choice, Listed, Selection
+from robbdd_tools.workbench.rerun import Failed, NothingFailed
+
+if TYPE_CHECKING:
+    from robbdd_tools.features.run_verdicts import JudgedScenario
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel
+
+NO_SCENARIO_FAILED = "no scenario failed"
+
+
+class BadArgument(RobbddError):
+    """A command's argument is not as documented."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """What a client asks for; all but ``uri`` is optional.
+
+    ``scenario`` is a variant or execution (local name, CURIE or IRI), ``variation`` the number of one scenario in its
+    variant. Each entry of ``only`` has a ``variant`` (IRI) and optionally the numbers of scenarios (``variations``) and
+    one ``execution`` (IRI). ``failed`` selects what did not hold the last time. ``where``, ``first``, ``sample``,
+    ``pairwise``, ``seed``, ``repeat`` and ``jobs`` are those of ``robbdd run``. ``record`` takes a picture of each
+    violation. ``token`` is the run's name in its messages.
+    """
+
+    uri: str
+    scenario: str | None = None
+    variation: int | None = None
+    only: Sequence[Mapping[str, Any]] | None = None
+    token: str | None = None
+    failed: bool = False
+    record: bool = False
+    where: str | None = None
+    first: int | None = None
+    sample: int | None = None
+    pairwise: int | None = None
+    seed: int | None = None
+    repeat: int | None = None
+    jobs: int | None = None
+
+    @classmethod
+    def of(cls, argument: Mapping[str, Any]) -> RunOptions:
+        """Read the argument of a command; raises ``BadArgument``."""
+        known = {name: argument[name] for name in cls.__slots__ if argument.get(name) is not None}
+        known.setdefault("scenario", argument.get("variant"))
+        for name, (fits, form) in _FORMS.items():
+            if known.get(name) is not None and not fits(known[name]):
+                raise BadArgument(f"the command's argument has no usable '{name}': it must be {form}")
+        if "uri" not in known:
+            raise BadArgument("the command's argument has no usable 'uri'")
+        reducing = [name for name in ("first", "sample", "pairwise") if name in known]
+        if len(reducing) > 1:
+            raise BadArgument(f"give only one of {' and '.join(reducing)}")
+        return cls(**known)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all scenarios of the variants run, so that results of other scenarios of theirs are obsolete."""
+        numbers = {self.variation, self.where, self.first, self.sample, self.pairwise}
+        parts = (entry.get("variations") for entry in self.only or ())
+        return not self.failed and numbers == {None} and all(part is None for part in parts)
+
+
+def select(
+    options: RunOptions, model: AcceptanceModel, results: Iterable[JudgedScenario]
+) -> tuple[Selection, int | None]:
+    """Return what to select of a model, and the number of repetitions (``None``: as the model says).
+
+    ``results`` are those of earlier runs. Raises ``NothingFailed``.
+    """
+    variants = [variant.iri for story in model.stories for variant in story.variants]
+    names = () if options.scenario is None else (options.scenario,)
+    seed, repeat = options.seed, options.repeat
+    choices: list[Choice] = []
+    if options.only is not None:
+        choices.append(Choice(map(_listed, options.only)))
+    if options.variation is not None:
+        choices.append(Choice(Listed(iri, frozenset({options.variation})) for iri in variants))
+    if options.failed:
+        failed = _failed([one for one in results if one.variant in variants and one.outcome != "holds"])
+        choices.append(failed.choice)
+        seed = failed.seed if seed is None else seed
+        repeat = repeat or failed.repeat
+    selection = Selection(
+        names, options.where, options.first, options.sample, options.pairwise, seed, choices=tuple(choices)
+    )
+    return selection, repeat
+
+
+def _failed(failed: Sequence[JudgedScenario]) -> Failed:
+    """Return how to execute scenarios again that did not hold, by the seed of the newest of their runs."""
+    if not failed:
+        raise NothingFailed(NO_SCENARIO_FAILED)
+    listed = [
+        Listed(one.variant, frozenset({one.variation}), one.execution or None, frozenset({one.repetition}))
+        for one in failed
+    ]
+    newest = max(failed, key=lambda one: one.run)
+    repeated = max(one.repetition for one in failed)
+    return Failed(Choice(listed), newest.seed, repeated if repeated > 1 else None)
+
+
+def _listed(entry: Mapping[str, Any]) -> Listed:
+    numbers = entry.get("variations")
+    return Listed(str(entry["variant"]), None if numbers is None else frozenset(numbers), entry.get("execution"))
+
+
+def _is_text(value: object) -> bool:
+    return isinstance(value, str)
+
+
+def _is_flag(value: object) -> bool:
+    return isinstance(value, bool)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _is_positive(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value > 0
+
+
+def _is_strength(value: object) -> bool:
+    return _is_number(value) and value in (2, 3)
+
+
+def _is_choice(value: object) -> bool:
+    return isinstance(value, list) and all(map(_is_entry, cast("list[object]", value)))
+
+
+def _is_entry(value: object) -> bool:
+    if not isinstance(value, Mapping):
+        return False
+    entry = cast("Mapping[str, object]", value)
+    numbers, execution = entry.get("variations", []), entry.get("execution", "")
+    are_numbers = isinstance(numbers, list) and all(map(_is_number, cast("list[object]", numbers)))
+    return _is_text(entry.get("variant")) and (numbers is None or are_numbers) and isinstance(execution, str | None)
+
+
+_FORMS: Mapping[str, tuple[Callable[[object], bool], str]] = {
+    **dict.fromkeys(("uri", "scenario", "where", "token"), (_is_text, "a text")),
+    **dict.fromkeys(("failed", "record"), (_is_flag, "true or false")),
+    **dict.fromkeys(("first", "sample", "repeat", "jobs"), (_is_positive, "a whole number above 0")),
+    **dict.fromkeys(("variation", "seed"), (_is_number, "a whole number")),
+    "pairwise": (_is_strength, "2 or 3"),
+    "only": (_is_choice, "a list of objects with a 'variant' and, if wanted, 'variations' and an 'execution'"),
+}

@@ -1,0 +1,74 @@
+"""The plan of a run from the editor, and the text that the run is about."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.features.run_verdicts import Digests, digests_of
+from robbdd_tools.lsp.document_models import runnable_model
+from robbdd_tools.lsp.locations import Places, places_of
+from robbdd_tools.lsp.run_options import NO_SCENARIO_FAILED, select
+from robbdd_tools.workbench.plan import NothingSelected, Plan
+from robbdd_tools.workbench.rerun import NothingFailed
+
+if TYPE_CHECKING:
+    from robbdd_tools.features.run_verdicts import JudgedScenario
+    from robbdd_tools.lsp.convert import Converter
+    from robbdd_tools.lsp.run_options import RunOptions
+    from robbdd_tools.names.project import Snapshot
+
+
+@dataclass(frozen=True, slots=True)
+class RunText:
+    """The text of a run when it was planned: the places and digests of its declarations.
+
+    ``variants`` and ``executions`` are the IRIs of all that the model has. ``seed`` is the one that the user gave this
+    run or, where failures are executed again, that of theirs; ``None`` without one.
+    """
+
+    uri: str
+    places: Places
+    digests: Digests
+    variants: frozenset[str]
+    executions: frozenset[str]
+    seed: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedRun:
+    """What to execute, how often (``repeat``; ``None``: as the model says), and of which text."""
+
+    plan: Plan
+    repeat: int | None
+    text: RunText
+
+
+def plan_run(
+    snapshot: Snapshot, convert: Converter, options: RunOptions, results: Iterable[JudgedScenario]
+) -> PlannedRun:
+    """Plan a run; ``results`` are those of earlier runs.
+
+    Raises ``ModelErrors``, ``NothingToRun``, ``NothingFailed`` and ``SelectionError``.
+    """
+    uri = options.uri
+    file = runnable_model(snapshot, uri)
+    model = file.acceptance
+    selection, repeat = select(options, model, results)
+    try:
+        plan = Plan.of_files(uri, uri_to_path(uri), (file,), selection)
+    except NothingSelected:
+        if options.failed:
+            raise NothingFailed(NO_SCENARIO_FAILED) from None
+        raise
+    text = RunText(
+        uri,
+        places_of(snapshot, convert, uri),
+        digests_of(snapshot, uri),
+        frozenset(str(variant.iri) for story in model.stories for variant in story.variants),
+        frozenset(str(execution.iri) for execution in model.executions),
+        selection.seed,
+    )
+    return PlannedRun(plan, repeat, text)
