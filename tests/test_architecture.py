@@ -173,6 +173,35 @@ def test_modules_stay_readable_in_one_sitting() -> None:
     assert {module: length for module, length in lengths.items() if length > 350} == {}
 
 
+MAY_PLAN = {"run", "workbench"}
+PLANNING = {"Scheduler", "RunRequest", "SpecWriter", "Recording", "Relations", "prepare_all", "scenario_seed"}
+"""What plans and executes runs."""
+
+
+def plans(path: Path) -> Iterator[str]:
+    """Yield what a module imports, other than for types, to plan or execute runs."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for_types = {
+        id(node)
+        for block in ast.walk(tree)
+        if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
+        for node in ast.walk(block)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and id(node) not in for_types:
+            yield from PLANNING.intersection(alias.name for alias in node.names)
+
+
+def test_runs_are_planned_and_executed_by_the_workbench_alone() -> None:
+    """The command line, the server and the pytest plugin turn their arguments into selections and show results."""
+    others = [(module, path) for module, path in modules() if layer(module) not in MAY_PLAN | BRANCH.keys()]
+    found = {module: set(plans(path)) for module, path in others}
+    assert {module: names for module, names in found.items() if names} == {}
+    homes = {"run.prepare", "run.scheduler", "run.scenario_specs", "run.tree_specs", "run.recording", "run.launch"}
+    server = {module: homes.intersection(own_imports(path)) for module, path in others if layer(module) == "lsp"}
+    assert {module: names for module, names in server.items() if names} == {}
+
+
 STARTS_PROCESSES = {
     *(f"subprocess.{name}" for name in ("run", "Popen", "call", "check_call", "check_output", "getoutput")),
     *(f"asyncio.create_subprocess_{name}" for name in ("exec", "shell")),

@@ -15,8 +15,8 @@ from pygls.exceptions import JsonRpcException
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.lsp.document_models import feature_plan
-from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.lsp.locations import places_of
+from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.run.shown import NoTrace, find_trace, scenarios, shown_trace, summary
 from robbdd_tools.run.store import NoSuchRun, RunStore

@@ -16,8 +16,8 @@ from robbdd_tools.features.run_verdicts import execution_digest, variant_digest
 from robbdd_tools.features.scenarios import number_of_scenarios
 from robbdd_tools.features.stories import ListedStory, ListedVariant, stories_in, story_files
 from robbdd_tools.lsp.document_models import feature_plan, reason
-from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.lsp.locations import Places, places_of
+from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.run.listing import ListedScenario, listed_scenarios
 
