@@ -2,7 +2,7 @@
 
 import pytest
 
-from kit import EVENTS, MODEL, SCENE, TEMPLATE, Fixture, assert_diagnostics, corpus, fixture
+from kit import EVENTS, FOLDER, MODEL, SCENE, TEMPLATE, Fixture, assert_diagnostics, corpus, fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.names.imports import components
@@ -199,3 +199,33 @@ def test_files_that_import_each_other_are_told_from_those_on_the_way_to_them() -
 def test_a_chain_of_imports_longer_than_the_stack_is_followed() -> None:
     edges = {str(number): [str((number + 1) % 50_000)] for number in range(50_000)}
     assert set(components(edges).values()) == {0}
+
+
+def test_an_element_can_be_named_by_its_scene() -> None:
+    found = fixture(f"""//- lab.scene
+{SCENE}//- m.bdd
+import "lab.scene"
+ns t = 'https://example.org/t/'
+const set (ns=t) some {{ <bench_scene.bolt>, <bench_scene.tray_ws>, <bench_scene.tray>, <bench_scene.ur10> }}
+""")
+    file = found.snapshot.file(f"{FOLDER}m.bdd")
+    assert file is not None
+    placed = file.declarations[-1]
+    paths = {target.symbol.path for target in placed.targets.values() if "." in target.symbol.path}
+    assert paths == {"parts.bolt", "places.tray_ws", "furniture.tray", "arms.ur10"}
+    assert file.diagnostics == ()
+
+
+def test_an_element_that_two_sets_of_a_scene_have_is_not_named_by_the_scene() -> None:
+    check("""//- lab.scene
+ns e = 'https://example.org/e/'
+ns f = 'https://example.org/f/'
+obj set (ns=e) left { object cube }
+obj set (ns=f) right { object cube }
+scene (ns=e) both { obj set <left> obj set <right> }
+//- m.bdd
+import "lab.scene"
+ns t = 'https://example.org/t/'
+const set (ns=t) some { <both.cube> }
+//                       ^^^^^^^^^ unknown-name did you mean
+""")

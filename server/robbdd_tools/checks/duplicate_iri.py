@@ -11,7 +11,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.checks.facts import UNIQUE_KINDS, facts_of
 from robbdd_tools.names.index import FileIndex
-from robbdd_tools.names.namespaces import only_namespace
+from robbdd_tools.names.namespaces import namespace_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE
 
@@ -95,9 +95,10 @@ def _taken_by(files: Iterable[FileIndex], scope: tuple[FileIndex, ...]) -> Taken
     found: dict[str, dict[str, int]] = {}
     for file in files:
         namespaces = {**outer, **_namespaces((file,))}
-        namespaces[FILE_NAMESPACE] = namespaces.get(only_namespace(file.names) or FILE_NAMESPACE, "")
         for placed in file.declarations:
             for namespace, names in facts_of(placed.declaration).own_names.items():
+                if namespace == FILE_NAMESPACE:
+                    namespace = namespace_of(file, placed.declaration.symbols[0]) or FILE_NAMESPACE
                 counted = found.setdefault(namespaces.get(namespace, ""), {})
                 for name in names:
                     counted[name] = counted.get(name, 0) + 1

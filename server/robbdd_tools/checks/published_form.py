@@ -15,13 +15,15 @@ from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.names.namespaces import only_namespace
+from robbdd_tools.names.indirect_names import ELEMENT_ROLES
+from robbdd_tools.names.namespaces import namespace_of, only_namespace
 from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.declaration import Placed
+from robbdd_tools.syntax.declaration import FILE_NAMESPACE, Placed
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.analysis import FileAnalysis, PlacedDeclaration
+    from robbdd_tools.names.index import FileIndex
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.syntax.declaration import Declaration
 
@@ -36,18 +38,34 @@ Change = tuple[Span, str]
 def published_form(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each declaration that has a part in the published form."""
     uri = file.document.uri
-    namespace = only_namespace(snapshot.scope(uri).files[0].names)
+    index = snapshot.scope(uri).files[0]
     for placed in file.declarations:
         root = placed.declaration.tree
         if not isinstance(root, _NAMED) or placed.declaration.faults:
             continue
-        changes = _changes(placed.declaration, namespace)
+        changes = [*_changes(placed.declaration, _namespace(index, placed)), *_through_scenes(placed)]
         if changes:
             edits = tuple(Edit(uri, span.shifted(placed.offset), text) for span, text in changes)
             message = f"'{root.name.text}' is written in the published form: the fix writes it in the current one"
             place = root.name.span.shifted(placed.offset)
             fix = Fix("Write it in the current form", edits)
             yield Diagnostic(uri, place, Severity.HINT, "published-form", message, fixes=(fix,))
+
+
+def _namespace(index: FileIndex, placed: PlacedDeclaration) -> str | None:
+    """Return the namespace that a declaration is in without saying so, else that of its file."""
+    symbol = placed.declaration.symbols[0]
+    left_out = symbol.namespace == FILE_NAMESPACE
+    return namespace_of(index, symbol) if left_out else only_namespace(index.names)
+
+
+def _through_scenes(placed: PlacedDeclaration) -> Iterator[Change]:
+    """Yield the changes of elements that are named by their scene (``lab_scene.cube``)."""
+    for reference in placed.declaration.references:
+        ref = reference.ref
+        target = placed.targets.get(ref) if ref.role in ELEMENT_ROLES and "." in ref.path else None
+        if target is not None and target.symbol.path != ref.path:
+            yield ref.span, target.symbol.path
 
 
 @kept_with_key
@@ -110,7 +128,8 @@ class _Rewriter:
             yield from self._body(root.body)
         elif isinstance(root, tree.Story):
             first = root.variants[0].span.start
-            if "Scenarios" not in self._code(root.benefit.span.end, first):
+            told = root.name if root.benefit is None else root.benefit
+            if "Scenarios" not in self._code(told.span.end, first):
                 yield _put(first, "Scenarios: ")
 
     def _body(self, body: tree.Body) -> Iterator[Change]:

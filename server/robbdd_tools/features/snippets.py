@@ -38,7 +38,7 @@ _CHOSEN: Mapping[str, str] = {
     "Variable": "PlainVariable",
 }
 """The alternative to show where the grammar's first one is not the usual one."""
-_SHOWN = frozenset({"namespace", "duration", "task", "given", "then", "root"})
+_SHOWN = frozenset({"namespace", "duration", "task", "role", "given", "then", "root"})
 """The parts that may be left out but are shown."""
 _LABELS = frozenset({"Given", "When", "Then", "Scenarios", "variation"})
 _SAMPLES: Mapping[str, str] = {

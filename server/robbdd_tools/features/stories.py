@@ -56,7 +56,7 @@ def stories_in(snapshot: Snapshot, uri: str) -> list[ListedStory]:
         definition = file.definitions.get(story.name.text) if file and isinstance(story, tree.Story) else None
         if isinstance(story, tree.Story) and definition is not None and definition.iri is not None:
             own = tuple(_listed(variant) for variant in variants if _stands_in(variant, placed))
-            found.append(ListedStory(definition, definition.iri, story.feature.value, own))
+            found.append(ListedStory(definition, definition.iri, story.feature.value if story.feature else "", own))
     return found
 
 

@@ -1,8 +1,9 @@
-"""Names that lead through another one: parts of a tree's instance, of a tree in a tree, clauses of a variant.
+"""Names that lead through another one: parts of trees, clauses of a variant, elements of a scene.
 
 ``ktree inst … arm of <gen3>`` makes every part of the template a part of the instance (``arm.base.origin``);
-``tree <arm>`` inside a tree makes it ``cell.arm.base.origin``; and a clause of a variant may be named without the
-user story around it. All of these have their declaration under another path, which is found here.
+``tree <arm>`` inside a tree makes it ``cell.arm.base.origin``; a clause of a variant may be named without the user
+story around it; and an element of a scene by the scene (``lab_scene.cube``). All of these have their declaration
+under another path, which is found here.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ if TYPE_CHECKING:
     from robbdd_tools.names.index import Declared, FileIndex
     from robbdd_tools.syntax.declaration import Declaration
 
-ROLES = frozenset({"Frame", "Body", "Joint", "Tree", "Fluent"})
+ELEMENT_ROLES = frozenset({"Element", "Object", "Workspace", "Agent"})
+ROLES = ELEMENT_ROLES | {"Frame", "Body", "Joint", "Tree", "Fluent"}
 """What a reference may lead to through another name."""
 MOST_PATHS = 50
 """Paths that are tried for one reference: trees that contain one another must not go round for ever."""
@@ -90,12 +92,26 @@ def _of_declaration(declaration: Declaration) -> Iterator[tuple[str, str]]:
         elif symbol.kind is SymbolKind.STORY:
             variants = (part for part in declaration.symbols if part.kind is SymbolKind.VARIANT)
             yield from ((variant.name, variant.path) for variant in variants)
-    if isinstance(root, tree.KinematicTree):
+    if isinstance(root, tree.Scene):
+        yield from ((root.name.text, entry.reference.path) for entry in root.entries)
+    elif isinstance(root, tree.Composition):
+        yield from _composed(root)
+    elif isinstance(root, tree.KinematicTree):
         yield from _used_trees(root.name.text, root)
     elif isinstance(root, tree.SceneInstance):
         for entry in root.entries:
             if isinstance(entry, tree.Graph):
                 yield from _used_trees(f"{root.name.text}.{entry.name.text}", entry)
+
+
+def _composed(composition: tree.Composition) -> Iterator[tuple[str, str]]:
+    """Yield what the elements of a composition, and those of the compositions in it, are called in a scene."""
+    held = [entry.reference for entry in composition.entries]
+    for ref in (composition.workspace, *held):
+        if ref.role == "Composition":
+            yield composition.name.text, ref.path
+        else:
+            yield f"{composition.name.text}.{ref.path.rpartition('.')[2]}", ref.path
 
 
 def _used_trees(path: str, owner: tree.KinematicTree | tree.Graph) -> Iterator[tuple[str, str]]:

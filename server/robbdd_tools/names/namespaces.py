@@ -1,18 +1,24 @@
-"""The namespace of declarations that name none: the only one of their file."""
+"""The namespace of declarations that name none.
+
+It is the only one of their file. In a file of several namespaces, events and tasks take the namespace of the templates
+that use them, if these agree.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.syntax.declaration import FILE_NAMESPACE, SymbolKind
+from robbdd_tools.syntax.tree import Template
 
 if TYPE_CHECKING:
     from robbdd_tools.names.index import FileIndex
     from robbdd_tools.names.name_table import NameTable
+    from robbdd_tools.syntax.declaration import Symbol
 
 
 def only_namespace(names: NameTable) -> str | None:
@@ -26,15 +32,39 @@ def _namespaces(names: NameTable) -> tuple[str, ...]:
     return tuple(path for path, kinds in names.kinds.items() if SymbolKind.NAMESPACE in kinds)
 
 
+def namespace_of(file: FileIndex, symbol: Symbol) -> str | None:
+    """Return the name of the namespace of a symbol of a file; ``None`` if it has none or it is ambiguous."""
+    if symbol.namespace != FILE_NAMESPACE:
+        return symbol.namespace
+    return only_namespace(file.names) or _by_use(file).get((symbol.kind, symbol.path))
+
+
+_USED = {"Event": SymbolKind.EVENT, "Task": SymbolKind.TASK}
+
+
+@kept_with_key
+def _by_use(file: FileIndex) -> Mapping[tuple[SymbolKind, str], str]:
+    """Map the events and tasks that templates of the file use to these templates' namespace, if they agree."""
+    found: dict[tuple[SymbolKind, str], set[str]] = {}
+    for placed in file.declarations:
+        declaration = placed.declaration
+        if isinstance(declaration.tree, Template) and declaration.tree.namespace is not None:
+            namespace = declaration.tree.namespace.reference.path
+            for reference in declaration.references:
+                if reference.ref.role in _USED:
+                    found.setdefault((_USED[reference.ref.role], reference.ref.path), set()).add(namespace)
+    return {name: min(namespaces) for name, namespaces in found.items() if len(namespaces) == 1}
+
+
 def without_namespace(file: FileIndex) -> Iterator[Diagnostic]:
-    """Yield an error for each declaration that leaves its namespace to its file, where the file has not just one."""
+    """Yield an error for each declaration that gives no namespace where neither its file nor its users tell it."""
     if only_namespace(file.names) is not None:
         return
     for placed in file.declarations:
         declaration = placed.declaration
         whole = declaration.tree is not None and not declaration.faults
         for symbol in declaration.symbols[:1]:
-            if whole and symbol.namespace == FILE_NAMESPACE:
+            if whole and symbol.namespace == FILE_NAMESPACE and namespace_of(file, symbol) is None:
                 yield _missing(file, symbol.name, symbol.span.shifted(placed.offset))
 
 

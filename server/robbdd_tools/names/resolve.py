@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.names.definition import Definition
-from robbdd_tools.names.indirect_names import ROLES, paths_through
+from robbdd_tools.names.indirect_names import ELEMENT_ROLES, ROLES, paths_through
 from robbdd_tools.names.name_table import changed_paths
 from robbdd_tools.names.roles import ROLE_KINDS
+from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.move import moved_ref, moved_reference
 
 if TYPE_CHECKING:
@@ -185,7 +186,13 @@ def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
             known[key] = (paths, *_lookup(tables, ref.role, paths))
         paths, found, other = known[key]
         looked_up.update(paths)
-        if found is None and ref.role in ROLES:
+        if found is None and ref.role in ELEMENT_ROLES:
+            owners = {path.rpartition(".")[0] for path in paths}
+            looked_up |= owners
+            if any(SymbolKind.SCENE in table.kinds.get(owner, ()) for owner in owners for table in tables):
+                through_others = True
+                found, other = _lookup_in_scene(scope, ref.role, paths)
+        elif found is None and ref.role in ROLES:
             through_others = True
             found, other = _lookup(tables, ref.role, (*paths, *paths_through(scope.files, paths)))
         if found is not None:
@@ -208,6 +215,14 @@ _Lookups = dict[tuple[str, str, tuple[str, ...]], tuple[tuple[str, ...], Target 
 def _known_lookups(_: tuple[NameTable, ...]) -> _Lookups:
     """Return what was looked up in some tables, by role, path and scopes; it holds as long as no name changes."""
     return {}
+
+
+def _lookup_in_scene(scope: Scope, role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
+    """Return the element that a scene has under a name; none if it has several of that name."""
+    found = [_lookup(scope.tables, role, (path,)) for path in paths_through(scope, paths)]
+    fitting = {target for target, _ in found if target is not None}
+    others = (other for _, other in found if other is not None)
+    return (fitting.pop(), None) if len(fitting) == 1 else (None, None if fitting else next(others, None))
 
 
 def _lookup(tables: tuple[NameTable, ...], role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.names.definition import Definition
 from robbdd_tools.names.indirect_names import instance_parts
-from robbdd_tools.names.namespaces import only_namespace
+from robbdd_tools.names.namespaces import namespace_of
 from robbdd_tools.names.roles import ROLE_KINDS
-from robbdd_tools.syntax.declaration import FILE_NAMESPACE, SymbolKind
+from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.tree import Namespace
 
 if TYPE_CHECKING:
@@ -69,13 +69,11 @@ class Scope:
         return names
 
     def _iri(self, file: FileIndex, declared: Declared) -> str | None:
-        start = self.namespace_iri(file, declared.symbol.namespace)
+        start = self.namespace_iri(file, namespace_of(file, declared.symbol))
         return None if start is None else start + local_name(declared.symbol)
 
     def namespace_iri(self, file: FileIndex, namespace: str | None) -> str | None:
         """Return what the IRIs of a file's declarations in a namespace begin with, ``None`` while that is unknown."""
-        if namespace == FILE_NAMESPACE:
-            namespace = only_namespace(file.names)
         if namespace is None:
             return None
         # A declaration's namespace is looked up from its own file; the nearest one outside is a file it imports.

@@ -320,11 +320,14 @@ class Variant(Node):
 
 @dataclass(frozen=True, slots=True)
 class Story(Node):
-    """``User Story (ns=…) name { … }``."""
+    """``User Story (ns=…) name { … }``.
+
+    Role, feature and benefit (``As A``, ``I Want``, ``So That``) are all given or all ``None``.
+    """
 
     namespace: NamespaceArgument | None
     name: Name
-    role: Text
-    feature: Text
-    benefit: Text
+    role: Text | None
+    feature: Text | None
+    benefit: Text | None
     variants: Sequence[Variant]

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.write.declarations import Key, Reached, Uses, reach
-from robbdd_tools.graph.write.identities import identities, namespaces_of
+from robbdd_tools.graph.write.identities import identities
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Neighbourhoods:
         return (
             tuple(self._identities[used.key] for used in self._leads_to(entry)),
             self.uses.has_error(entry),
-            tuple(self.known.starts[entry.uri, name] for name in namespaces_of(entry.placed.declaration)),
+            self.known.starts[entry.key],
             tuple(self._seen_as.get(entry.key, ())),
         )
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.graph.write.declarations import Key, Reached
 from robbdd_tools.graph.write.source_map import Location
+from robbdd_tools.names.namespaces import namespace_of
 from robbdd_tools.names.scope import local_name
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -24,10 +25,9 @@ SHARED = VARIABLES | {SymbolKind.BEHAVIOUR}
 
 @dataclass(frozen=True, slots=True)
 class _Named:
-    """A name that makes a node: ``namespace`` and ``local`` make its IRI, ``says`` what is stated of a shared one."""
+    """A name that makes a node: ``local`` ends its IRI, ``says`` is what is stated of a shared one."""
 
     symbol: Symbol
-    namespace: str
     local: str
     says: str | None
 
@@ -51,14 +51,14 @@ class Declarer:
 class Identities:
     """The nodes that some declarations name.
 
-    ``starts`` maps the name of a namespace in a document to what the IRIs in it begin with.
+    ``starts`` maps a declaration to the namespaces (IRIs, ``None``: unknown) that it names nodes in.
     ``names`` maps an IRI to the first qualified name for it. ``shared`` are nodes that several declarations agree
     on, ``contested`` those where it matters who else names them: only one can have them, or they say different
     things of them. Both list the declarers in the order of the graph.
     """
 
     names: Mapping[str, str]
-    starts: Mapping[tuple[str, str], str | None]
+    starts: Mapping[Key, tuple[str | None, ...]]
     shared: dict[str, list[Declarer]] = field(default_factory=dict[str, list[Declarer]])
     contested: dict[str, list[Declarer]] = field(default_factory=dict[str, list[Declarer]])
 
@@ -68,14 +68,17 @@ def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
     names: dict[str, str] = {}
     first: dict[str, tuple[Reached, _Named]] = {}
     repeated: dict[str, list[Declarer]] = {}
-    starts: dict[tuple[str, str], str | None] = {}
+    starts: dict[Key, tuple[str | None, ...]] = {}
+    iris: dict[tuple[str, str | None], str | None] = {}
     for entry in reached:
+        scope = snapshot.scope(entry.uri)
+        own: dict[str | None, None] = {}
         for named in _named(entry.placed.declaration):
-            place = (entry.uri, named.namespace)
-            if place not in starts:
-                scope = snapshot.scope(entry.uri)
-                starts[place] = scope.namespace_iri(scope.files[0], named.namespace)
-            start = starts[place]
+            namespace = namespace_of(scope.files[0], named.symbol)
+            if (entry.uri, namespace) not in iris:
+                iris[entry.uri, namespace] = scope.namespace_iri(scope.files[0], namespace)
+            start = iris[entry.uri, namespace]
+            own[start] = None
             if start is None:
                 continue
             iri = start + named.local
@@ -86,6 +89,7 @@ def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
             other, one = first[iri]
             declarers = repeated.setdefault(iri, [Declarer(other.key, one.symbol, one.says)])
             declarers.append(Declarer(entry.key, named.symbol, named.says))
+        starts[entry.key] = tuple(own)
     return _sorted_out(Identities(names, starts), repeated)
 
 
@@ -101,16 +105,10 @@ def _sorted_out(found: Identities, repeated: Mapping[str, list[Declarer]]) -> Id
 
 
 @kept_with_key
-def namespaces_of(declaration: Declaration) -> tuple[str, ...]:
-    """Return the names of the namespaces that a declaration makes nodes in."""
-    return tuple(dict.fromkeys(named.namespace for named in _named(declaration)))
-
-
-@kept_with_key
 def _named(declaration: Declaration) -> tuple[_Named, ...]:
     words = dict(_behaviours(declaration.tree.body)) if isinstance(declaration.tree, tree.Template) else {}
     return tuple(
-        _Named(symbol, symbol.namespace, local_name(symbol), _says(symbol, words))
+        _Named(symbol, local_name(symbol), _says(symbol, words))
         for symbol in declaration.symbols
         if symbol.namespace is not None
     )

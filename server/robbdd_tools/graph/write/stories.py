@@ -43,7 +43,8 @@ def add_story(frame: Frame, known: Known, story: tree.Story, position: int) -> N
     sink = frame.sink
     sink.add_types(node, ["bdd:UserStory"], frame.at(story.name))
     for term, text in (("role", story.role), ("feature", story.feature), ("benefit", story.benefit)):
-        sink.add(node, f"rbw:{term}", sink.literal(text.value), frame.at(text))
+        if text is not None:
+            sink.add(node, f"rbw:{term}", sink.literal(text.value), frame.at(text))
     sink.add(node, "rbw:position", sink.literal(position))
     namespace = namespace_of(node, story.name.text)
     variants: list[URIRef] = []
