@@ -156,7 +156,7 @@ def _parser() -> argparse.ArgumentParser:
     query.add_argument("query", metavar="QUERY", nargs="?", help="SELECT, ASK, CONSTRUCT or DESCRIBE")
     query.add_argument("-f", "--file", metavar="QUERY.rq", type=Path, help="read the query from this file")
     query.add_argument("--name", metavar="NAME", help="a query that comes along; without any query they are listed")
-    query.add_argument("--format", choices=("table", "csv", "json"), default="table")
+    query.add_argument("--format", choices=("table", "csv", "json", "ttl", "json-ld"), default="table")
     _take_results(query)
     query.set_defaults(command=_query)
     new = commands.add_parser("new", help="begin a project from a template")

@@ -9,8 +9,11 @@ import re
 import shutil
 from pathlib import Path
 
+from rdflib import Graph
+from rdflib.compare import isomorphic
+
 from commands.test_graph_models import PICKPLACE, robbdd
-from kit import EXAMPLES, ROOT
+from kit import EXAMPLES, ROOT, SCENE
 from robbdd_tools.run.store import FOLDER, RunStore
 
 
@@ -94,3 +97,78 @@ def test_what_holds_no_results_is_refused_in_a_sentence(tmp_path: Path) -> None:
     done = robbdd("query", HEIGHTS, "ASK { }", "--results", "r.json", folder=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == "robbdd: r.json holds no results of a run: the document is not an object\n"
+
+
+PAPER = """import "lab.scene"
+ns bdd = 'https://example.org/mine/'
+Event before
+Event end
+Scenario Template carry {
+    var part
+    var place
+    var robot
+    Given: <part> is located at <place> before <before>
+    When: <robot> picks <part> and places it at <place>
+    Then: ( not <part> is located at <place> after <end> )
+}
+"""
+ASKED = """CONSTRUCT {
+  ?scenario bdd:has-clause ?fluentClause .
+  ?fluentClause bdd:holds-at ?timeConstraint .
+}
+WHERE {
+  ?scenarioTmpl bdd:of-scenario ?scenario ; bdd:has-clause ?fluentClause .
+  ?fluentClause a ?fluentType ; bdd:holds-at ?timeConstraint .
+}
+"""
+
+
+def paper(tmp_path: Path) -> Path:
+    (tmp_path / "lab.scene").write_text(SCENE, encoding="utf-8")
+    path = tmp_path / "paper.bdd"
+    path.write_text(PAPER, encoding="utf-8")
+    return path
+
+
+def test_the_query_of_the_paper_has_its_rows(tmp_path: Path) -> None:
+    path = paper(tmp_path)
+    graph = robbdd("graph", path).stdout
+    done = robbdd("query", path, ASKED, "--format", "csv")
+    namespace = "https://example.org/mine/"
+    bdd = "https://secorolab.github.io/metamodels/acceptance-criteria/bdd#"
+    clauses = [f"{namespace}carry-given-1", f"{namespace}carry-then-1"]
+    assert list(csv.reader(io.StringIO(done.stdout)))[1:] == [
+        [clauses[0], f"{bdd}holds-at", clauses[0]],
+        [f"{namespace}carry-scenario", f"{bdd}has-clause", clauses[0]],
+        [f"{namespace}carry-scenario", f"{bdd}has-clause", clauses[1]],
+        [clauses[1], f"{bdd}holds-at", clauses[1]],
+    ]
+    assert f"'bdd:' means the vocabulary's <{bdd}>; this model's <{namespace}> is 'bdd-2:'" in done.stderr
+    assert "holds-at" not in graph
+    assert robbdd("graph", path).stdout == graph
+
+
+def test_what_a_query_constructs_is_saved_as_a_graph(tmp_path: Path) -> None:
+    path = paper(tmp_path)
+    turtle = robbdd("query", path, ASKED, "--format", "ttl").stdout
+    made = Graph().parse(data=turtle, format="turtle")
+    assert len(made) == 4
+    json_ld = robbdd("query", path, ASKED, "--format", "json-ld").stdout
+    assert isomorphic(Graph().parse(data=json_ld, format="json-ld"), made)
+    refused = robbdd("query", path, "ASK { ?x a time:Event }", "--format", "ttl")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert "--format ttl is for CONSTRUCT and DESCRIBE" in refused.stderr
+
+
+def test_a_prefix_of_the_model_keeps_its_meaning_for_terms_of_the_model(tmp_path: Path) -> None:
+    done = robbdd("query", paper(tmp_path), "ASK { bdd:end a time:Event }")
+    assert (done.stdout, done.stderr) == ("answer\n------\ntrue\n", "")
+
+
+def test_a_term_that_no_triple_has_is_reported_with_the_nearest() -> None:
+    done = robbdd("query", PICKPLACE, "SELECT ?x {\n?x a/bdd:of-templat crit:pick-plac\n}")
+    assert done.stdout == "x\n-\n"
+    assert done.stderr.splitlines() == [
+        "query: note: line 2: 'bdd:of-templat' occurs in no triple; did you mean 'bdd:of-template'?",
+        "query: note: line 2: 'crit:pick-plac' occurs in no triple; did you mean 'crit:pick-place'?",
+    ]

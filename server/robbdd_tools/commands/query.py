@@ -14,11 +14,12 @@ from robbdd_tools.base.printable import printable, printable_json
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.graph_results import graph_with_results
 from robbdd_tools.commands.models import sound_model
-from robbdd_tools.commands.output import print_document, print_line, print_note
+from robbdd_tools.commands.output import fail, print_document, print_line, print_note
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.ask.query import Rows, Term
 
+ROW_FORMS = ("table", "csv", "json")
 FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """How a cell begins that a spreadsheet takes for a formula, the full-width forms included."""
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
@@ -47,7 +48,24 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
         start = Document("", 0, asked).position(error.offset)
         print_note(f"{place}:{start.line + 1}:{start.column + 1}: error: {error} [query]")
         return FAILED
-    {"table": _table, "csv": _csv, "json": _json}[form](rows)
+    for remark in rows.remarks if name is None else ():
+        print_note(f"{place}: note: {remark}")
+    if form in ROW_FORMS:
+        {"table": _table, "csv": _csv, "json": _json}[form](rows)
+        return OK
+    return _save(rows, form)
+
+
+def _save(rows: Rows, form: str) -> int:
+    """Print what a query made as a graph in one of its formats."""
+    from robbdd_tools.graph.rdf.serialize import UnwritableGraph, serialize
+
+    if rows.graph is None:
+        return fail(f"--format {form} is for CONSTRUCT and DESCRIBE; for SELECT and ASK take {', '.join(ROW_FORMS)}")
+    try:
+        print_document(serialize(rows.graph, form))
+    except UnwritableGraph as error:
+        return fail(str(error))
     return OK
 
 
@@ -76,14 +94,11 @@ def _source(text: str | None, file: Path | None, name: str | None) -> tuple[str,
 
 
 def _short(term: Term | None, prefixes: dict[str, str]) -> str:
+    from robbdd_tools.graph.ask.vocabularies import shortened
+
     if term is None or term.kind != "uri":
         return "" if term is None else term.value
-    text = term.value
-    fitting = [(ns, prefix) for prefix, ns in prefixes.items() if text.startswith(ns) and len(text) > len(ns)]
-    if not fitting:
-        return text
-    namespace, prefix = max(fitting, key=lambda pair: len(pair[0]))
-    return f"{prefix}:{text[len(namespace) :]}"
+    return shortened(term.value, prefixes)
 
 
 def _table(rows: Rows) -> None:

@@ -219,7 +219,7 @@ def _known_lookups(_: tuple[NameTable, ...]) -> _Lookups:
 
 def _lookup_in_scene(scope: Scope, role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
     """Return the element that a scene has under a name; none if it has several of that name."""
-    found = [_lookup(scope.tables, role, (path,)) for path in paths_through(scope, paths)]
+    found = [_lookup(scope.tables, role, (path,)) for path in paths_through(scope.files, paths)]
     fitting = {target for target, _ in found if target is not None}
     others = (other for _, other in found if other is not None)
     return (fitting.pop(), None) if len(fitting) == 1 else (None, None if fitting else next(others, None))

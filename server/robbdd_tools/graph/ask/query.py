@@ -6,15 +6,15 @@ rdflib reads the query and says where it is wrong; Oxigraph, where the extra ``f
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from decimal import Decimal
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.base.data import data_file, data_folder
 from robbdd_tools.base.files import load_text
-from robbdd_tools.graph.rdf.prefixes import bind_prefixes, user_prefixes
+from robbdd_tools.graph.ask.query_prefixes import query_prefixes
+from robbdd_tools.graph.ask.vocabularies import operators, patterns, unknown_terms, with_paper_terms
 from robbdd_tools.graph.rdf.vocabulary import expand
 
 if TYPE_CHECKING:
@@ -22,11 +22,6 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
 FOLDER = "queries"
-_MORE_PREFIXES = {
-    "rdfs": "http://www.w3.org/2000/01/rdf-schema#",
-    "owl": "http://www.w3.org/2002/07/owl#",
-    "sh": "http://www.w3.org/ns/shacl#",
-}
 
 
 class BadQuery(Exception):
@@ -51,38 +46,51 @@ class Term:
 class Rows:
     """The answer to SELECT: one term or ``None`` per column; to ASK: one cell of the column ``answer``.
 
-    CONSTRUCT and DESCRIBE answer with the triples of a graph: subject, predicate, object. ``prefixes`` maps prefixes
-    to namespaces, for whoever shows names.
+    CONSTRUCT and DESCRIBE answer with the triples of ``graph``: subject, predicate, object. ``prefixes`` maps prefixes
+    to namespaces, for whoever shows names. ``remarks`` say why a query may have fewer rows than expected.
     """
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Term | None, ...], ...]
     prefixes: dict[str, str]
+    remarks: tuple[str, ...] = ()
+    graph: Graph | None = field(default=None, compare=False)
 
 
 def run_query(graph: Graph, text: str) -> Rows:
     """Answer a query; raises ``BadQuery``. Rows are sorted unless the query orders them itself."""
-    from rdflib import Graph
-
-    prefixes = bind_prefixes(Graph(bind_namespaces="none"), user_prefixes(graph))
-    known = {**_MORE_PREFIXES, **prefixes}
+    known, remarks = query_prefixes(graph, text)
     query = _prepared(text, known)
+    asked = list(patterns(query.algebra))
+    graph = with_paper_terms(graph, asked)
+    remarks += unknown_terms(graph, asked, known, text)
     engine = _fast_copy(graph)
     try:
         # rdflib's results are only loosely typed.
         result = cast(Any, graph.query(query) if engine is graph else engine.query(text, initNs=known))
         if result.type == "ASK":
             truth = Term("literal", str(bool(result.askAnswer)).lower(), expand("xsd:boolean"))
-            return Rows(("answer",), ((truth,),), known)
+            return Rows(("answer",), ((truth,),), known, tuple(remarks))
         is_select = result.type == "SELECT"
         rows = cast("list[tuple[Node | None, ...]]", list(result if is_select else result.graph))
     except Exception as error:  # evaluation raises whatever a function of the query runs into
         raise BadQuery(f"the query cannot be answered: {error}") from error
     terms = [tuple(map(_term, row)) for row in rows]
-    if not any(part.name == "OrderBy" for part in _parts(query.algebra)):
+    if not any(part.name == "OrderBy" for part in operators(query.algebra)):
         terms.sort(key=_row_order)
     columns = tuple(str(name) for name in result.vars) if is_select else ("subject", "predicate", "object")
-    return Rows(columns, tuple(terms), known)
+    return Rows(columns, tuple(terms), known, tuple(remarks), None if is_select else _made(result.graph, known))
+
+
+def _made(triples: Any, prefixes: dict[str, str]) -> Graph:
+    """Return what CONSTRUCT or DESCRIBE made as a graph with the prefixes of the query."""
+    from rdflib import Graph
+
+    found = Graph(bind_namespaces="none")
+    found += triples
+    for prefix, namespace in prefixes.items():
+        found.bind(prefix, namespace, override=True, replace=True)
+    return found
 
 
 def ready_queries() -> dict[str, str]:
@@ -124,24 +132,12 @@ def _prepared(text: str, prefixes: dict[str, str]) -> Any:
             f"the prefix '{unknown[1]}' is not declared; there are {', '.join(prefixes)}" if unknown else str(error)
         )
         raise BadQuery(message, found.start() if found else 0) from error
-    if query.algebra.get("datasetClause") or any(part.name == "ServiceGraphPattern" for part in _parts(query.algebra)):
+    if query.algebra.get("datasetClause") or any(
+        part.name == "ServiceGraphPattern" for part in operators(query.algebra)
+    ):
         word = re.search(r"\b(SERVICE|FROM)\b", text, re.IGNORECASE)
         raise BadQuery("a query asks this model only: SERVICE and FROM are not followed", word.start() if word else 0)
     return query
-
-
-def _parts(algebra: Any) -> Iterator[Any]:
-    """Yield all operators of a query."""
-    waiting: list[Any] = [algebra]
-    while waiting:
-        part = waiting.pop()
-        if isinstance(part, dict):
-            fields = cast("dict[str, Any]", part)
-            if hasattr(fields, "name"):
-                yield fields
-            waiting += fields.values()
-        elif isinstance(part, list | tuple):
-            waiting += cast("list[Any]", part)
 
 
 def _term(node: Node | None) -> Term | None:
