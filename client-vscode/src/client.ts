@@ -11,6 +11,7 @@ import { openServerSetting } from "./settings";
 import type { Setup } from "./setup/setup";
 import { surroundings } from "./surroundings";
 import { isMomentary, problemOf } from "./testing/answers";
+import { isRecord } from "./values";
 
 export const LANGUAGES = ["robbdd", "robbdd-scene", "robbdd-scenex", "robbdd-bddx", "robbdd-ktree"];
 /** Commands of the server that run scenarios. */
@@ -22,6 +23,8 @@ export class Server implements vscode.Disposable {
   private lookup: Lookup | undefined;
   private state: ServerState = { kind: "stopped" };
   private begun = false;
+  /** How many runs were begun by commands; names them. */
+  private commands = 0;
   /** Starts and stops one after the other, however fast they are asked for. */
   private pending: Promise<void> = Promise.resolve();
 
@@ -124,6 +127,11 @@ export class Server implements vscode.Disposable {
     return this.isRunning();
   }
 
+  private named<T extends object>(target: T): T & Named {
+    this.commands += 1;
+    return { token: `command-${this.commands}`, ...target };
+  }
+
   private isRunning(): boolean {
     return this.client?.isRunning() === true;
   }
@@ -134,9 +142,11 @@ export class Server implements vscode.Disposable {
 
   /**
    * Run a command of the server, whether a code lens or the palette asked for it, and do what follows from its
-   * answer. With `problem`, after a message, when there is no server or it refuses.
+   * answer. With `problem`, after a message, when there is no server or it refuses. A run without a `token` gets one, so
+   * that its end, and no other, can be shown.
    */
-  async execute(command: string, argument: unknown): Promise<unknown> {
+  async execute(command: string, target: unknown): Promise<unknown> {
+    const argument = RUNNING.has(command) && hasUri(target) ? this.named(target) : target;
     // A command may be what has activated us: the server is just starting then.
     await this.begin();
     const client = this.client;
@@ -165,9 +175,9 @@ export class Server implements vscode.Disposable {
     } catch (error) {
       return { problem: this.refused(command, error) };
     } finally {
-      if (RUNNING.has(command) && hasUri(argument)) {
-        // The answer comes after the last message. A cancelled or crashed run has not said that it ended.
-        this.runs.end(argument.uri);
+      if (isNamed(argument)) {
+        // The answer follows the last message. A cancelled or crashed run has not said that it ended.
+        this.runs.end(argument.token);
       }
     }
   }
@@ -325,6 +335,15 @@ export class Server implements vscode.Disposable {
       complain(lookup.problem, buttons);
     }
   }
+}
+
+interface Named {
+  /** The name of a run in its messages. */
+  readonly token: string;
+}
+
+function isNamed(value: unknown): value is Named {
+  return isRecord(value) && typeof value["token"] === "string";
 }
 
 function hasUri(value: unknown): value is { readonly uri: string } {

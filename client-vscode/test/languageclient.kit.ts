@@ -26,6 +26,8 @@ export class LanguageClient {
 
   /** Commands of the server that it was sent. */
   readonly executed: string[] = [];
+  /** What hears of the server's notifications, by the method. */
+  readonly listeners = new Map<string, (notification: unknown) => void>();
   private state = State.Stopped;
   private hear: (change: { newState: number }) => void = () => undefined;
 
@@ -49,8 +51,8 @@ export class LanguageClient {
     this.hear = hear;
   }
 
-  onNotification(): void {
-    return undefined;
+  onNotification(method: string, listener: (notification: unknown) => void): void {
+    this.listeners.set(method, listener);
   }
 
   async start(): Promise<void> {

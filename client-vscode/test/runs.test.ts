@@ -147,7 +147,7 @@ test("a notification of another shape is not taken for a run message", () => {
 const WORDS = ["name", "values", "sentence"];
 
 test("every field that is read is one of the server's protocol", () => {
-  const protocol = readFileSync(join(process.cwd(), "..", "server", "robbdd_tools", "run", "protocol.py"), "utf8");
+  const protocol = readFileSync(join(process.cwd(), "..", "server", "robbdd_tools", "protocol", "messages.py"), "utf8");
   const samples: RunMessage[] = [
     runStarted(1),
     started(0),

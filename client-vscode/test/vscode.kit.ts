@@ -121,6 +121,10 @@ class Editor {
   readonly problems: string[] = [];
   /** Tests that could not be run, each with the reason. */
   readonly errored: string[] = [];
+  /** Tests that passed. */
+  readonly passed: string[] = [];
+  /** How many entries of runs are open in the Testing view. */
+  openRuns = 0;
   readonly files = new Map<string, string>();
   /** What fills the Testing view. */
   controller: { resolveHandler: (item: undefined) => Promise<void> } = { resolveHandler: nothing };
@@ -141,6 +145,8 @@ class Editor {
     this.panels.length = 0;
     this.problems.length = 0;
     this.errored.length = 0;
+    this.passed.length = 0;
+    this.openRuns = 0;
   }
 
   /** Do what the user does who trusts the workspace. */
@@ -235,13 +241,20 @@ export const tests = {
         editor.profiles.set(name, handler);
         return ended;
       },
-      createTestRun: () => ({
-        token: new CancellationTokenSource().token,
-        enqueued: () => undefined,
-        errored: ({ label }: Node, { message }: TestMessage) => editor.errored.push(`${label}: ${message}`),
-        appendOutput: () => undefined,
-        end: () => undefined,
-      }),
+      createTestRun: () => {
+        editor.openRuns += 1;
+        return {
+          token: new CancellationTokenSource().token,
+          enqueued: () => undefined,
+          started: () => undefined,
+          passed: ({ label }: Node) => editor.passed.push(label),
+          errored: ({ label }: Node, { message }: TestMessage) => editor.errored.push(`${label}: ${message}`),
+          appendOutput: () => undefined,
+          end: () => {
+            editor.openRuns -= 1;
+          },
+        };
+      },
       invalidateTestResults: () => undefined,
     };
     editor.controller = controller;

@@ -19,10 +19,10 @@ export class RunMonitor implements vscode.Disposable {
   private summary = "";
   private readonly heard = new vscode.EventEmitter<RunNotification>();
   private readonly refused = new vscode.EventEmitter<Refusal>();
-  private readonly over = new vscode.EventEmitter<void>();
+  private readonly over = new vscode.EventEmitter<string | undefined>();
   readonly onMessage = this.heard.event;
   readonly onRefused = this.refused.event;
-  /** The server has nothing more to say about any run, whether they ended or not. */
+  /** The server sends no more messages of the named run, or of any run, whether they ended or not. */
   readonly onOver = this.over.event;
 
   constructor(private readonly onChange: (runs: readonly RunProgress[], summary: string) => void) {}
@@ -32,14 +32,14 @@ export class RunMonitor implements vscode.Disposable {
   }
 
   accept(notification: RunNotification): void {
-    const { uri, message } = notification;
-    let report = this.reports.get(uri);
+    const { uri, message, run = uri } = notification;
+    let report = this.reports.get(run);
     if (report === undefined || message.type === "RunStarted") {
       report = new RunReport(vscode.workspace.asRelativePath(vscode.Uri.parse(uri)));
-      this.reports.set(uri, report);
+      this.reports.set(run, report);
     }
     this.print(report.add(message));
-    this.settle(uri, report);
+    this.settle(run, report);
     this.publish();
     this.heard.fire(notification);
     if (message.type === "ClauseJudged" && message.verdict === "holds") {
@@ -52,18 +52,18 @@ export class RunMonitor implements vscode.Disposable {
     this.refused.fire(refusal);
   }
 
-  /** The server has nothing more to say about a run. */
-  end(uri: string): void {
-    this.interrupt(uri, "The run ended before it was complete.");
-    this.over.fire();
+  /** The server sends no more messages of a run. */
+  end(run: string): void {
+    this.interrupt(run, "The run ended before it was complete.");
+    this.over.fire(run);
   }
 
   /** The server is gone, and with it whatever it was running. */
   abandon(): void {
-    for (const uri of [...this.reports.keys()]) {
-      this.interrupt(uri, "The language server stopped during the run.");
+    for (const run of [...this.reports.keys()]) {
+      this.interrupt(run, "The language server stopped during the run.");
     }
-    this.over.fire();
+    this.over.fire(undefined);
   }
 
   dispose(): void {
@@ -73,19 +73,19 @@ export class RunMonitor implements vscode.Disposable {
     this.over.dispose();
   }
 
-  private interrupt(uri: string, reason: string): void {
-    const report = this.reports.get(uri);
+  private interrupt(run: string, reason: string): void {
+    const report = this.reports.get(run);
     if (report !== undefined) {
       this.print(report.interrupt(reason));
-      this.settle(uri, report);
+      this.settle(run, report);
       this.publish();
     }
   }
 
-  private settle(uri: string, report: RunReport): void {
+  private settle(run: string, report: RunReport): void {
     if (report.finished) {
       this.summary = report.summary();
-      this.reports.delete(uri);
+      this.reports.delete(run);
     }
   }
 

@@ -37,7 +37,7 @@ export class TestRunner implements vscode.Disposable {
       monitor.onMessage((message) => {
         this.hear(message);
       }),
-      monitor.onOver(() => void this.abandonOthers()),
+      monitor.onOver((name) => void this.abandonOthers(name)),
       monitor.onRefused((refusal) => void this.refuse(refusal)),
     ];
   }
@@ -176,10 +176,10 @@ export class TestRunner implements vscode.Disposable {
     }
   }
 
-  /** End the entries of runs that were begun elsewhere and broke off. */
-  private async abandonOthers(): Promise<void> {
+  /** End the entry of a run that was begun elsewhere and broke off, or those of all without a name. */
+  private async abandonOthers(over: string | undefined): Promise<void> {
     for (const [name, follower] of this.followers) {
-      if (!name.startsWith(OWN)) {
+      if (!name.startsWith(OWN) && (over === undefined || over === name)) {
         this.followers.delete(name);
         await follower.interrupt("The run ended before it was complete.");
       }
