@@ -8,7 +8,9 @@ import type { StudyView } from "./panels/study/view";
 import type { PreviewView } from "./preview/view";
 import { RUNNABLE, modelFor, openModel } from "./models";
 import { newProject } from "./projects";
+import type { RunOptionsChooser } from "./runs/chooser";
 import type { RunMonitor } from "./runs/monitor";
+import { argumentsOf } from "./runs/options";
 import { openServerSetting } from "./settings";
 import { isRecord } from "./values";
 import type { TestingView } from "./testing/view";
@@ -25,11 +27,13 @@ export interface Views {
 export function registerCommands(
   server: Server,
   runs: RunMonitor,
+  chooser: RunOptionsChooser,
   { previews, graphs, replays, studies, tests }: Views,
   log: vscode.LogOutputChannel,
 ): vscode.Disposable[] {
   const handlers: Record<string, (target?: unknown) => unknown> = {
     "robbdd.runFile": (target) => withModel(target, (uri) => server.execute("robbdd.run", { uri }), RUNNABLE),
+    "robbdd.runWithOptions": (target) => withModel(target, (uri) => runWithOptions(server, chooser, uri), RUNNABLE),
     "robbdd.rerunFailedOfFile": (target) => withModel(target, (uri) => server.execute("robbdd.rerunFailed", { uri }), RUNNABLE),
     "robbdd.recordFile": (target) => withModel(target, (uri) => server.execute("robbdd.record", { uri }), RUNNABLE),
     "robbdd.cancelRun": () => server.execute("robbdd.cancel", {}),
@@ -63,6 +67,13 @@ async function withModel(target: unknown, task: (uri: string) => unknown, langua
   const uri = await modelFor(target, languages);
   if (uri !== undefined) {
     await task(uri.toString());
+  }
+}
+
+async function runWithOptions(server: Server, chooser: RunOptionsChooser, uri: string): Promise<void> {
+  const options = await chooser.choose(vscode.Uri.parse(uri));
+  if (options !== undefined) {
+    await server.execute("robbdd.run", { uri, ...argumentsOf(options) });
   }
 }
 

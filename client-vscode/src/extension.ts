@@ -8,6 +8,7 @@ import { ReplayView } from "./panels/replay/view";
 import { StudyView } from "./panels/study/view";
 import { PreviewView } from "./preview/view";
 import { onInterpreterChange } from "./python";
+import { RunOptionsChooser } from "./runs/chooser";
 import { RunMonitor } from "./runs/monitor";
 import { Setup } from "./setup/setup";
 import { StatusItem } from "./status";
@@ -33,7 +34,8 @@ export function activate(context: vscode.ExtensionContext): void {
   });
   const previews = new PreviewView(started);
   const graphs = new GraphView(started, context.extensionUri);
-  const tests = new TestingView(started, runs);
+  const chooser = new RunOptionsChooser(context.workspaceState);
+  const tests = new TestingView(started, runs, chooser);
   const replays = new ReplayView(started, context.extensionUri);
   const studies = new StudyView(started, replays, context.extensionUri);
   server = started;
@@ -47,7 +49,7 @@ export function activate(context: vscode.ExtensionContext): void {
     studies,
     tests,
     noticeModels(),
-    ...registerCommands(started, runs, { previews, graphs, replays, studies, tests }, log),
+    ...registerCommands(started, runs, chooser, { previews, graphs, replays, studies, tests }, log),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("robbdd.server")) {
         void started.restartIfMoved();

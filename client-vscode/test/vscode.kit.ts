@@ -123,6 +123,12 @@ class Editor {
   readonly errored: string[] = [];
   /** Tests that passed. */
   readonly passed: string[] = [];
+  /** What the user chooses from the lists that are shown, one after the other: the end of a label. Then nothing more. */
+  readonly choices: string[] = [];
+  /** What the user types into the boxes that are shown, one after the other; refused where a box refuses it. */
+  readonly typed: string[] = [];
+  /** The lists that were shown. */
+  readonly lists: (readonly { readonly label: string; readonly description?: string }[])[] = [];
   /** How many entries of runs are open in the Testing view. */
   openRuns = 0;
   readonly files = new Map<string, string>();
@@ -146,6 +152,9 @@ class Editor {
     this.problems.length = 0;
     this.errored.length = 0;
     this.passed.length = 0;
+    this.choices.length = 0;
+    this.typed.length = 0;
+    this.lists.length = 0;
     this.openRuns = 0;
   }
 
@@ -173,6 +182,9 @@ export const workspace = {
     readFile: (uri: Uri) => Promise.resolve(new TextEncoder().encode(editor.files.get(uri.toString()) ?? "")),
   },
   asRelativePath: String,
+  getWorkspaceFolder: (uri: Uri) => {
+    return workspace.workspaceFolders?.find((folder) => uri.toString().startsWith(`${folder.uri.toString()}/`));
+  },
   getConfiguration: () => ({ get: (name: string, otherwise?: unknown) => editor.settings[name] ?? otherwise }),
   createFileSystemWatcher: () => ({ ...ended, onDidCreate: quiet(), onDidChange: quiet(), onDidDelete: quiet() }),
   registerTextDocumentContentProvider: () => ended,
@@ -209,9 +221,17 @@ export const window = {
   showErrorMessage: report,
   showWarningMessage: report,
   showInformationMessage: nothing,
-  showInputBox: nothing,
+  showInputBox: ({ validateInput }: { readonly validateInput?: (text: string) => string | undefined }) => {
+    const text = editor.typed.shift();
+    const problem = text === undefined ? undefined : validateInput?.(text);
+    return problem === undefined ? Promise.resolve(text) : report(problem);
+  },
   showOpenDialog: nothing,
-  showQuickPick: nothing,
+  showQuickPick: (list: readonly { readonly label: string }[]) => {
+    editor.lists.push(list);
+    const end = editor.choices.shift();
+    return Promise.resolve(end === undefined ? undefined : list.find(({ label }) => label.endsWith(end)));
+  },
   showTextDocument: nothing,
   onDidChangeActiveTextEditor: quiet(),
   onDidChangeTextEditorSelection: quiet(),

@@ -12,8 +12,11 @@ import { Uri, editor } from "./vscode.kit";
 
 export const MODEL = Uri.parse(FILE);
 let storage = "";
+/** What the extension remembers of the workspace, as long as the test. */
+const memory = new Map<string, unknown>();
 
 afterEach(async () => {
+  memory.clear();
   await deactivate();
   rmSync(storage, { recursive: true, force: true });
 });
@@ -25,6 +28,10 @@ export function openWindow({ trusted = true }: { readonly trusted?: boolean } = 
   storage = mkdtempSync(join(tmpdir(), "robbdd-window-"));
   editor.settings = { "server.path": process.execPath };
   const context = {
+    workspaceState: {
+      get: (key: string) => memory.get(key),
+      update: (key: string, value: unknown) => Promise.resolve(void memory.set(key, value)),
+    },
     globalStorageUri: Uri.file(join(storage, "storage")),
     extension: { packageJSON: { version: "1.0" } },
     extensionUri: Uri.file("/extension"),

@@ -54,7 +54,7 @@ export class ContinuousRuns implements vscode.Disposable {
       .then(async () => {
         if (!source.token.isCancellationRequested) {
           await this.upkeep.follow(uri);
-          await this.runner.execute(entry.request, source.token, "robbdd.run", affected);
+          await this.runner.execute(entry.request, source.token, "robbdd.run", { among: affected });
         }
       })
       .finally(() => {

@@ -48,12 +48,12 @@ export class TestRunner implements vscode.Disposable {
     return fileRuns(this.controller.items, about, request.include, request.exclude ?? []);
   }
 
-  /** Run what is asked for, of the files `among` where they are named, by a command of the server. */
+  /** Run what is asked for, of the files `among` where they are named, by a command of the server with `options`. */
   async execute(
     request: vscode.TestRunRequest,
     token: vscode.CancellationToken,
     command: string,
-    among?: ReadonlySet<string>,
+    { among, options = {} }: { readonly among?: ReadonlySet<string>; readonly options?: Readonly<Record<string, unknown>> } = {},
   ): Promise<void> {
     if (!(await this.server.ready())) {
       return;
@@ -70,7 +70,7 @@ export class TestRunner implements vscode.Disposable {
       }
       for (const file of chosen) {
         if (!token.isCancellationRequested) {
-          await this.executeFile(run, file, token, command);
+          await this.executeFile(run, file, token, command, options);
         }
       }
     } finally {
@@ -99,6 +99,7 @@ export class TestRunner implements vscode.Disposable {
     { uri, only }: FileRun,
     token: vscode.CancellationToken,
     command: string,
+    options: Readonly<Record<string, unknown>>,
   ): Promise<void> {
     const cancelled = new Promise<void>((resolve) => {
       token.onCancellationRequested(() => {
@@ -119,7 +120,7 @@ export class TestRunner implements vscode.Disposable {
     const follower = new RunFollower(this.tree, sinkOf(run), titleOf(uri), now);
     this.followers.set(name, follower);
     const cancelling = token.onCancellationRequested(() => void this.server.execute("robbdd.cancel", {}));
-    const executed = this.server.execute(command, { uri, only, token: name }).then(async (answer) => {
+    const executed = this.server.execute(command, { uri, only, token: name, ...options }).then(async (answer) => {
       cancelling.dispose();
       pass();
       await follower.settled();

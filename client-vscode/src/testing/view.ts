@@ -2,7 +2,9 @@
 import * as vscode from "vscode";
 import type { Server } from "../client";
 import type { Recording } from "../panels/replay/messages";
+import type { RunOptionsChooser } from "../runs/chooser";
 import type { RunMonitor } from "../runs/monitor";
+import { argumentsOf } from "../runs/options";
 import { ContinuousRuns } from "./continuous";
 import { factory, normal } from "./display";
 import { ResultsElsewhere } from "./found";
@@ -19,11 +21,13 @@ export class TestingView implements vscode.Disposable {
   private readonly runner: TestRunner;
   private readonly continuous: ContinuousRuns;
   private readonly run: vscode.TestRunProfile;
+  private readonly withOptions: vscode.TestRunProfile;
   private readonly record: vscode.TestRunProfile;
 
   constructor(
     private readonly server: Server,
     monitor: RunMonitor,
+    private readonly chooser: RunOptionsChooser,
   ) {
     const { controller } = this;
     const outdated = (items: readonly vscode.TestItem[]) => {
@@ -43,6 +47,9 @@ export class TestingView implements vscode.Disposable {
     };
     const { Run } = vscode.TestRunProfileKind;
     this.run = controller.createRunProfile("Run", Run, (request, token) => this.start(request, token), true, undefined, true);
+    this.withOptions = controller.createRunProfile("Run with Options…", Run, (request, token) =>
+      this.startWithOptions(request, token),
+    );
     this.record = controller.createRunProfile("Run with Recording", Run, (request, token) =>
       this.runner.execute(request, token, "robbdd.record"),
     );
@@ -80,7 +87,7 @@ export class TestingView implements vscode.Disposable {
   }
 
   dispose(): void {
-    for (const part of [this.upkeep, this.runner, this.continuous, this.run, this.record, this.controller]) {
+    for (const part of [this.upkeep, this.runner, this.continuous, this.run, this.withOptions, this.record, this.controller]) {
       part.dispose();
     }
   }
@@ -97,6 +104,20 @@ export class TestingView implements vscode.Disposable {
     }
     await this.tree.expand(item);
     await this.results.restore();
+  }
+
+  private async startWithOptions(request: vscode.TestRunRequest, token: vscode.CancellationToken): Promise<void> {
+    if (!(await this.server.ready())) {
+      return;
+    }
+    if (request.include === undefined) {
+      await this.upkeep.discover();
+    }
+    const [file] = this.runner.choose(request);
+    const options = file && (await this.chooser.choose(vscode.Uri.parse(file.uri)));
+    if (options !== undefined) {
+      await this.runner.execute(request, token, "robbdd.run", { options: argumentsOf(options) });
+    }
   }
 
   private async start(request: vscode.TestRunRequest, token: vscode.CancellationToken): Promise<void> {

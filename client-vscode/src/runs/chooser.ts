@@ -1,0 +1,101 @@
+// Asks for the options of a run, and remembers them for each workspace folder.
+import * as vscode from "vscode";
+import { type Amount, type OptionName, type RunOptions, numberProblem, optionsIn, summaryOf, typedNumber, withOption, wordsOf } from "./options";
+
+const KEY = "robbdd.runOptions";
+const TITLE = "Run with Options";
+
+interface Entry extends vscode.QuickPickItem {
+  readonly action: OptionName | "run" | "reset";
+}
+
+export class RunOptionsChooser {
+  constructor(private readonly memory: vscode.Memento) {}
+
+  /** The options for a run of a model, asked for; undefined where the user gave up. They are remembered either way. */
+  async choose(model: vscode.Uri): Promise<RunOptions | undefined> {
+    const key = `${KEY}:${folderOf(model)}`;
+    let options = optionsIn(this.memory.get(key));
+    for (;;) {
+      const chosen = await vscode.window.showQuickPick(entries(options), {
+        title: TITLE,
+        placeHolder: "Enter runs; choose an option to change it",
+      });
+      if (chosen === undefined || chosen.action === "run") {
+        return chosen && options;
+      }
+      options = chosen.action === "reset" ? {} : await change(options, chosen.action);
+      await this.memory.update(key, options);
+    }
+  }
+}
+
+function folderOf(model: vscode.Uri): string {
+  return vscode.workspace.getWorkspaceFolder(model)?.uri.toString() ?? "";
+}
+
+function entries(options: RunOptions): Entry[] {
+  const summary = summaryOf(options);
+  const option = (label: string, action: OptionName): Entry => ({ label, description: wordsOf(options, action), action });
+  return [
+    { label: "$(play) Run", description: summary, action: "run" },
+    option("$(filter) Values", "where"),
+    option("$(list-filter) Scenarios", "amount"),
+    option("$(sync) Repetitions", "repeat"),
+    option("$(symbol-numeric) Seed", "seed"),
+    option("$(server-process) Processes", "jobs"),
+    ...(Object.keys(options).length === 0 ? [] : [{ label: "$(discard) Reset", description: "leave all to the model", action: "reset" } as const]),
+  ];
+}
+
+/** Ask for one option; nothing changes where the user gives up. */
+async function change(options: RunOptions, name: OptionName): Promise<RunOptions> {
+  switch (name) {
+    case "where": {
+      const prompt = "Only scenarios with such values, such as: robot=panda and target=~cube.*";
+      const typed = await vscode.window.showInputBox({ title: TITLE, prompt, value: options.where ?? "" });
+      return typed === undefined ? options : withOption(options, name, typed.trim());
+    }
+    case "amount":
+      return changeAmount(options);
+    case "repeat":
+      return changeNumber(options, name, "How often is each scenario executed?");
+    case "seed":
+      return changeNumber(options, name, "The seed of everything random; it replaces those of executions.", Number.MIN_SAFE_INTEGER);
+    case "jobs":
+      return changeNumber(options, name, "How many scenarios are executed at a time?");
+  }
+}
+
+async function changeNumber(options: RunOptions, name: "repeat" | "seed" | "jobs", prompt: string, least = 1): Promise<RunOptions> {
+  const typed = await askNumber(prompt, options[name], least);
+  return typed === undefined ? options : withOption(options, name, typedNumber(typed));
+}
+
+async function changeAmount(options: RunOptions): Promise<RunOptions> {
+  const { amount } = options;
+  const kinds: readonly (vscode.QuickPickItem & { readonly amount?: Amount })[] = [
+    { label: "All scenarios" },
+    { label: "The first …", amount: { kind: "first", number: 10 } },
+    { label: "A random sample of …", amount: { kind: "sample", number: 10 } },
+    { label: "All combinations of 2 variables", amount: { kind: "pairwise", number: 2 } },
+    { label: "All combinations of 3 variables", amount: { kind: "pairwise", number: 3 } },
+  ];
+  const chosen = await vscode.window.showQuickPick(kinds, { title: TITLE, placeHolder: "Which scenarios?" });
+  if (chosen?.amount === undefined || chosen.amount.kind === "pairwise") {
+    return chosen === undefined ? options : withOption(options, "amount", chosen.amount);
+  }
+  const { kind, number } = chosen.amount;
+  const typed = await askNumber("How many?", amount?.kind === kind ? amount.number : number, 1);
+  const typedAmount = typed === undefined ? undefined : typedNumber(typed);
+  return typedAmount === undefined ? options : withOption(options, "amount", { kind, number: typedAmount });
+}
+
+function askNumber(prompt: string, value: number | undefined, least: number): Thenable<string | undefined> {
+  return vscode.window.showInputBox({
+    title: TITLE,
+    prompt: `${prompt} Leave it empty for what the model says.`,
+    value: value === undefined ? "" : String(value),
+    validateInput: (text) => numberProblem(text, least),
+  });
+}

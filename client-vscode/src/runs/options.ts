@@ -1,0 +1,114 @@
+// How the scenarios of a run are chosen and executed: the options of `robbdd.run` that the user sets.
+import { isRecord } from "../values";
+
+export const AMOUNTS = ["first", "sample", "pairwise"] as const;
+
+/** Only some scenarios: the first, a random sample, or few that cover all combinations of 2 or 3 variables. */
+export interface Amount {
+  readonly kind: (typeof AMOUNTS)[number];
+  readonly number: number;
+}
+
+/** What is left out is as the model says; `jobs` is then the number of cores. */
+export interface RunOptions {
+  readonly where?: string;
+  readonly amount?: Amount;
+  readonly repeat?: number;
+  readonly seed?: number;
+  readonly jobs?: number;
+}
+
+export type OptionName = keyof RunOptions;
+
+/** The fields of the server's command. */
+export function argumentsOf({ amount, ...others }: RunOptions): Readonly<Record<string, unknown>> {
+  return amount === undefined ? others : { ...others, [amount.kind]: amount.number };
+}
+
+/** What is usable of remembered options, which an older version may have written. */
+export function optionsIn(remembered: unknown): RunOptions {
+  if (!isRecord(remembered)) {
+    return {};
+  }
+  const { where, amount, repeat, seed, jobs } = remembered;
+  return {
+    ...(typeof where === "string" && where !== "" ? { where } : {}),
+    ...(isAmount(amount) ? { amount } : {}),
+    ...(isCount(repeat) ? { repeat } : {}),
+    ...(Number.isSafeInteger(seed) ? { seed: seed as number } : {}),
+    ...(isCount(jobs) ? { jobs } : {}),
+  };
+}
+
+/** Options with one of them replaced, or left to the model. */
+export function withOption<Name extends OptionName>(
+  options: RunOptions,
+  name: Name,
+  value: RunOptions[Name] | undefined,
+): RunOptions {
+  return optionsIn({ ...options, [name]: value });
+}
+
+/** An option in words, as it is set or left out. */
+export function wordsOf(options: RunOptions, name: OptionName): string {
+  const { where, amount, repeat, seed, jobs } = options;
+  switch (name) {
+    case "where":
+      return where ?? "any values";
+    case "amount":
+      return amount === undefined ? "all scenarios" : amountWords(amount);
+    case "repeat":
+      return repeat === undefined ? "as the model says, else once" : `${repeat} ${repeat === 1 ? "execution" : "executions"} each`;
+    case "seed":
+      return seed === undefined ? "as the model says, else 1" : String(seed);
+    case "jobs":
+      return jobs === undefined ? "as many as there are cores" : String(jobs);
+  }
+}
+
+/** All options that are set, in one line. */
+export function summaryOf(options: RunOptions): string {
+  const { where, amount, repeat, seed, jobs } = options;
+  const parts = [
+    ...(where === undefined ? [] : [`where ${where}`]),
+    ...(amount === undefined ? [] : [amountWords(amount)]),
+    ...(repeat === undefined ? [] : [wordsOf(options, "repeat")]),
+    ...(seed === undefined ? [] : [`seed ${seed}`]),
+    ...(jobs === undefined ? [] : [`${jobs} at a time`]),
+  ];
+  return parts.length === 0 ? "everything as the model says" : parts.join(", ");
+}
+
+/** What is wrong with a typed number; undefined for a usable one and for nothing, which leaves it to the model. */
+export function numberProblem(text: string, least = 1): string | undefined {
+  const number = Number(text);
+  const isUsable = text.trim() === "" || (Number.isSafeInteger(number) && number >= least);
+  return isUsable ? undefined : `A whole number${least === 1 ? " above 0" : ""}, or nothing.`;
+}
+
+/** A typed number that `numberProblem` accepts. */
+export function typedNumber(text: string): number | undefined {
+  return text.trim() === "" ? undefined : Number(text);
+}
+
+function amountWords({ kind, number }: Amount): string {
+  switch (kind) {
+    case "first":
+      return `the first ${number}`;
+    case "sample":
+      return `a random sample of ${number}`;
+    case "pairwise":
+      return `all combinations of ${number} variables`;
+  }
+}
+
+function isCount(value: unknown): value is number {
+  return Number.isSafeInteger(value) && (value as number) > 0;
+}
+
+function isAmount(value: unknown): value is Amount {
+  if (!isRecord(value) || !AMOUNTS.some((kind) => kind === value["kind"]) || !isCount(value["number"])) {
+    return false;
+  }
+  return value["kind"] !== "pairwise" || value["number"] === 2 || value["number"] === 3;
+}

@@ -1,0 +1,89 @@
+// Run with Options…: what the user sets reaches the server, and is there again the next time.
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import { argumentsOf, numberProblem, optionsIn, summaryOf, typedNumber, withOption } from "../src/runs/options";
+import { LanguageClient } from "./languageclient.kit";
+import { CancellationTokenSource, Uri, editor, workspace } from "./vscode.kit";
+import { MODEL, command, openWindow } from "./window.kit";
+
+const asked: Record<string, unknown>[] = [];
+
+beforeEach(() => {
+  asked.length = 0;
+});
+
+function open(): void {
+  openWindow();
+  workspace.workspaceFolders = ["file:///cell", "file:///other"].map((uri) => ({ uri: Uri.parse(uri) }));
+  LanguageClient.answers.set("workspace/executeCommand", ({ arguments: [{ token, ...target }] }: { arguments: [Record<string, unknown>] }) => {
+    assert.equal(typeof token, "string");
+    asked.push(target);
+    return {};
+  });
+}
+
+/** What the first entry of the list says that was shown `back` lists ago. */
+const offered = (back = 1) => editor.lists.at(-back)?.[0]?.description;
+
+async function run(target: Uri, choices: readonly string[], typed: readonly string[] = []): Promise<void> {
+  editor.choices.push(...choices);
+  editor.typed.push(...typed);
+  await command("robbdd.runWithOptions", target);
+}
+
+test("options are sent as they are set, and remembered for their workspace folder", async () => {
+  open();
+  await run(MODEL, ["Repetitions", "Seed", "Values", "Run"], ["3", "-4", "robot=panda"]);
+  const options = { repeat: 3, seed: -4, where: "robot=panda" };
+  assert.deepEqual(asked, [{ uri: MODEL.toString(), ...options }]);
+  await run(MODEL, ["Run"]);
+  assert.equal(offered(), "where robot=panda, 3 executions each, seed -4");
+  assert.deepEqual(asked[1], asked[0]);
+  const other = Uri.parse("file:///other/m.bdd");
+  await run(other, ["Run"]);
+  assert.deepEqual(asked[2], { uri: other.toString() });
+  await run(MODEL, ["Reset", "Run"]);
+  assert.deepEqual(asked[3], { uri: MODEL.toString() });
+});
+
+test("only one of the amounts is sent", async () => {
+  open();
+  await run(MODEL, ["Scenarios", "The first …", "Run"], ["5"]);
+  await run(MODEL, ["Scenarios", "All combinations of 2 variables", "Run"]);
+  await run(MODEL, ["Scenarios", "All scenarios", "Run"]);
+  const uri = MODEL.toString();
+  assert.deepEqual(asked, [{ uri, first: 5 }, { uri, pairwise: 2 }, { uri }]);
+});
+
+test("a user who gives up runs nothing, and what was refused or given up changes nothing", async () => {
+  open();
+  await run(MODEL, ["Repetitions", "Processes"], ["0"]);
+  assert.deepEqual(editor.problems, ["A whole number above 0, or nothing."]);
+  assert.deepEqual(asked, []);
+  await run(MODEL, ["Run"]);
+  assert.deepEqual(asked, [{ uri: MODEL.toString() }]);
+});
+
+test("the Testing view runs what is chosen there with options", async () => {
+  open();
+  await editor.controller.resolveHandler(undefined);
+  editor.choices.push("Processes", "Run");
+  editor.typed.push("2");
+  await editor.profiles.get("Run with Options…")?.({}, new CancellationTokenSource().token);
+  assert.deepEqual(asked, [{ uri: MODEL.toString(), only: [{ variant: "t:fetch" }, { variant: "t:sort" }], jobs: 2 }]);
+});
+
+test("what is remembered is used as far as it is usable", () => {
+  assert.deepEqual(optionsIn(undefined), {});
+  assert.deepEqual(optionsIn({ repeat: 0, jobs: "2", seed: 1.5, where: "", amount: { kind: "pairwise", number: 4 } }), {});
+  assert.deepEqual(argumentsOf(optionsIn({ seed: 0, amount: { kind: "sample", number: 7 } })), { seed: 0, sample: 7 });
+  assert.deepEqual(withOption({ seed: 1, repeat: 2 }, "repeat", undefined), { seed: 1 });
+  assert.equal(summaryOf({}), "everything as the model says");
+});
+
+test("a number is typed whole, in its range, or left out", () => {
+  assert.equal(numberProblem("0"), "A whole number above 0, or nothing.");
+  assert.equal(numberProblem("two", Number.MIN_SAFE_INTEGER), "A whole number, or nothing.");
+  assert.deepEqual(["", " ", "12"].map((text) => numberProblem(text)), [undefined, undefined, undefined]);
+  assert.deepEqual([typedNumber(" "), typedNumber("12")], [undefined, 12]);
+});
