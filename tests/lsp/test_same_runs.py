@@ -30,7 +30,12 @@ def compared(run: robbdd.PastRun) -> list[object]:
     ],
 )
 async def test_editor_and_command_line_get_the_same_results(
-    editor: Editor, model: str, options: dict[str, Any], arguments: list[str]
+    editor: Editor,
+    run_messages: list[Any],
+    capsys: pytest.CaptureFixture[str],
+    model: str,
+    options: dict[str, Any],
+    arguments: list[str],
 ) -> None:
     path = editor.path.with_name(model)
     if "only" in options:
@@ -40,6 +45,10 @@ async def test_editor_and_command_line_get_the_same_results(
     answer = plain(await editor.client.workspace_execute_command_async(params))
     given = [f"--{name}={value}" for name, value in options.items() if name != "only"]
     main(["run", str(path), *arguments, *given])
+    log = [entry.message.text for entry in run_messages if entry.message.type == "LogLine"]
+    coverage = [text for text in log if text.endswith("combinations")]
+    assert len(coverage) == ("pairwise" in options)
+    assert all(line in capsys.readouterr().err for line in coverage)
     by_editor, by_command_line = robbdd.runs(path)
     assert by_editor.number == answer["stored"]["run"]
     assert compared(by_editor) == compared(by_command_line)

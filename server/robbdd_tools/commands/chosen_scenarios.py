@@ -30,5 +30,4 @@ def selection(model: AcceptanceModel, variants: Sequence[Variant], wanted: Wante
 def print_coverage(covers: Iterable[Coverage]) -> None:
     """Print how many of the combinations of values each covering array covers."""
     for cover in covers:
-        scenarios = f"{cover.scenarios} scenario{'' if cover.scenarios == 1 else 's'}"
-        print_note(f"{cover.variant}: {scenarios} with {cover.covered} of {cover.possible} combinations")
+        print_note(str(cover))

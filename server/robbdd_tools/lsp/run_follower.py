@@ -15,8 +15,10 @@ from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import (
     NO_STEP,
     ClauseJudged,
+    LogLine,
     RunFinished,
     RunMessage,
+    RunStarted,
     ScenarioFinished,
     ScenarioStarted,
     UserCodeFailed,
@@ -109,6 +111,9 @@ class RunFollower:
                 pass
         params = for_client(self._active.id, self._text, self._results, message, cancelled=open_after_cancel)
         self._ls.protocol.notify(RUN_MESSAGE, params)
+        if isinstance(message, RunStarted):
+            for note in self._text.notes:
+                self._take(LogLine("info", note))
 
     def _scenario(self, index: int) -> JudgedScenario:
         known = self._active.judged.get(index)

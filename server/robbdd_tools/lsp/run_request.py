@@ -26,7 +26,7 @@ class RunText:
     """The text of a run when it was planned: the places and digests of its declarations.
 
     ``variants`` and ``executions`` are the IRIs of all that the model has. ``seed`` is the one that the user gave this
-    run or, where failures are executed again, that of theirs; ``None`` without one.
+    run or, where failures are executed again, that of theirs; ``None`` without one. ``notes`` are shown when it starts.
     """
 
     uri: str
@@ -35,6 +35,7 @@ class RunText:
     variants: frozenset[str]
     executions: frozenset[str]
     seed: int | None
+    notes: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,5 +71,6 @@ def plan_run(
         frozenset(str(variant.iri) for story in model.stories for variant in story.variants),
         frozenset(str(execution.iri) for execution in model.executions),
         selection.seed,
+        tuple(map(str, plan.covers)),
     )
     return PlannedRun(plan, repeat, text)

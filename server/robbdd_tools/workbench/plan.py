@@ -121,6 +121,10 @@ class Coverage:
     covered: int
     possible: int
 
+    def __str__(self) -> str:
+        scenarios = f"{self.scenarios} scenario{'' if self.scenarios == 1 else 's'}"
+        return f"{self.variant}: {scenarios} with {self.covered} of {self.possible} combinations"
+
 
 @dataclass(frozen=True)
 class Plan:
