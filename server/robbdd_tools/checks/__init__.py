@@ -18,6 +18,7 @@ from robbdd_tools.checks.distribution import distribution
 from robbdd_tools.checks.duplicate_iri import duplicate_iri
 from robbdd_tools.checks.empty_duration import empty_duration
 from robbdd_tools.checks.empty_set import empty_set
+from robbdd_tools.checks.execution_fit import execution_fit
 from robbdd_tools.checks.foreign_variable import foreign_variable
 from robbdd_tools.checks.many_scenarios import many_scenarios
 from robbdd_tools.checks.memo import findings_in
@@ -27,14 +28,19 @@ from robbdd_tools.checks.namespace_iri import namespace_iri
 from robbdd_tools.checks.no_emitter import no_emitter
 from robbdd_tools.checks.no_evaluator import no_evaluator
 from robbdd_tools.checks.no_model import no_model
+from robbdd_tools.checks.no_room import no_room
 from robbdd_tools.checks.no_scenario import no_scenario
 from robbdd_tools.checks.not_in_scene import not_in_scene
+from robbdd_tools.checks.not_simulated import not_simulated
+from robbdd_tools.checks.number_range import number_range
 from robbdd_tools.checks.pose import pose
 from robbdd_tools.checks.published_form import published_form
+from robbdd_tools.checks.python_source import python_source
 from robbdd_tools.checks.repeated_value import repeated_value
 from robbdd_tools.checks.row_width import row_width
 from robbdd_tools.checks.selection_size import selection_size
 from robbdd_tools.checks.setting import setting
+from robbdd_tools.checks.single_element import single_element
 from robbdd_tools.checks.type_conflict import type_conflict
 from robbdd_tools.checks.unused_event import unused_event
 from robbdd_tools.checks.unused_import import unused_import
@@ -56,11 +62,13 @@ DECLARATION_RULES = (
     missing_value,
     no_emitter,
     not_in_scene,
+    number_range,
     pose,
     repeated_value,
     row_width,
     selection_size,
     setting,
+    single_element,
     type_conflict,
 )
 FILE_RULES = (
@@ -69,12 +77,16 @@ FILE_RULES = (
     cyclic_import,
     catalog_models,
     duplicate_iri,
+    execution_fit,
     model_file,
     namespace_iri,
     no_evaluator,
     no_model,
+    no_room,
     no_scenario,
+    not_simulated,
     published_form,
+    python_source,
     unused_event,
     unused_import,
     unused_set,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit, Fix, Severity
 from robbdd_tools.catalog.executable import Law, law_fault, spherical
-from robbdd_tools.checks.finding import change, finding
+from robbdd_tools.checks.finding import change, finding, written_text
 from robbdd_tools.graph.write.rotations import numbers_of
 from robbdd_tools.syntax import tree
 
@@ -62,17 +62,14 @@ def _ordered(site: Site, law: tree.Uniform) -> tuple[Fix, ...]:
     swaps: list[Edit] = []
     for low, high in zip(_parts(law.lower), _parts(law.upper), strict=True):
         if low.value > high.value:
-            swaps += (Edit(site.uri, site.span(old), _written(site, new)) for old, new in ((low, high), (high, low)))
+            swaps += (
+                Edit(site.uri, site.span(old), written_text(site, new)) for old, new in ((low, high), (high, low))
+            )
     return (Fix("Swap the bounds that are the wrong way round", tuple(swaps)),) if swaps else ()
 
 
 def _parts(value: tree.Vector | tree.Number) -> list[tree.Number]:
     return [value] if isinstance(value, tree.Number) else [part for inner in value.values for part in _parts(inner)]
-
-
-def _written(site: Site, node: tree.Node) -> str:
-    span = site.span(node)
-    return site.file.document.text[span.start : span.end]
 
 
 def drawn(law: tree.Uniform | tree.UniformRotation | tree.Normal) -> int:

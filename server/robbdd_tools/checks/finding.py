@@ -30,6 +30,12 @@ def finding(
     return Diagnostic(site.uri, site.span(node), severity, code, message, related, fixes)
 
 
+def written_text(site: Site, node: Node) -> str:
+    """Return the text of a node of a declaration."""
+    span = site.span(node)
+    return site.file.document.text[span.start : span.end]
+
+
 def related_to(site: Site, node: Node, message: str) -> Related:
     """Return a node of a declaration as the other place of a diagnostic."""
     return Related(site.uri, site.span(node), message)

@@ -35,6 +35,9 @@ _RULED = (
     tree.Distribution,
     tree.KinematicTree,
     tree.SceneInstance,
+    tree.Provider,
+    tree.Policy,
+    tree.Execution,
 )
 """Declarations that rules look at."""
 _TRANSPARENT = (tree.Scene, tree.Composition, tree.ConstantSet)

@@ -64,7 +64,7 @@ def gaps_of(scene: Site) -> list[Gap]:
     found: dict[Span, list[Element]] = {}
     for element in unfit:
         if element.key not in modelled:
-            found.setdefault(_place(scene, element), []).append(element)
+            found.setdefault(place_of(scene, element), []).append(element)
     return [Gap(scene, span, tuple(found[span])) for span in sorted(found)]
 
 
@@ -114,7 +114,7 @@ def _modelled(instance: Site) -> frozenset[Key]:
     return frozenset(found)
 
 
-def _place(scene: Site, element: Element) -> Span:
+def place_of(scene: Site, element: Element) -> Span:
     """Return the name of an element in the scene's file, else the entry of the scene that brings it."""
     root = scene.tree
     assert isinstance(root, tree.Scene)

@@ -1,4 +1,4 @@
-"""``setting``: ``has config`` names a configuration that the catalog does not have, or a value that it cannot be.
+"""``setting``: ``has config`` names an unknown configuration, a value that it cannot be, or an element without it.
 
 A warning: other programs that execute a model may know other configurations; ours refuses to run with it.
 """
@@ -10,8 +10,10 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.catalog.object_settings import agent_has, object_has
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS, Setting, SettingError, setting_of
-from robbdd_tools.checks.finding import change, finding, related_to
+from robbdd_tools.checks.finding import article, change, finding, related_to
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.types import Written, variable_key, written_elements
 from robbdd_tools.names.uses import Clauses, clauses_of
@@ -20,9 +22,12 @@ from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic, Fix
-    from robbdd_tools.names.elements import Site
+    from robbdd_tools.catalog.api import ObjectModel
+    from robbdd_tools.names.elements import Element, Site
 
 CODE = "setting"
+_SHARED = frozenset({"position_range", "seed"})
+"""Configurations of agents and objects alike."""
 LEAST_ALIKE = 0.6
 """Share of common letters from which a name is a suggestion."""
 
@@ -35,6 +40,7 @@ def setting(site: Site) -> Iterator[Diagnostic]:
                 yield _unknown(site, use.name)
     for scenario in scenarios(site):
         yield from _misfits(scenario)
+        yield from _wrong_targets(scenario)
 
 
 class _Use:
@@ -42,10 +48,11 @@ class _Use:
 
     def __init__(self, phrase: tree.PhraseUse) -> None:
         slots = dict(phrase.arguments)
-        name, value = slots["name"], slots["value"]
+        name, value, target = slots["name"], slots["value"], slots["target"]
         assert isinstance(name, tree.Name)
         assert isinstance(value, tree.Ref)
-        self.name, self.value = name, value
+        assert isinstance(target, tree.Ref)
+        self.name, self.value, self.target = name, value, target
 
 
 def _uses(clauses: Clauses) -> Iterator[_Use]:
@@ -63,14 +70,10 @@ def _unknown(site: Site, name: tree.Name) -> Diagnostic:
 def _misfits(scenario: Scenario) -> Iterator[Diagnostic]:
     """Yield the values of a variation that the configurations which they are given to cannot have."""
     given: dict[str, tuple[Site, tree.Name]] = {}
-    outer = scenario.outer
-    for site, clauses in ((scenario.site, scenario.clauses), (scenario.template, outer)):
-        if site is None or clauses is None:
-            continue
-        for use in _uses(clauses):
-            variable = site.target(use.value)
-            if variable is not None and use.name.text in SETTINGS:
-                given.setdefault(variable_key(variable), (site, use.name))
+    for site, use in _known_uses(scenario):
+        variable = site.target(use.value)
+        if variable is not None:
+            given.setdefault(variable_key(variable), (site, use.name))
     for column in scenario.columns:
         known = None if column.variable is None else given.get(variable_key(column.variable))
         if known is None or column.variable is None:
@@ -84,6 +87,55 @@ def _misfits(scenario: Scenario) -> Iterator[Diagnostic]:
                     related = (related_to(*known, "the configuration"),)
                     fixes = _within_bounds(scenario.site, node, setting_of(known[1].text))
                     yield finding(scenario.site, node, Severity.WARNING, CODE, str(error), related, fixes)
+
+
+def _known_uses(scenario: Scenario) -> Iterator[tuple[Site, _Use]]:
+    """Yield the configurations of the catalog that the clauses of a scenario name, its own and its template's."""
+    for site, clauses in ((scenario.site, scenario.clauses), (scenario.template, scenario.outer)):
+        if site is not None and clauses is not None:
+            yield from ((site, use) for use in _uses(clauses) if use.name.text in SETTINGS)
+
+
+def _wrong_targets(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Yield the elements that a variation gives to a target and that do not have the configuration."""
+    targets: dict[str, list[tuple[Site, tree.Name]]] = {}
+    for site, use in _known_uses(scenario):
+        variable = site.target(use.target)
+        if variable is not None:
+            targets.setdefault(variable_key(variable), []).append((site, use.name))
+    for column in scenario.columns if targets else ():
+        for site, name in targets.get(variable_key(column.variable), ()) if column.variable is not None else ():
+            for written in column.written:
+                for node, element in written_elements(scenario.site, written):
+                    if not _has(element, name.text):
+                        what = f"'{element.name}' ({_kind(element)}) has no {name.text}"
+                        message = f"{what}: that is of {setting_of(name.text).target}"
+                        related = (related_to(site, name, "the configuration"),)
+                        yield finding(scenario.site, node, Severity.WARNING, CODE, message, related)
+
+
+def _model(element: Element) -> ObjectModel | None:
+    *sets, own = element.name.split(".")
+    return load_catalog().object_for(own, sets) if element.kind == "object" else None
+
+
+def _kind(element: Element) -> str:
+    model = _model(element)
+    return article(element.kind) if model is None else f"the model '{model.name}' of the catalog"
+
+
+def _has(element: Element, name: str) -> bool:
+    """Tell whether an element may have a configuration; a model of a ``.scenex`` is known in a run only."""
+    match element.kind:
+        case "agent":
+            return agent_has(name)
+        case "object":
+            model = _model(element)
+            return not (agent_has(name) and name not in _SHARED) if model is None else object_has(model, name)
+        case "workspace":
+            return name in _SHARED or not agent_has(name)
+        case _:
+            return True
 
 
 def _within_bounds(site: Site, node: tree.Node, setting: Setting) -> tuple[Fix, ...]:

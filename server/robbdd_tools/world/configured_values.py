@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from robbdd_tools.catalog.object_settings import is_scalable
 from robbdd_tools.catalog.settings import NORMAL, Numbers, written
 from robbdd_tools.world.belts import belt_speed, belts_of
-from robbdd_tools.world.scene_configuration import CONTROLLER, is_scalable
+from robbdd_tools.world.scene_configuration import CONTROLLER
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import SceneSpec

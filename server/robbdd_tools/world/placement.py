@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, ShapeKind, Vector
 from robbdd_tools.catalog.settings import NORMAL
+from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.pose import Pose as Pose
 from robbdd_tools.world.scene import carriers
@@ -35,8 +36,6 @@ BIN_SKEW = 0.2
 BIN_ROOM = 0.03
 """Half edge (m) of the square in a bin's middle that a hand can work in."""
 TRIES = 400
-SIDES = 4
-"""Sides of a table at which an agent has room."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,26 +202,11 @@ def bearing(base: Pose, x: float, y: float) -> float:
 
 
 def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple[str, Vector]]:
-    """Yield each object with the first standard place of its kind that nothing stands at."""
-    used: list[tuple[Vector, ObjectModel]] = []
-    for name in names:
-        model = cast.objects[name]
-        if not model.places:
-            raise SceneError(f"'{name}' has no pose: place it in the .scenex, as its model ({model.doc}) has none")
-        free = (place for place in model.places if not any(_overlapping(place, model, *one) for one in used))
-        place = next(free, None)
-        if place is None:
-            room = f"there is room for {len(model.places)} objects of the kind '{model.name}' on {where}"
-            raise SceneError(f"{room}, less where others stand; '{name}' has no place")
-        used.append((place, model))
-        yield name, place
-
-
-def _overlapping(place: Vector, model: ObjectModel, other_place: Vector, other: ObjectModel) -> bool:
-    if model.region is None or other.region is None:
-        return place == other_place
-    reach = (one + two for one, two in zip(model.region.half[:2], other.region.half[:2], strict=True))
-    return all(abs(a - b) < r for a, b, r in zip(place, other_place, reach, strict=False))
+    """Yield each object with the standard place that it stands at; raises ``SceneError`` when there is none."""
+    try:
+        yield from at_places(cast.objects, names, where)
+    except NoRoom as error:
+        raise SceneError(str(error)) from error
 
 
 def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:

@@ -8,6 +8,7 @@ from math import hypot
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel, Shape, ShapeKind, Vector
+from robbdd_tools.catalog.object_settings import object_has
 from robbdd_tools.catalog.settings import SETTINGS, Numbers, SettingError, setting_of, written
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of
@@ -62,6 +63,7 @@ def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, .
 def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) -> None:
     thing, robot = found.objects.get(element), found.agents.get(element)
     judged = {"agent": robot, "object": thing}.get(SETTINGS[config.name].judges)
+    able = thing if thing is not None and object_has(thing, config.name) else None
     match config.name:
         case "seed":
             found.seed = int(value[0])
@@ -72,16 +74,16 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
             found.agents[element] = replace(robot, **changed)
         case "position_range" if robot is not None:
             found.ranges |= dict.fromkeys(_loose(found), value) | {element: value}
-        case "position_range" if thing is not None and thing.graspable:
+        case "position_range" if able is not None:
             found.ranges[element] = value
-        case "mass" if thing is not None and thing.free:
-            found.objects[element] = replace(thing, mass=value[0])
-        case "friction" if thing is not None:
-            found.objects[element] = replace(thing, friction=value[0])
-        case "belt_speed" if thing is not None and _has_belt(thing):
-            found.objects[element] = _driven(thing, value[0])
-        case "height_scale" if thing is not None and is_scalable(thing):
-            found.objects[element] = _scaled(thing, value[0])
+        case "mass" if able is not None:
+            found.objects[element] = replace(able, mass=value[0])
+        case "friction" if able is not None:
+            found.objects[element] = replace(able, friction=value[0])
+        case "belt_speed" if able is not None:
+            found.objects[element] = _driven(able, value[0])
+        case "height_scale" if able is not None:
+            found.objects[element] = _scaled(able, value[0])
         case name if thing is None and robot is None:
             raise SceneError(f"'{config.target}', which is to have {name} = {config.value}, is not in the scene")
         case name:
@@ -91,16 +93,6 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
 def _loose(found: Configured) -> list[str]:
     """What is laid out at random and has no range of its own."""
     return [name for name in found.objects if found.objects[name].graspable and name not in found.ranges]
-
-
-def is_scalable(model: ObjectModel) -> bool:
-    """Tell whether an object is a loose container. A sphere keeps its proportions."""
-    round_ones = any(shape.kind is ShapeKind.SPHERE for shape in model.shapes)
-    return model.free and model.region is not None and not round_ones
-
-
-def _has_belt(model: ObjectModel) -> bool:
-    return any(shape.surface is not None for shape in model.shapes)
 
 
 def _driven(model: ObjectModel, speed: float) -> ObjectModel:

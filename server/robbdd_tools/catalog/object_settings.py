@@ -1,0 +1,48 @@
+"""Which configurations (``has config``) an element can have, by its kind and, of an object, by its model."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import ShapeKind
+from robbdd_tools.catalog.settings import setting_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import ObjectModel
+
+OF_AGENTS = frozenset(
+    {"approach_speed", "ee_speed", "grip_time", "position_range", "release_time", "seed", "travel_height"}
+)
+
+
+def agent_has(name: str) -> bool:
+    """Tell whether agents have a configuration of the catalog."""
+    return name in OF_AGENTS or setting_of(name).judges == "agent"
+
+
+def object_has(model: ObjectModel, name: str) -> bool:
+    """Tell whether an object of a model has a configuration of the catalog."""
+    match name:
+        case "seed" | "friction":
+            return True
+        case "position_range":
+            return model.graspable
+        case "mass":
+            return model.free
+        case "belt_speed":
+            return has_belt(model)
+        case "height_scale":
+            return is_scalable(model)
+        case _:
+            return setting_of(name).judges == "object"
+
+
+def is_scalable(model: ObjectModel) -> bool:
+    """Tell whether an object is a loose container. A sphere keeps its proportions."""
+    round_ones = any(shape.kind is ShapeKind.SPHERE for shape in model.shapes)
+    return model.free and model.region is not None and not round_ones
+
+
+def has_belt(model: ObjectModel) -> bool:
+    """Tell whether an object has a moving surface."""
+    return any(shape.surface is not None for shape in model.shapes)

@@ -1,0 +1,43 @@
+"""Where the models of the catalog stand when no executable scene places them, and how many find room."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import ObjectModel, Vector
+
+SIDES = 4
+"""Sides of a table, at each of which one agent has room."""
+
+
+class NoRoom(ValueError):
+    """An element has no place; the message says where the room ended. ``name`` is the element."""
+
+    def __init__(self, name: str, message: str) -> None:
+        super().__init__(message)
+        self.name = name
+
+
+def at_places(models: Mapping[str, ObjectModel], names: Iterable[str], where: str) -> Iterator[tuple[str, Vector]]:
+    """Yield each object with the first standard place of its kind that nothing stands at; raises ``NoRoom``."""
+    used: list[tuple[Vector, ObjectModel]] = []
+    for name in names:
+        model = models[name]
+        if not model.places:
+            raise NoRoom(name, f"'{name}' has no pose: place it in the .scenex, as its model ({model.doc}) has none")
+        free = (place for place in model.places if not any(_overlapping(place, model, *one) for one in used))
+        place = next(free, None)
+        if place is None:
+            room = f"there is room for {len(model.places)} objects of the kind '{model.name}' on {where}"
+            raise NoRoom(name, f"{room}, less where others stand; '{name}' has no place")
+        used.append((place, model))
+        yield name, place
+
+
+def _overlapping(place: Vector, model: ObjectModel, other_place: Vector, other: ObjectModel) -> bool:
+    if model.region is None or other.region is None:
+        return place == other_place
+    reach = (one + two for one, two in zip(model.region.half[:2], other.region.half[:2], strict=True))
+    return all(abs(a - b) < r for a, b, r in zip(place, other_place, reach, strict=False))

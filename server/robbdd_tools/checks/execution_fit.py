@@ -1,0 +1,90 @@
+"""``execution-fit``: parts of an execution that do not fit together, so that a run leaves clauses unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.finding import change, finding, listed, related_to
+from robbdd_tools.names.elements import Site, story_sites
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.definition import Definition
+    from robbdd_tools.names.project import Snapshot
+
+CODE = "execution-fit"
+DOES_ALL = "pick-place"
+"""The behaviour of the catalog that executes every other one, too."""
+
+
+def execution_fit(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report behaviours that the implementation does not execute, and distances that are not between two elements."""
+    for placed in file.declarations:
+        site = Site(snapshot, file, placed)
+        match site.tree:
+            case tree.Execution() as execution:
+                yield from _behaviour(site, execution)
+            case tree.Policy(rule=tree.Evaluation(evaluator=tree.LinearDistance()) as rule):
+                yield from _distance(site, rule)
+            case _:
+                pass
+
+
+def _behaviour(site: Site, execution: tree.Execution) -> Iterator[Diagnostic]:
+    implementation = site.follow(execution.behaviour)
+    if implementation is None or not isinstance(implementation.tree, tree.Implementation):
+        return
+    source = implementation.tree.source
+    if not isinstance(source, tree.CatalogEntry) or source.name.value in (DOES_ALL,):
+        return
+    executed = source.name.value
+    wanted = [word for word in _behaviours(site, execution) if word != executed]
+    if wanted and executed in load_catalog().behaviours:
+        message = f"'{executed}' of the catalog does not execute {listed(wanted)}, so that all clauses stay unknown"
+        related = (related_to(implementation, source, "the implementation"),)
+        fix = change(implementation, f"Execute it by '{DOES_ALL}'", source.name, f'"{DOES_ALL}"')
+        yield finding(site, execution.behaviour, Severity.WARNING, CODE, message, related, (fix,))
+
+
+def _behaviours(site: Site, execution: tree.Execution) -> list[str]:
+    """Return the words of the behaviours of the executed variant."""
+    variant = site.target(execution.variant)
+    template = None if variant is None else _template(site.snapshot, variant)
+    if template is None or template.tree is None:
+        return []
+    return list(dict.fromkeys(node.action.word for node in walk(template.tree) if isinstance(node, tree.BehaviourUse)))
+
+
+def _template(snapshot: Snapshot, variant: Definition) -> Site | None:
+    file = snapshot.file(variant.uri)
+    for story in story_sites(snapshot, file, variant.span) if file is not None else ():
+        for node in walk(story.tree) if story.tree is not None else ():
+            if isinstance(node, tree.Variant) and story.span(node.name) == variant.span:
+                return story.follow(node.template)
+    return None
+
+
+def _distance(site: Site, rule: tree.Evaluation) -> Iterator[Diagnostic]:
+    targets: list[tuple[Site, tree.Link]] = []
+    for ref in rule.observations:
+        observation = site.follow(ref)
+        if observation is None or not isinstance(observation.tree, tree.Observation):
+            return
+        targets += ((observation, target) for target in observation.tree.targets)
+    if len(targets) != 2:
+        message = f"a distance is between two elements, but {len(targets)} are observed"
+        related = tuple(related_to(one, target, "observed") for one, target in targets)
+        yield finding(site, rule.evaluator, Severity.WARNING, CODE, message, related)
+    for observation, target in targets:
+        variable = observation.target(target.reference)
+        if variable is not None and variable.kind is SymbolKind.SET_VARIABLE:
+            message = f"a distance is between two elements, but '{target.reference.path}' is a set"
+            related = (related_to(observation, target, "observed"),)
+            yield finding(site, rule.evaluator, Severity.WARNING, CODE, message, related)

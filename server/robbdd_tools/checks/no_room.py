@@ -1,0 +1,111 @@
+"""``no-room``: more agents or containers in a scene than find room around and on its table without a ``.scenex``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.catalog.standard_places import SIDES, NoRoom, at_places
+from robbdd_tools.checks.finding import finding
+from robbdd_tools.checks.no_model import place_of, scene_instances
+from robbdd_tools.checks.scene_use import used_elements
+from robbdd_tools.checks.template_variants import Scenario, scenarios
+from robbdd_tools.names.elements import Site, elements_of, scene_members, story_sites
+from robbdd_tools.names.types import written_elements
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.elements import Element
+    from robbdd_tools.names.project import Snapshot
+
+CODE = "no-room"
+Names = frozenset[str]
+
+
+def no_room(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report the first container of a scene without a standard place, and scenarios with too many agents."""
+    for placed in file.declarations:
+        scene = Site(snapshot, file, placed)
+        if isinstance(scene.tree, tree.Scene) and used_elements(scene) and not any(scene_instances(scene)):
+            yield from _containers(scene)
+    # Only a file that knows this many agents can have such a scenario.
+    known = (len(table.of_kind.get(SymbolKind.AGENT, ())) for table in snapshot.scope(file.document.uri).tables)
+    if sum(known) > SIDES:
+        for site in story_sites(snapshot, file):
+            yield from _too_many_agents(site)
+
+
+def _containers(scene: Site) -> Iterator[Diagnostic]:
+    catalog = load_catalog()
+    elements: dict[str, Element] = {}
+    for element in sorted(scene_members(scene) or (), key=lambda one: one.key):
+        if element.kind == "object":
+            elements.setdefault(element.name.rpartition(".")[2], element)
+    found = {name: catalog.object_for(name, one.name.split(".")[:-1]) for name, one in elements.items()}
+    models = {name: model for name, model in found.items() if model is not None}
+    tables = [name for name, model in models.items() if not model.free]
+    standing = [name for name, model in models.items() if model.free and not model.graspable]
+    # With several tables, compositions say what stands on which; a run finds out whether there is room.
+    groups = [(tables, "the room"), *([(standing, tables[0] if tables else "the table")] if len(tables) < 2 else [])]
+    for names, where in groups:
+        try:
+            list(at_places(models, names, where))
+        except NoRoom as error:
+            message = f"{error}: place the scene in a .scenex, or leave some out"
+            yield Diagnostic(scene.uri, place_of(scene, elements[error.name]), Severity.WARNING, CODE, message)
+
+
+def _too_many_agents(site: Site) -> Iterator[Diagnostic]:
+    """Report each scenario that uses more agents than there are sides of a table."""
+    for scenario in scenarios(site):
+        scene = site.follow(scenario.variant.scene)
+        if scene is None or any(scene_instances(scene)):
+            continue
+        agents = max(map(len, _agents(scenario)), default=0)
+        if agents > SIDES:
+            message = (
+                f"this scenario uses {agents} agents, but there is room for {SIDES}, one at each side of the table: "
+                "place the others in a .scenex"
+            )
+            yield finding(site, scenario.variant.scene, Severity.WARNING, CODE, message)
+
+
+def _agents(scenario: Scenario) -> Iterator[Names]:
+    """Yield sets of agents that a scenario certainly uses together; there may be further ones in each execution."""
+    site, variation = scenario.site, scenario.variant.variation
+    quantified = frozenset(chain.from_iterable(_quantified(scenario)))
+    if isinstance(variation, tree.Table):
+        for row in variation.rows:
+            cells = (written_elements(site, cell) for cell in row.cells)
+            yield quantified | _names(element for cell in cells for _, element in cell)
+        return
+    fixed = quantified
+    choices: list[Names] = [frozenset()]
+    for line in variation.assignments:
+        match line.choices:
+            case tree.SetList(sets=sets):
+                choices += [_names(element for _, element in written_elements(site, one)) for one in sets]
+            case tree.ValueList(values=(only,)):
+                fixed |= _names(element for _, element in written_elements(site, only))
+            case _:
+                pass
+    yield from (fixed | choice for choice in choices)
+
+
+def _quantified(scenario: Scenario) -> Iterator[Names]:
+    """Yield the agents of the sets that quantifiers of the clauses name."""
+    places = [(scenario.site, scenario.clauses)]
+    if scenario.template is not None and scenario.outer is not None:
+        places.append((scenario.template, scenario.outer))
+    for site, clauses in places:
+        for bound in clauses.bounds:
+            yield _names(elements_of(site.follow(bound.in_set)) or ())
+
+
+def _names(elements: Iterator[Element] | tuple[Element, ...]) -> Names:
+    return frozenset(element.name for element in elements if element.kind == "agent")

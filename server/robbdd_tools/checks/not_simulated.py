@@ -1,0 +1,49 @@
+"""``not-simulated``: a ROS action, topic or listener, which a run in simulation does not have.
+
+An information: the model may be meant for a robot. What depends on it stays unknown in simulation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, Severity
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.names.analysis import FileAnalysis
+    from robbdd_tools.names.project import Snapshot
+
+CODE = "not-simulated"
+_CATALOG = 'catalog "pick-place"'
+_GROUND_TRUTH = "simulation ground truth update-rate: 100 Hz"
+
+
+def not_simulated(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
+    """Report each of them, with the part of the simulation that takes its place as a fix."""
+    uri = file.document.uri
+    for placed in file.declarations:
+        found = _ros(placed.declaration.tree)
+        if found is None or placed.declaration.faults:
+            continue
+        node, what, effect, instead = found
+        fixes: tuple[Fix, ...] = ()
+        if instead:
+            fixes = (Fix(f"Write '{instead}' instead", (Edit(uri, node.span.shifted(placed.offset), instead),)),)
+        message = f"a simulation has no {what}: {effect}"
+        yield Diagnostic(uri, node.span.shifted(placed.offset), Severity.INFORMATION, CODE, message, fixes=fixes)
+
+
+def _ros(root: tree.ChunkTree | None) -> tuple[tree.Node, str, str, str] | None:
+    """Return what needs ROS in a declaration, its name, what follows in a simulation, and what may take its place."""
+    match root:
+        case tree.Implementation(source=tree.RosAction() as source):
+            return source, "ROS action", f"clauses stay unknown; to simulate it, write '{_CATALOG}'", _CATALOG
+        case tree.Provider(source=tree.RosTopic() | tree.Transforms() | tree.SimulatedStates() as source):
+            truth = "policies that observe by it stay unknown; write 'simulation ground truth update-rate: … Hz'"
+            return source, "ROS messages", truth, _GROUND_TRUTH
+        case tree.Policy(rule=tree.TrinaryTopic() as rule):
+            return rule, "ROS topic", "the clause stays unknown where an execution uses this policy", ""
+        case _:
+            return None

@@ -1,0 +1,119 @@
+"""``number-range``: a number that its quantity cannot have, such as a negative seed or an update rate of 0."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Edit, Fix, Severity
+from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.catalog.settings import setting_of
+from robbdd_tools.checks.finding import change, finding, written_text
+from robbdd_tools.graph.write.units import LENGTHS
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.elements import Site
+    from robbdd_tools.syntax.declaration import Declaration
+
+CODE = "number-range"
+
+
+@dataclass(frozen=True, slots=True)
+class _Quantity:
+    """What a number is of; ``above`` excludes the bound ``low`` itself, ``whole`` excludes fractions."""
+
+    words: str
+    low: float = 0.0
+    high: float = inf
+    above: bool = False
+    whole: bool = False
+
+    @property
+    def wanted(self) -> str:
+        number = "a whole number" if self.whole else "a number"
+        if self.high < inf:
+            return f"{number} from {self.low:g} to {self.high:.0f}"
+        return f"{number} {'greater than' if self.above else 'of at least'} {self.low:g}"
+
+    def allows(self, value: float) -> bool:
+        above_low = value > self.low if self.above else value >= self.low
+        return above_low and value <= self.high and not (self.whole and value % 1)
+
+
+_RATE = _Quantity("an update rate", above=True)
+_REPEAT = _Quantity("the number of repetitions", low=1.0, whole=True)
+_SEED = _Quantity("a seed", high=setting_of("seed").high, whole=True)
+_TIMEOUT = _Quantity("a timeout", above=True)
+_Measured = tuple[tree.Number | None, _Quantity]
+
+
+def number_range(site: Site) -> Iterator[Diagnostic]:
+    """Report each such number of a declaration, and the bounds of a distance that are the wrong way round."""
+    for number, quantity in _measured(site.placed.declaration):
+        text = written_text(site, number)
+        message = f"{quantity.words} cannot be {text}: write {quantity.wanted}"
+        fixes = _fixes(site, number, quantity)
+        yield finding(site, number, Severity.ERROR, CODE, message, fixes=fixes)
+    if isinstance(site.tree, tree.Policy):
+        yield from _swapped(site, site.tree)
+
+
+@kept_with_key
+def _measured(declaration: Declaration) -> tuple[tuple[tree.Number, _Quantity], ...]:
+    """Return the numbers of a declaration that their quantities cannot have."""
+    if declaration.tree is None:
+        return ()
+    return tuple(
+        (number, quantity)
+        for node in walk(declaration.tree)
+        for number, quantity in _quantities(node)
+        if number is not None and not quantity.allows(number.value)
+    )
+
+
+def _quantities(node: tree.Node) -> Iterator[_Measured]:
+    match node:
+        case tree.Policy():
+            yield node.horizon, _Quantity("a horizon")
+        case tree.GroundTruth():
+            yield from ((node.rate, _RATE), (node.noise, _Quantity("noise")), (node.latency, _Quantity("a latency")))
+        case tree.SimulatedStates() | tree.Transforms() | tree.Sensor() | tree.Camera():
+            yield node.rate, _RATE
+        case tree.LinearDistance():
+            yield node.max_time_offset, _Quantity("a time offset")
+        case tree.Distance():
+            yield node.value, _Quantity("a distance")
+        case tree.Execution():
+            yield from ((node.repeat, _REPEAT), (node.seed, _SEED), (node.timeout, _TIMEOUT))
+        case _:
+            pass
+
+
+def _fixes(site: Site, number: tree.Number, quantity: _Quantity) -> tuple[Fix, ...]:
+    """Return the fix that removes the sign, or writes 1 for the number of repetitions; others are not certain."""
+    if number.value < 0 and quantity.allows(-number.value):
+        positive = written_text(site, number).lstrip("-")
+        return (change(site, f"Change to {positive}", number, positive),)
+    return (change(site, "Change to 1", number, "1"),) if quantity is _REPEAT else ()
+
+
+def _swapped(site: Site, policy: tree.Policy) -> Iterator[Diagnostic]:
+    rule = policy.rule
+    distance = rule.evaluator if isinstance(rule, tree.Evaluation) else None
+    between = distance.condition if isinstance(distance, tree.LinearDistance) else None
+    if isinstance(between, tree.Between) and _metres(between.lower) > _metres(between.upper):
+        low, high = between.lower, between.upper
+        edits = tuple(
+            Edit(site.uri, site.span(old), written_text(site, new)) for old, new in ((low, high), (high, low))
+        )
+        message = "no distance lies between these bounds: the lower one comes first"
+        yield finding(site, low, Severity.ERROR, CODE, message, fixes=(Fix("Swap the bounds", edits),))
+
+
+def _metres(distance: tree.Distance) -> float:
+    return distance.value.value * LENGTHS[distance.unit]

@@ -1,0 +1,49 @@
+"""``single-element``: a behaviour is given a set where it needs one element; only a place may be a set."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Related, Severity
+from robbdd_tools.base.memory import kept_with_key
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.checks.finding import finding
+from robbdd_tools.syntax import tree
+from robbdd_tools.syntax.declaration import SymbolKind
+from robbdd_tools.syntax.symbols import walk
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.elements import Site
+    from robbdd_tools.syntax.declaration import Declaration
+
+CODE = "single-element"
+
+
+def single_element(site: Site) -> Iterator[Diagnostic]:
+    """Report each set variable in a slot of a behaviour of a template that takes one element."""
+    for action in _actions(site.placed.declaration):
+        behaviour = load_catalog().behaviours[action.word]
+        kinds = {slot.name: slot.kind for slot in behaviour.slots}
+        for name, ref in action.arguments:
+            if not isinstance(ref, tree.Ref) or kinds[name] is Kind.WORKSPACE:
+                continue
+            target = site.target(ref)
+            if target is None or target.kind is not SymbolKind.SET_VARIABLE:
+                continue
+            message = (
+                f"'{behaviour.name}' needs one {name}, but '{ref.path}' is a set: declare it as 'var', "
+                f"or write 'for all ( var x in <{ref.path}> ) {{ … }}' around the behaviour"
+            )
+            related = (Related(target.uri, target.span, "declared as a set"),)
+            yield finding(site, ref, Severity.WARNING, CODE, message, related)
+
+
+@kept_with_key
+def _actions(declaration: Declaration) -> tuple[tree.PhraseUse, ...]:
+    root = declaration.tree
+    if not isinstance(root, tree.Template):
+        return ()
+    return tuple(node.action for node in walk(root) if isinstance(node, tree.BehaviourUse))
