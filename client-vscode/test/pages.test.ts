@@ -23,7 +23,7 @@ function answer(): void {
   const lists = { shapes: [], meshes: [], bodies: [], workspaces: [], events: [], clauses: [] };
   const scenario = { index: 0, name: HOSTILE, values: HOSTILE, verdict: "holds", repetition: 1, trace: true };
   const folder = "file:///cell/run";
-  const counts = { holds: 1, violated: 0, unknown: 0, complete: true, problem: null };
+  const counts = { holds: 1, violated: 0, unknown: 0, complete: true, state: "finished", finished: 1, total: 1, problem: null };
   const runs = [{ run: 1, folder, path: HOSTILE, seed: 0, ...counts, scenarios: [scenario] }];
   LanguageClient.answers.set("robbdd/runs", () => ({ runs }));
   LanguageClient.answers.set("robbdd/trace", () => ({ run: 1, folder, duration: 0, scenario, frames, ...lists }));

@@ -119,11 +119,17 @@ test("a recording is read from what a link says, and from nothing else", () => {
 });
 
 test("stored runs are told with how they came out", () => {
-  const run = { run: 3, folder: "", path: "m.bdd", seed: 1, complete: true, holds: 4, violated: 1, unknown: 0, problem: null };
+  const extent = { complete: true, state: "finished", finished: 5, total: 5 } as const;
+  const run = { run: 3, folder: "", path: "m.bdd", seed: 1, ...extent, holds: 4, violated: 1, unknown: 0, problem: null };
   assert.ok(isRuns({ runs: [run] }));
-  assert.ok(!isRuns({ runs: [{ ...run, holds: "4" }] }));
+  for (const wrong of [{ holds: "4" }, { state: "lost" }, { finished: undefined }, { total: null }]) {
+    assert.ok(!isRuns({ runs: [{ ...run, ...wrong }] }), JSON.stringify(wrong));
+  }
   assert.equal(outcome(run), "4 hold, 1 violated");
-  assert.equal(outcome({ ...run, holds: 0, violated: 0, complete: false }), "nothing judged, not complete");
+  assert.equal(outcome({ ...run, state: "interrupted", total: 9 }), "4 hold, 1 violated (interrupted: 5 of 9 finished)");
+  const nothing = { ...run, holds: 0, violated: 0, finished: 0, total: 9 };
+  assert.equal(outcome({ ...nothing, state: "died" }), "nothing judged (died: 0 of 9 finished)");
+  assert.equal(outcome({ ...nothing, state: "stopped" }), "nothing judged (stopped at the first failure: 0 of 9 finished)");
 });
 
 test("an answer of another version is no trace", () => {

@@ -7,12 +7,18 @@ export interface StoredScenario extends Scenario {
   readonly trace: boolean;
 }
 
+const STATES = ["running", "finished", "stopped", "interrupted", "failed", "died"] as const;
+
 export interface StoredRun {
   readonly run: number;
   readonly folder: string;
   readonly path: string;
   readonly seed: number;
   readonly complete: boolean;
+  readonly state: (typeof STATES)[number];
+  /** How many of `total` scenarios came to their end. */
+  readonly finished: number;
+  readonly total: number;
   readonly holds: number;
   readonly violated: number;
   readonly unknown: number;
@@ -26,10 +32,12 @@ export function isRuns(value: unknown): value is { readonly runs: readonly Store
   return isRecord(value) && Array.isArray(value["runs"]) && value["runs"].every(isRun);
 }
 
-/** How the scenarios of a run came out, in words. */
-export function outcome({ holds, violated, unknown, complete }: StoredRun): string {
-  const parts = [`${holds} hold`, `${violated} violated`, `${unknown} unknown`];
-  return `${parts.filter((part) => !part.startsWith("0 ")).join(", ") || "nothing judged"}${complete ? "" : ", not complete"}`;
+/** How the scenarios of a run came out, and how far a run is that did not finish all of them. */
+export function outcome({ holds, violated, unknown, state, finished, total }: StoredRun): string {
+  const parts = [`${holds} hold`, `${violated} violated`, `${unknown} unknown`].filter((part) => !part.startsWith("0 "));
+  const counts = parts.join(", ") || "nothing judged";
+  const extent = `${finished} of ${total} finished`;
+  return state === "finished" ? counts : `${counts} (${state === "stopped" ? "stopped at the first failure" : state}: ${extent})`;
 }
 
 function isRun(value: unknown): boolean {
@@ -37,7 +45,8 @@ function isRun(value: unknown): boolean {
     isRecord(value) &&
     typeof value["run"] === "number" &&
     typeof value["path"] === "string" &&
-    ["holds", "violated", "unknown"].every((name) => typeof value[name] === "number") &&
+    STATES.some((state) => state === value["state"]) &&
+    ["holds", "violated", "unknown", "finished", "total"].every((name) => typeof value[name] === "number") &&
     (value["problem"] === null || typeof value["problem"] === "string")
   );
 }
