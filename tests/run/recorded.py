@@ -8,6 +8,7 @@ from contextlib import closing
 from pathlib import Path
 
 from robbdd_tools.catalog.coordination import TreeSpec
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
     ClauseStarted,
@@ -41,7 +42,9 @@ def execution(index: int, verdict: str = "holds") -> Iterator[RunMessage]:
     yield ClauseJudged(index, 5, "holds", 0.1 + index / 3, "m", 1.25, "", 2.5)
     yield ClauseJudged(index, 6, verdict, margin, "", None, "why", None, "vacuous", "fault")
     yield MarginRanges(index, 5, ((0.1, 0.1 + index / 7),))
-    yield ScenarioFinished(index, 4.25, 1.5, 0.5, index)
+    yield ScenarioFinished(
+        index, 4.25, 1.5, 0.5, index, (Contact("e:arm", "", "e:shelf", 1.5, 12.0, 1.6, 0.25),) * index
+    )
 
 
 def rows(database: Path, number: int) -> list[object]:

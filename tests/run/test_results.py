@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import pytest
 
 from kit import schema_errors
 from robbdd_tools.commands.progress import Display
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import ClauseJudged, RunFinished, ScenarioFinished
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
@@ -65,9 +68,27 @@ def test_a_run_tells_how_many_places_were_drawn_again(
     assert capsys.readouterr().out.rstrip().endswith(words)
 
 
+TOUCHED = Contact("e:arm", "", "e:shelf", 3.216, 42.3, 3.232, 1.254)
+
+
+def test_contacts_that_no_clause_names_are_in_the_results_and_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    found = results("holds", "holds")
+    carried = Contact("e:arm", "e:cup", "scenery0/wall", 4.0, 8.0, 4.0, 0.1)
+    itself = Contact("e:arm", "", "e:arm", 5.0, 8.0, 5.0, 0.1)
+    message = ScenarioFinished(0, 9.0, 1.0, 0.5, contacts=(TOUCHED, carried, *[itself] * 5))
+    found.apply(message)
+    assert found.as_json()["scenarios"][0]["contacts"][0] == asdict(TOUCHED)
+    Display(found).show(message)
+    shown = [line for line in capsys.readouterr().out.splitlines() if "contact" in line]
+    assert shown[0] == "  contact: arm touches shelf at 3.22 s: at most 42.3 N at 3.23 s, 1.25 N s"
+    assert shown[1].startswith("  contact: cup, held by arm, touches scenery0/wall at 4.00 s")
+    assert shown[2].startswith("  contact: arm touches itself at 5.00 s")
+    assert shown[5:] == ["  … 2 more contacts in the results of the run"]
+
+
 def test_results_follow_their_documented_schema() -> None:
     found = results("holds", "violated")
-    found.apply(ScenarioFinished(0, 9.0, 1.0, 0.5))
+    found.apply(ScenarioFinished(0, 9.0, 1.0, 0.5, contacts=(TOUCHED,)))
     found.apply(RunFinished(True))
     for document in (found.as_json(), results().as_json()):
         assert schema_errors("run.schema.json", document) == []

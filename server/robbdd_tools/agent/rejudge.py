@@ -21,6 +21,8 @@ from robbdd_tools.judging.decisions import decide
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import fluents_of, read_event
 from robbdd_tools.judging.scenario_clauses import stated_clause, stated_iteration
+from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.time import never_occurred, occurrences
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.protocol.manifest_file import STORED_RESULTS, read_manifest
@@ -89,6 +91,18 @@ class StoredTraces:
             if found is not None:
                 yield found
 
+    def contacts(self, spec: ScenarioSpec) -> tuple[Contact, ...]:
+        """Return the contacts in the trace of a scenario that its clauses do not name."""
+        index, stored = self._specs.get(scenario_key(spec), (0, None))
+        if stored is None:
+            return ()
+        try:
+            evidence = read_trace(trace_file(self._folder, index))
+        except UnreadableTrace:
+            return ()
+        clauses = [stated_clause(clause.sentence, clause, spec) for clause in spec.clauses if clause.role != "when"]
+        return unnamed_contacts(clauses, evidence.trace, evidence.regions)
+
     def _done(self, clause: ClauseSpec, evidence: Evidence, index: int, spec: ScenarioSpec) -> Verdict:
         """Return the verdict on a When clause: an event of the trace, or what the run said of the behaviour."""
         event = read_event(clause.sentence)
@@ -146,7 +160,7 @@ def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
             yield judged(index, clause.line, verdict)
         yield from traces.ranges(index, spec)
         finish_output()
-        yield ScenarioFinished(index, traces.duration(spec), 0.0, 0.0)
+        yield ScenarioFinished(index, traces.duration(spec), 0.0, 0.0, contacts=traces.contacts(spec))
     yield RunFinished(True)
 
 

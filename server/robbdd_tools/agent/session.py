@@ -18,6 +18,7 @@ from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_c
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import Fluent, Unmatched, read_clause, read_doing, read_event
 from robbdd_tools.judging.scenario_clauses import stated_clause, stated_iteration
+from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.time import never_occurred
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
 from robbdd_tools.protocol.messages import (
@@ -41,6 +42,7 @@ from robbdd_tools.world.viewer import NoViewer, Viewer
 
 if TYPE_CHECKING:
     from robbdd_tools.agent.channel import Channel
+    from robbdd_tools.monitor.contact import Contact
     from robbdd_tools.monitor.curve import Curve
     from robbdd_tools.monitor.trace import Trace
     from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
@@ -193,7 +195,12 @@ class ScenarioRun:
         resampled = execution.simulation.world.resampled if execution is not None else 0
         wall = perf_counter() - self._began
         finish_output()
-        self._channel.send(ScenarioFinished(self._index, round(simulated, 6), wall, stepping, resampled))
+        contacts = () if execution is None else self._contacts(execution)
+        self._channel.send(ScenarioFinished(self._index, round(simulated, 6), wall, stepping, resampled, contacts))
+
+    def _contacts(self, execution: Execution) -> tuple[Contact, ...]:
+        trace = execution.complete(execution.trace)
+        return unnamed_contacts(self._clauses.values(), trace, execution.regions)
 
     def _tell_ranges(self, execution: Execution) -> None:
         """Tell how far the margins varied in all that happened, for clauses that could not have failed."""

@@ -31,7 +31,7 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
     UserCodeFailed,
 )
-from robbdd_tools.run.report import SIGNS, margin, plain_sentence, values_words
+from robbdd_tools.run.report import SIGNS, contact_words, margin, plain_sentence, values_words
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -47,6 +47,8 @@ NARROWEST = 10
 """Columns that a sentence has at least, however narrow the terminal."""
 MOST_PRINTED = 100
 """Lines of what users' code prints in one scenario that are shown."""
+MOST_CONTACTS = 5
+"""Contacts of one scenario that are shown."""
 INDENT = (0, 0, 0, 6)
 """What a reason has around it: it is set in below its clauses."""
 STYLES = {Outcome.HOLDS: "green", Outcome.VIOLATED: "bold red", Outcome.UNKNOWN: "yellow"}
@@ -203,6 +205,12 @@ class Display:
                 words = judged.reason if number is None else f"no evidence, because of error {number}"
                 reason = plain(words, STYLES[Outcome(judged.verdict)])
                 self._console.print(Padding(reason, INDENT) if self._drawn else Text("      ").append(reason))
+        contacts = () if scenario.finished is None else scenario.finished.contacts
+        for contact in contacts[:MOST_CONTACTS]:
+            self._console.print(plain(f"  contact: {contact_words(contact)}", STYLES[Outcome.UNKNOWN]))
+        if len(contacts) > MOST_CONTACTS:
+            more = _counted(len(contacts) - MOST_CONTACTS, "more contact")
+            self._console.print(plain(f"  … {more} in the results of the run", STYLES[Outcome.UNKNOWN]))
 
 
 class _Counts(ProgressColumn):

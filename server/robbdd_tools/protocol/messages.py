@@ -10,6 +10,7 @@ import json
 from dataclasses import asdict, dataclass
 
 from robbdd_tools.base.plain import finite, from_plain
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.verdict import Outcome, Verdict
 
@@ -87,6 +88,7 @@ class ScenarioFinished:
     """All clauses of scenario ``index`` are judged; times in seconds (simulated, wall, wall inside mj_step).
 
     ``resampled`` counts the random places that were drawn again because they overlapped or were out of reach.
+    ``contacts`` are those of agents with what no clause names as a target, what they grip and what this stands on.
     """
 
     index: int
@@ -94,6 +96,7 @@ class ScenarioFinished:
     wall: float
     stepping: float
     resampled: int = 0
+    contacts: tuple[Contact, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -86,6 +86,8 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
             PRIMARY KEY (execution, position)
         ) WITHOUT ROWID""",
     ),
+    # contacts is a JSON list of what agents touched that no clause names.
+    ("ALTER TABLE execution ADD COLUMN contacts TEXT NOT NULL DEFAULT '[]'",),
 )
 """Statements that lead from each version of the schema to the next; ``PRAGMA user_version`` counts them."""
 

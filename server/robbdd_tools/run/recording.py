@@ -10,7 +10,7 @@ import platform
 import sqlite3
 from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -181,6 +181,7 @@ class Recording:
             "verdict": str(ScenarioResult(spec, judged).verdict),
             "simulated": finished.simulated,
             "resampled": finished.resampled,
+            "contacts": json.dumps([asdict(one) for one in finished.contacts]),
             "wall": finished.wall,
             "stepping": finished.stepping,
             "host": platform.node(),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import cast
 
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import ClauseJudged
 from robbdd_tools.protocol.specs import ScenarioSpec
@@ -17,6 +18,15 @@ def plain_sentence(sentence: str) -> str:
     """Return a step's sentence for reading: names without prefix and quotes, ``event`` left out."""
     without_event = sentence.replace('event "', '"')
     return re.sub(r'"([^"]*)"', lambda match: re.sub(r"'?[\w.-]+:([^,'\]]*)'?", r"\1", match[1]), without_event)
+
+
+def contact_words(contact: Contact) -> str:
+    """Return a contact for reading: who touched what, when, and how hard."""
+    agent, part, other = (name.rpartition(":")[2] for name in (contact.agent, contact.part, contact.other))
+    who = f"{part}, held by {agent}," if part else agent
+    whom = "itself" if other == agent else other
+    strength = f"at most {contact.peak:.1f} N at {contact.peak_time:.2f} s, {contact.impulse:.2f} N s"
+    return f"{who} touches {whom} at {contact.time:.2f} s: {strength}"
 
 
 def margin(robustness: float | None, unit: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from robbdd_tools.catalog.coordination import TreeSpec
@@ -127,6 +127,7 @@ def _scenario(scenario: ScenarioResult, vacuous: Mapping[str, str]) -> dict[str,
         "shared": None if spec.tree is None else _shared(spec.tree, spec.node),
         "duration": None if scenario.finished is None else scenario.finished.simulated,
         "resampled": 0 if scenario.finished is None else scenario.finished.resampled,
+        "contacts": [] if scenario.finished is None else [asdict(one) for one in scenario.finished.contacts],
         "verdict": str(scenario.verdict),
         "clauses": [
             _clause(clause, scenario.judged.get(clause.line), vacuous.get(clause.iri, "")) for clause in spec.clauses

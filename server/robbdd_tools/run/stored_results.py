@@ -9,6 +9,8 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
+from robbdd_tools.base.plain import from_plain
+from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, ScenarioFinished
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.database import explained, read_database
@@ -125,8 +127,8 @@ def read_results(database: Path, number: int, manifest: Manifest, *, live: bool 
 def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) -> RunResults:
     """Return the finished executions of a run as results that are open for more; raises ``sqlite3.Error``."""
     results = RunResults(manifest)
-    query = "SELECT id, idx, simulated, wall, stepping, resampled FROM execution WHERE run = ? ORDER BY idx"
-    for identifier, position, simulated, wall, stepping, resampled in connection.execute(query, (number,)):
+    query = "SELECT id, idx, simulated, wall, stepping, resampled, contacts FROM execution WHERE run = ? ORDER BY idx"
+    for identifier, position, simulated, wall, stepping, resampled, contacts in connection.execute(query, (number,)):
         index = int(position)
         if index >= len(manifest.scenarios):
             continue
@@ -134,13 +136,14 @@ def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) ->
         query = """SELECT line, verdict, robustness, unit, at, reason, worst_at, vacuous, fault, ranges, held_before
             FROM clause WHERE execution = ? ORDER BY position"""
         known = {clause.line for clause in spec.clauses}
+        touched = tuple(from_plain(Contact, one) for one in json.loads(contacts))
         for line, *judged, ranges, held_before in connection.execute(query, (identifier,)):
             if line in known:
                 results.apply(ClauseJudged(index, line, *judged))
                 if ranges is not None:
                     held = None if held_before is None else bool(held_before)
                     results.apply(MarginRanges(index, line, json.loads(ranges), held))
-        results.apply(ScenarioFinished(index, simulated, wall, stepping, resampled))
+        results.apply(ScenarioFinished(index, simulated, wall, stepping, resampled, touched))
     return results
 
 

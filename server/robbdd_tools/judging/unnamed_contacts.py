@@ -1,0 +1,28 @@
+"""The contacts of an execution that no clause speaks of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.predicates.does_not_collide import DOES_NOT_COLLIDE
+from robbdd_tools.judging.decisions import ways
+from robbdd_tools.judging.parsed_sentences import Clause, fluents_of
+
+if TYPE_CHECKING:
+    from robbdd_tools.monitor.contact import Contact
+    from robbdd_tools.monitor.judge import Regions
+    from robbdd_tools.monitor.trace import Trace
+
+
+def unnamed_contacts(clauses: Iterable[Clause], trace: Trace, regions: Regions) -> tuple[Contact, ...]:
+    """Return the contacts of agents in a trace but those with the targets of *does not collide* in ``clauses``."""
+    named: set[tuple[str, str]] = set()
+    for fluent in (fluent for clause in clauses for fluent in fluents_of(clause)):
+        if fluent.predicate.name != DOES_NOT_COLLIDE.name:
+            continue
+        for arguments in (arguments for group in ways(fluent) for arguments in group):
+            agent, target = str(arguments["agent"]), str(arguments["target"])
+            carriers = [carrier for carrier, _ in regions.get(target, ())]
+            named |= {(agent, carrier) for carrier in carriers or [target]}
+    return tuple(contact for contact in trace.contacts if (contact.agent, contact.other) not in named)
