@@ -18,6 +18,7 @@ from robbdd_tools.world.engine import TICK
 from robbdd_tools.world.errors import BehaviourError, SceneError, SimulationError, UserError
 from robbdd_tools.world.extent import outline_of
 from robbdd_tools.world.frames import at
+from robbdd_tools.world.overlaps import refuse_overlaps
 from robbdd_tools.world.pick_place import PickPlace
 from robbdd_tools.world.reaching import ReachSampler
 from robbdd_tools.world.scene import contents_of
@@ -233,6 +234,7 @@ class Course:
     def _settle(self) -> None:
         for call in self._calls:
             self._controller(call)
+        refuse_overlaps(self.simulation)
         try:
             self.simulation.settle()
             if self._calls and self._calls[0].behaviour == "place":

@@ -195,7 +195,8 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
     spec.attach(child, prefix=f"{name}/", frame=frame)
     half = (base.position[2] - FLOOR) / 2
     x, y, z = base.position
-    column = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[0.1, half, 0.0], pos=[x, y, z - half])
+    kind = mujoco.mjtGeom.mjGEOM_CYLINDER
+    column = spec.worldbody.add_geom(name=f"{name}/column", type=kind, size=[0.1, half, 0.0], pos=[x, y, z - half])
     column.contype, column.conaffinity = 0, THINGS
     column.rgba = [0.45, 0.47, 0.50, 1.0]
 

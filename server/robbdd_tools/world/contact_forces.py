@@ -15,12 +15,13 @@ import numpy as np
 
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.world.engine import TICK, TIMESTEP, mujoco
+from robbdd_tools.world.owners import geom_owners
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 UPHOLDING = 0.5
-"""Share of a contact's force that is vertical, from which on the one below supports the one above: within 60°."""
+"""Cosine of the largest angle between a contact's normal and the vertical at which the one below bears the other."""
 Pair = tuple[str, str]
 
 
@@ -38,7 +39,7 @@ class ContactForces:
         """Watch ``agents`` among all ``things``, by the names of their bodies."""
         self._model = model
         self._agents = tuple(agents)
-        self._owners = [_owner_of(model, geom, self._agents) for geom in range(model.ngeom)]
+        self._owners = geom_owners(model, self._agents)
         gravity = float(np.linalg.norm(model.opt.gravity))
         self._weights = {thing: float(model.body(thing).subtreemass[0]) * gravity for thing in things}
         self._in_every_step = frozenset(in_every_step)
@@ -75,7 +76,7 @@ class ContactForces:
         gripped = frozenset((agent, thing) for agent, things in held.items() for thing in things)
         if gripped != self._gripped:
             for _, thing in gripped ^ self._gripped:
-                self._supports |= {(thing, support) for support in self._supporting(data, thing)}
+                self._note_supports(data, thing)
             self._ever_gripped |= gripped
             self._hold(gripped)
         self._row += 1
@@ -145,6 +146,9 @@ class ContactForces:
         for (agent, part, other), (size, down) in forces.items():
             force = size - min(down, self._weights.get(part, 0.0)) if part else size
             pressed[agent, other] += force
+            if not part and (agent, part, other) not in self._contacts:
+                # Closing fingers may lift a part a little before they grip it.
+                self._note_supports(data, other)
             self._contacts.setdefault((agent, part, other), _Sum(self._row, self._row)).add(self._row, force, duration)
         for pair, force in pressed.items():
             peaks, impulses = self._peaks[pair], self._impulses[pair]
@@ -160,17 +164,13 @@ class ContactForces:
         upwards = data.contact.frame[contact, 2::3].tolist()
         return hypot(x, y, z), x * upwards[0] + y * upwards[1] + z * upwards[2]
 
-    def _supporting(self, data: Any, thing: str) -> set[str]:
-        """Return what bears a thing from below."""
-        found = set[str]()
+    def _note_supports(self, data: Any, thing: str) -> None:
+        """Note what bears a thing from below, by the direction of the contacts: a grip may take all of the weight."""
         pairs: list[list[int]] = data.contact.geom.tolist()
-        for contact, geoms in enumerate(pairs):
+        for geoms, upwards in zip(pairs, data.contact.frame[:, 2].tolist(), strict=True):
             first, second = (self._owners[geom] for geom in geoms)
-            if thing in (first, second):
-                size, lift = self._force(data, contact)
-                if (lift if second == thing else -lift) > UPHOLDING * size:
-                    found.add(first if second == thing else second)
-        return found
+            if thing in (first, second) and (upwards if second == thing else -upwards) > UPHOLDING:
+                self._supports.add((thing, first if second == thing else second))
 
 
 @dataclass(slots=True)
@@ -186,18 +186,6 @@ class _Sum:
         if force > self.peak:
             self.peak, self.highest = force, row
         self.impulse += force * duration
-
-
-def _owner_of(model: Any, geom: int, agents: tuple[str, ...]) -> str:
-    """Return the agent or object that a geom is a part of, else the name of its body or, of the room's, its own."""
-    name = str(model.body(int(model.geom_bodyid[geom])).name)
-    named = str(model.geom(geom).name)
-    for agent in agents:
-        if name.startswith(f"{agent}/") or named.startswith(f"{agent}/"):
-            return agent
-    # A belt belongs to the object that it is a part of.
-    body = name.partition("/belt")[0]
-    return named or f"geom {geom}" if body == "world" else body
 
 
 def _series(rows: Mapping[Pair, Mapping[int, float]], size: int) -> Mapping[Pair, FloatArray]:

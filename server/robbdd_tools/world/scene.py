@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from robbdd_tools.catalog.api import ObjectModel, Region, RobotModel
+    from robbdd_tools.catalog.executable import Origin
     from robbdd_tools.catalog.settings import Numbers
     from robbdd_tools.protocol.specs import SceneSpec
     from robbdd_tools.world.pose import Pose
@@ -57,6 +58,10 @@ class Cast:
     def base(self, name: str) -> Pose | None:
         """Return where an executable scene has an agent's base; raises ``SceneError``."""
         return None if self.staging is None else self.staging.base(name)
+
+    def origin(self, name: str) -> Origin | None:
+        """Return where an executable scene says what an element is, ``None`` where nothing does."""
+        return None if self.staging is None else self.staging.origin(name)
 
     @property
     def tables(self) -> tuple[str, ...]:

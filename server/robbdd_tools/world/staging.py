@@ -16,7 +16,7 @@ from robbdd_tools.world.robot_files import robot_from
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import ObjectModel, RobotModel
-    from robbdd_tools.catalog.executable import ModelSource, Realisation, SceneInstance
+    from robbdd_tools.catalog.executable import ModelSource, Origin, Realisation, SceneInstance
     from robbdd_tools.world.frames import Transform
 
 UPRIGHT = 1e-6
@@ -94,6 +94,11 @@ class Staging:
             place = at(None if chosen is None else chosen.origin)
             raise SceneError(f"{place}the base of '{element}' is tilted: arms are moved upright only")
         return pose
+
+    def origin(self, element: str) -> Origin | None:
+        """Return where the scene says what an element is, ``None`` where nothing is said of it."""
+        said = self._elements.get(element)
+        return None if said is None else said.origin
 
     def _source(self, element: str) -> ModelSource | None:
         said: Realisation | None = self._elements.get(element)

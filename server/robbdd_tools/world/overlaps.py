@@ -1,0 +1,40 @@
+"""Objects and agents that are in one another where a scene places them.
+
+Left to itself the engine pushes them apart while the world settles, so that they start somewhere else, or fly off.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.frames import at
+from robbdd_tools.world.owners import geom_owners
+
+if TYPE_CHECKING:
+    from robbdd_tools.world.simulation import Simulation
+
+TOLERATED = 1e-3
+"""Depth (m) that a contact may have where things rest on one another (docs/simulation.md)."""
+MOST = 3
+"""Overlaps that one message names."""
+
+
+def refuse_overlaps(simulation: Simulation) -> None:
+    """Raise ``SceneError`` with names and depths when things overlap in a world that has not been stepped yet."""
+    world, data = simulation.world, simulation.data
+    owners = geom_owners(world.model, world.cast.agents)
+    elements = {*world.cast.objects, *world.cast.agents}
+    depths: dict[tuple[str, str], float] = {}
+    pairs: list[list[int]] = data.contact.geom.tolist()
+    for (first, second), distance in zip(pairs, data.contact.dist.tolist(), strict=True):
+        one, other = sorted((owners[first], owners[second]), key=lambda owner: (owner not in elements, owner))
+        if one != other and one in elements and -distance > TOLERATED:
+            depths[one, other] = max(depths.get((one, other), 0.0), -distance)
+    if depths:
+        deepest = sorted(depths, key=lambda pair: -depths[pair])
+        named = [f"'{one}' and '{other}' overlap by {1000 * depths[one, other]:.0f} mm" for one, other in deepest]
+        more = [f"{len(named) - MOST} more pairs overlap"] if len(named) > MOST else []
+        origins = (world.cast.origin(name) for name in deepest[0])
+        place = at(next((origin for origin in origins if origin is not None), None))
+        raise SceneError(f"{place}{'; '.join(named[:MOST] + more)}: nothing may be in something else at the start")

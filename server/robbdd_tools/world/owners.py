@@ -1,0 +1,25 @@
+"""Which element of a scene each geom of a compiled world belongs to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+
+def geom_owners(model: Any, agents: Iterable[str]) -> list[str]:
+    """Return for each geom the agent or object that it is a part of, by name.
+
+    A geom of the scenery is owned by its body, one of the room has its own name.
+    """
+    return [_owner_of(model, geom, tuple(agents)) for geom in range(model.ngeom)]
+
+
+def _owner_of(model: Any, geom: int, agents: tuple[str, ...]) -> str:
+    name = str(model.body(int(model.geom_bodyid[geom])).name)
+    named = str(model.geom(geom).name)
+    for agent in agents:
+        if name.startswith(f"{agent}/") or named.startswith(f"{agent}/"):
+            return agent
+    # A belt belongs to the object that it is a part of.
+    body = name.partition("/belt")[0]
+    return named or f"geom {geom}" if body == "world" else body

@@ -1,0 +1,76 @@
+"""Given poses at which things are in one another are reported; nothing is pushed apart in silence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from robbdd_tools.agent.course import Course
+from robbdd_tools.catalog.executable import (
+    Body,
+    Implementation,
+    Link,
+    ModelSource,
+    Origin,
+    Realisation,
+    SceneInstance,
+)
+from robbdd_tools.protocol.specs import ExecutionSpec, SceneSpec
+from robbdd_tools.world.errors import SceneError
+from robbdd_tools.world.placement import TABLE_TOP
+from world.worlds import BALL, BENCH_WS, CUBE, PANDA, SCENE, scenario
+
+pytestmark = pytest.mark.physics
+HALF_CUBE, RADIUS = 0.01575, 0.030
+ON_TABLE = replace(SCENE, objects=(CUBE, BALL, "env:bench"), workspaces={BENCH_WS: ("env:bench",)}, contains={})
+
+
+def course(scene: SceneSpec = ON_TABLE, **places: tuple[float, float, float]) -> Course:
+    """Set up a scene in which cube and ball are given places (m, world frame)."""
+    names = {"cube": CUBE, "ball": BALL}
+    links = tuple(Link(f"x:{n}.mid", "x:root", "pose", place, (1.0, 0.0, 0.0, 0.0)) for n, place in places.items())
+    bodies = (Body("x:room", ("x:root",)), *(Body(f"x:{name}", (f"x:{name}.mid",)) for name in places))
+    elements = tuple(
+        Realisation(
+            names[name],
+            (ModelSource(f"x:m-{name}", "mjcf", "catalog", name, bodies=((f"x:{name}", "body"),)),),
+            Origin("/w/cell.scenex", 7, 5),
+        )
+        for name in places
+    )
+    instance = SceneInstance("x:cell", (), elements, bodies, links, (), "x:root")
+    execution = ExecutionSpec("x:e", "x:e", Implementation("x:i", "catalog", "pick-place"), instance)
+    return Course(replace(scenario(scene), execution=execution), ())
+
+
+def test_things_that_touch_stay_where_they_are_given() -> None:
+    height = TABLE_TOP + HALF_CUBE
+    found = course(cube=(0.5, 0.1, height), ball=(0.5, 0.1 + HALF_CUBE + RADIUS + 0.002, TABLE_TOP + RADIUS))
+    assert found.simulation.pose(CUBE)[0] == pytest.approx((0.5, 0.1, height), abs=1e-3)
+
+
+def test_two_things_in_one_another_are_named_with_their_depth() -> None:
+    height = TABLE_TOP + RADIUS
+    with pytest.raises(
+        SceneError,
+        match=r"^cell\.scenex:7:5: 'env:ball1' and 'env:cube1' overlap by 12 mm: nothing may be in something else",
+    ):
+        course(cube=(0.5, 0.1, height), ball=(0.5, 0.1 + HALF_CUBE + RADIUS - 0.012, height))
+
+
+def test_a_thing_in_the_table_is_named_with_its_depth() -> None:
+    with pytest.raises(SceneError, match="'env:bench' and 'env:cube1' overlap by 7 mm"):
+        course(cube=(0.5, 0.1, TABLE_TOP + HALF_CUBE - 0.007))
+
+
+def test_a_resting_contact_may_be_a_little_deep() -> None:
+    course(cube=(0.5, 0.1, TABLE_TOP + HALF_CUBE - 0.0009))
+    with pytest.raises(SceneError, match="overlap by 1 mm"):
+        course(cube=(0.5, 0.1, TABLE_TOP + HALF_CUBE - 0.0012))
+
+
+def test_a_thing_in_the_arm_is_reported() -> None:
+    tool = course().simulation.data.body(f"{PANDA}/hand").xpos
+    with pytest.raises(SceneError, match="'env:cube1' and 'env:panda' overlap"):
+        course(cube=(float(tool[0]), float(tool[1]), float(tool[2])))
