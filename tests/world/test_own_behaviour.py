@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from robbdd_tools.agent.execution import Execution
@@ -77,6 +78,25 @@ def test_an_error_in_the_code_is_told_as_the_users(tmp_path: Path, code: str, wo
     assert re.search(words, execution.broken), execution.broken
     # Nothing is known of what would have come after: the scenario does not come to its end.
     assert "t:end" not in [stamp.name for stamp in execution.trace.events]
+
+
+@pytest.mark.physics
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        ("command(self.start * float('nan'), 1.0)", r"ValueError: joints must be 7 finite numbers, not .*nan"),
+        ("command(self.start + float('inf'), 1.0)", r"ValueError: joints must be 7 finite numbers, not .*inf"),
+        ("command(self.start[:3], 1.0)", "ValueError: joints must be 7 finite numbers"),
+        ("command(self.start, float('nan'))", "ValueError: opening must be a number from 0 to 1, not nan"),
+        ("solve([0.5, float('nan'), 0.3])", "ValueError: position must be 3 finite numbers, not .*nan"),
+        ("solve([0.5, 0.1, 0.3], float('inf'))", "ValueError: closing must be a finite number, not inf"),
+    ],
+)
+def test_numbers_that_are_none_end_the_behaviour_with_a_reason(tmp_path: Path, call: str, words: str) -> None:
+    execution = run(tmp_path, NOD.replace("self.left -= 1", f"self.left -= 1; self.world.{call}"))
+    assert not execution.run_behaviour(0)
+    assert re.search(words, execution.broken), execution.broken
+    assert np.isfinite(execution.trace.positions).all()
 
 
 @pytest.mark.physics

@@ -62,8 +62,13 @@ class AgentWorld:
         return self._simulation.holds(self._robot.name, name)
 
     def solve(self, position: FloatArray, closing: float = 0.0) -> FloatArray:
-        """Return joint positions (rad) that put the tool there; raises ``BehaviourFailed``."""
-        where, rotation = frame_of(tool_pose(self._robot.base, np.asarray(position), closing))
+        """Return joint positions (rad) that put the tool there; raises ``BehaviourFailed``, ``ValueError``."""
+        place = np.asarray(position, dtype=float)
+        if place.shape != (3,) or not np.all(np.isfinite(place)):
+            raise ValueError(f"position must be 3 finite numbers, not {position!r:.200}")
+        if not np.isfinite(closing):
+            raise ValueError(f"closing must be a finite number, not {closing!r}")
+        where, rotation = frame_of(tool_pose(self._robot.base, place, closing))
         try:
             return self._arm.solve(self._arm.towards(where), where, rotation)
         except BehaviourError as error:
