@@ -117,7 +117,8 @@ def _run(options: RunOptions) -> int:
         say_unfinished(last, last.status())
         failed = failed_in(last)
         own = failed.seed if selection.seed is None else selection.seed
-        selection, repeat = replace(selection, choices=[failed.choice], seed=own), repeat or failed.repeat
+        selection = replace(selection, choices=[failed.choice], seed=own, default_seed=failed.default_seed)
+        repeat = repeat or failed.repeat
     plan = Plan.of(model, selection)
     print_coverage(plan.covers)
     place = new_folder(options.path, options.outputs.keeping)

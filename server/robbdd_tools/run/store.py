@@ -62,7 +62,8 @@ class RunRecord:
 
     ``path`` is the model's relative to the project's root, ``origin`` relative to the run's folder; ``version`` is that
     of this package, ``simulator`` that of the engine. ``files`` are digests of the other files that were used, by
-    their paths relative to the run's folder.
+    their paths relative to the run's folder. ``user_seed`` is the seed that the user gave, ``None`` without one: then
+    executions of a model have their own.
     """
 
     path: str
@@ -72,6 +73,7 @@ class RunRecord:
     version: str
     simulator: str = ""
     files: Mapping[str, str] = field(default_factory=dict[str, str])
+    user_seed: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.run.prepare import DEFAULT_SEED
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, shown_path
 from robbdd_tools.run.stored_results import RUNNING
 from robbdd_tools.workbench.plan import Choice, Listed
@@ -21,12 +22,14 @@ class NothingFailed(RobbddError):
 class Failed:
     """What did not hold, and how to execute it as then.
 
-    ``seed`` is the one that the user gave, ``repeat`` the number of repetitions; ``None`` without one.
+    ``seed`` is the one that the user gave, ``repeat`` the number of repetitions; ``None`` without one. ``default_seed``
+    is that of scenarios without any.
     """
 
     choice: Choice
     seed: int | None
     repeat: int | None
+    default_seed: int = DEFAULT_SEED
 
 
 def last_run(store: RunStore, model: Path) -> StoredRun:
@@ -55,4 +58,5 @@ def failed_in(place: StoredRun) -> Failed:
         for spec in failed
     ]
     repeated = max(spec.repetition for spec in specs)
-    return Failed(Choice(listed), results["seed"], repeated if repeated > 1 else None)
+    repeat = repeated if repeated > 1 else None
+    return Failed(Choice(listed), place.record().user_seed, repeat, results["seed"])

@@ -84,7 +84,7 @@ class Run(Recorded):
             manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept)
             refuse_user_code(manifest, place.folder)
             recording = Recording(place, manifest)
-            record = _record(plan, place.folder, manifest)
+            record = _record(plan, place.folder, manifest, plan.selection.seed if seed is None else seed)
             recording.begin(record, policy, prepared_digest(place.folder))
             place.write_record(record)
         except BaseException:
@@ -226,8 +226,9 @@ def check_user_code(plan: Plan) -> None:
         refuse_user_code(plan.prepare(Path(folder)), Path(folder))
 
 
-def _record(plan: Plan, folder: Path, manifest: Manifest) -> RunRecord:
+def _record(plan: Plan, folder: Path, manifest: Manifest, user_seed: int | None) -> RunRecord:
     """Return what is run; a model that is no file is called by its name."""
     path = plan.path
     shown, start = (plan.name, plan.name) if path is None else (shown_path(path), origin(path, folder))
-    return RunRecord(shown, start, plan.digest, manifest.seed, __version__, files=digests(manifest, folder))
+    files = digests(manifest, folder)
+    return RunRecord(shown, start, plan.digest, manifest.seed, __version__, files=files, user_seed=user_seed)
