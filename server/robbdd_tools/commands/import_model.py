@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import sound_model
@@ -17,11 +18,13 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.text.model_text import ModelText
     from robbdd_tools.graph.write.built import BuiltGraph
 
+_FOLDER = "file:///imported/"
 _MODEL = "model.bdd"
 
 
 def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     """Write a model as RobBDD text to ``output`` and, where it has scenes, to a ``.scene`` beside it."""
+    from robbdd_tools.graph.rdf.records import Incomplete
     from robbdd_tools.graph.text.losses import compare
     from robbdd_tools.graph.text.model_text import write_model
 
@@ -35,10 +38,15 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     if model is None:
         return FAILED
     graph = model.graph.graph
-    text = write_model(graph, scene.name)
-    losses, of_scene = (
-        compare(graph, graph_of(text, scene.name, asked).graph, text.renamed) for asked in (_MODEL, scene.name)
-    )
+    try:
+        text = write_model(graph, scene.name)
+    except Incomplete as error:
+        return fail(f"{path} cannot be written as text: {error}")
+    project = _opened(text, scene.name)
+    fault = _first_error(project, scene.name)
+    if fault is not None:
+        return fail(f"{path} cannot be written as text, which would have an error: {fault}")
+    losses, of_scene = (compare(graph, _graph(project, asked).graph, text.renamed) for asked in (_MODEL, scene.name))
     # What no scenario uses is in the scene's own graph alone.
     _report(path, text, replace(losses, lost=tuple(line for line in losses.lost if line in set(of_scene.lost))))
     try:
@@ -51,15 +59,31 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     return OK
 
 
-def graph_of(text: ModelText, scene_name: str, asked: str = _MODEL) -> BuiltGraph:
-    """Return the graph that a text gives, without writing it anywhere: of the model, or of its scene by name."""
+def _opened(text: ModelText, scene_name: str) -> Project:
+    """Return a project with a text, which is not written anywhere yet."""
+    project = Project()
+    project.open(_FOLDER + _MODEL, 1, text.criteria)
+    project.open(_FOLDER + scene_name, 1, text.scene)
+    return project
+
+
+def _graph(project: Project, name: str) -> BuiltGraph:
+    """Return the graph of the model, or of its scene, by the name of its file."""
     from robbdd_tools.graph.write.build import build_graph
 
-    project = Project()
-    folder = "file:///imported/"
-    project.open(folder + _MODEL, 1, text.criteria)
-    project.open(folder + scene_name, 1, text.scene)
-    return build_graph(project.snapshot(), folder + asked)
+    return build_graph(project.snapshot(), _FOLDER + name)
+
+
+def _first_error(project: Project, scene_name: str) -> str | None:
+    """Return the first syntax error or unresolved name of a text with its line, ``None`` if it has none."""
+    snapshot = project.snapshot()
+    for name in (scene_name, _MODEL):
+        file = snapshot.file(_FOLDER + name)
+        for finding in file.diagnostics if file is not None else ():
+            if finding.severity is Severity.ERROR:
+                line = file.document.line_text(file.document.position(finding.span.start).line) if file else ""
+                return f"{finding.message}, in '{line.strip()}'"
+    return None
 
 
 def _report(path: Path, text: ModelText, losses: Losses) -> None:

@@ -24,6 +24,13 @@ OWL_INSTANT = "http://www.w3.org/2006/time#Instant"
 """What some models type their events as."""
 
 
+_LARGER = (
+    *("bdd:ScenarioTemplate", "bdd:UserStory", "bdd:ScenarioVariant", "bdd:FluentClause", "bdd:ScenarioVariable"),
+    *("bdd:Scene", "bdd:Set", "bhv:Behaviour", "bt:BehaviourTree", "env:Object", "env:Workspace", "agn:Agent"),
+)
+"""Types of nodes that are not written as events and tasks, which they may be as well: that is lost instead."""
+
+
 @dataclass(frozen=True, slots=True)
 class ModelText:
     """A model as text. ``scene`` is what its scene file holds, empty when it needs none.
@@ -39,7 +46,10 @@ class ModelText:
 
 
 def write_model(graph: Graph, scene_name: str) -> ModelText:
-    """Return a graph as text; ``scene_name`` is how the criteria import the file with the scenes."""
+    """Return a graph as text; ``scene_name`` is how the criteria import the file with the scenes.
+
+    Raises ``Incomplete`` for a scene or a name that cannot be written.
+    """
     records = Records(graph)
     stated = {namespace: prefix for prefix, namespace in user_prefixes(graph).items()}
     names = Names(records, stated)
@@ -73,7 +83,8 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
     left_out: dict[str, str] = {}
     for kind, types in (("task", ("task:Task",)), ("event", ("time:Event", OWL_INSTANT))):
         for node in sorted({node for type_ in types for node in records.instances(type_)}):
-            names.lazily(node, kind)
+            if not any(records.is_a(node, other) for other in _LARGER):
+                names.lazily(node, kind)
     templates, stories = records.instances("bdd:ScenarioTemplate"), story_order(records)
     for node in templates:
         names.declare(node, "template")

@@ -18,6 +18,8 @@ NAME = re.compile(r"[^\W\d][\w\-]*")
 _ENDING = re.compile(r"[^\W\d][\w\-]*\Z")
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?")
 _ESCAPES = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
+_VARIABLES = frozenset({"variable", "each"})
+"""One node may be the variable of a template and of a quantifier in another."""
 NO_NAMESPACE = "https://robbdd.org/imported/"
 """The namespace of what has no name at all where nothing of the graph has one."""
 
@@ -37,6 +39,7 @@ class Names:
     declared: dict[str, dict[str, None]] = field(default_factory=dict[str, dict[str, None]])
     _taken: dict[str, set[str]] = field(default_factory=dict[str, set[str]])
     _iris: set[str] = field(default_factory=set[str])
+    _kinds: dict[str, str] = field(default_factory=dict[str, str])
 
     def split(self, node: str) -> tuple[str, str]:
         """Return namespace and name of a node; the name is ``""`` when the node has none that can be written."""
@@ -52,8 +55,12 @@ class Names:
         """Return the name of a node where it is declared and note how it is referred to.
 
         ``owner`` is the qualified name that it stands in; ``namespace`` the one that the text imposes;
-        ``before`` what the language puts in front of the name in the IRI. ``kind`` names what has no name.
+        ``before`` what the language puts in front of the name in the IRI. ``kind`` names what has no name. Raises
+        ``Incomplete`` for a node that is declared as something else already.
         """
+        first = self._kinds.setdefault(node, kind)
+        if first != kind and not {first, kind} <= _VARIABLES:
+            raise Incomplete(f"{node} is written as {first} already, so that it cannot be {kind} as well")
         own, name = self.split(node)
         if namespace is not None and node.startswith(namespace + before):
             local = node[len(namespace + before) :]
