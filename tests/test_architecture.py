@@ -27,7 +27,7 @@ LAYERS: tuple[frozenset[str], ...] = (
     frozenset({"checks", "features", "gherkin"}),
     frozenset({"run"}),
     frozenset({"workbench"}),
-    frozenset({"lsp", "cli", "commands"}),
+    frozenset({"lsp", "cli", "commands", "pytest_plugin"}),
     frozenset({"start"}),
 )
 EVIDENCE = {"base", "catalog.api", "monitor", "catalog", "protocol", "traces"}
@@ -55,6 +55,7 @@ HOMES = {
     "pygls": {"lsp"},
     "lsprotocol": {"lsp"},
     "rich": {"commands"},
+    "pytest": {"pytest_plugin"},
 }
 # Layers that may sit beside one another and see each other; all others of one rank are strangers.
 NEIGHBOURS = {("features", "checks"), ("cli", "commands"), ("commands", "cli")}
@@ -236,6 +237,7 @@ def loaded_after(code: str) -> set[str]:
     [
         "from robbdd_tools.lsp.handlers import create_server; create_server()",
         "import robbdd_tools.cli, robbdd_tools.commands.check",
+        "import robbdd_tools.pytest_plugin",
     ],
 )
 def test_heavy_libraries_wait_until_they_are_needed(code: str) -> None:

@@ -25,7 +25,8 @@ PROTOCOL = ("__enter__", "__iter__", "__aenter__", "__aiter__", "__len__")
 """Methods that are part of an interface although their names begin with an underscore."""
 
 COMMON_TYPES = {
-    "Any", "AsyncIterator", "False", "FloatArray", "Iterator", "Mapping", "None", "Path", "PathLike", "Self", "True"
+    "Any", "AsyncIterator", "False", "FloatArray", "Iterator", "Mapping", "None", "Path", "PathLike", "Self",
+    "Sequence", "True",
 }  # fmt: skip
 """Types and constants by others that public signatures may mention; a member with any other type is internal."""
 QUOTED = re.compile(r"(: |-> )'([^']*)'")

@@ -45,12 +45,13 @@ class Recording:
     """The rows of one run that is going on. Every method raises ``DatabaseProblem`` when the database cannot be used.
 
     ``begin`` it or ``resume`` it, let it ``take`` every message when it comes, and ``end`` it; ``close`` it in any
-    case. One thread at a time may use it.
+    case. One thread at a time may use it. Several processes may record executions of one run: one of them begins it,
+    one ends it, and each takes the messages of its own executions.
     """
 
     def __init__(self, place: StoredRun, manifest: Manifest) -> None:
         self._place = place
-        self._manifest = manifest
+        self.manifest = manifest
         self._open: dict[int, list[ClauseJudged | MarginRanges]] = {}
         self._done: set[int] = set()
         self._simulator = ""
@@ -64,7 +65,7 @@ class Recording:
             "number": self._place.number,
             "state": RUNNING,
             "ending": "",
-            "total": len(self._manifest.scenarios),
+            "total": len(self.manifest.scenarios),
             "path": record.path,
             "digest": record.digest,
             "prepared": prepared,
@@ -91,7 +92,7 @@ class Recording:
                 (RUNNING, policy.timeout, policy.stop_on_failure, policy.jobs, number),
             )
             (self._simulator,) = connection.execute("SELECT simulator FROM run WHERE number = ?", (number,)).fetchone()
-            results = restored(connection, number, self._manifest)
+            results = restored(connection, number, self.manifest)
         self._done = {index for index, one in enumerate(results.scenarios) if one.finished is not None}
         return results
 
@@ -120,6 +121,11 @@ class Recording:
         """Return whether a message is about an execution that was not finished before the run was resumed."""
         return getattr(message, "index", None) not in self._done
 
+    def forget(self, index: int) -> None:
+        """Delete the execution of a scenario that is executed once more."""
+        with self._writing() as connection:
+            connection.execute("DELETE FROM execution WHERE run = ? AND idx = ?", (self._place.number, index))
+
     def end(self, ending: str, *, interrupted: bool = False) -> RunResults:
         """Write down how the run ended (``ending``: why executions were left open) and return its results.
 
@@ -127,12 +133,12 @@ class Recording:
         """
         number = self._place.number
         with self._writing() as connection:
-            results = restored(connection, number, self._manifest)
+            results = restored(connection, number, self.manifest)
             first = first_failure(results) if self._stops else None
             if first is not None:
                 # What was finished beyond it depends on the number of processes.
                 connection.execute("DELETE FROM execution WHERE run = ? AND idx > ?", (number, first))
-                results = restored(connection, number, self._manifest)
+                results = restored(connection, number, self.manifest)
             count = sum(one.finished is not None for one in results.scenarios)
             if count == len(results.scenarios):
                 state, ending = FINISHED, ""
@@ -143,11 +149,12 @@ class Recording:
             connection.execute(
                 "UPDATE run SET state = ?, ending = ?, ended = ? WHERE number = ?", (state, ending, _now(), number)
             )
+            (simulator,) = connection.execute("SELECT simulator FROM run WHERE number = ?", (number,)).fetchone()
         if state == FINISHED:
             results.apply(RunFinished(True))
         else:
             results.close(ending)
-        self._place.write_record(replace(self._place.record(), simulator=self._simulator))
+        self._place.write_record(replace(self._place.record(), simulator=simulator))
         self._place.write_results(results.as_json())
         return results
 
@@ -165,7 +172,7 @@ class Recording:
             connection.execute("UPDATE run SET simulator = ? WHERE number = ?", (simulator, self._place.number))
 
     def _write(self, finished: ScenarioFinished, messages: Sequence[ClauseJudged | MarginRanges]) -> None:
-        spec = self._manifest.scenarios[finished.index]
+        spec = self.manifest.scenarios[finished.index]
         judged = {message.line: message for message in messages if isinstance(message, ClauseJudged)}
         varied = {message.line: message for message in messages if isinstance(message, MarginRanges)}
         names = {clause.line: clause.iri for clause in spec.clauses}

@@ -11,6 +11,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import count
 from math import inf
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -33,14 +34,13 @@ from robbdd_tools.protocol.messages import (
 )
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.agent_log import LIMIT
+from robbdd_tools.run.agent_worker import STARTUP, AgentWorker
 from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.order import InOrder
 
 TIMEOUT = 300.0
 """Seconds of wall time that a scenario has unless something else is said."""
-STARTUP = 120.0
-"""Seconds of wall time that a process has from its start, or from an order, until it starts with the scenario."""
 ATTEMPTS = 3
 """Processes in a row that may end before they start a scenario, until the run is given up."""
 CANCELLED = "the run was cancelled"
@@ -67,45 +67,6 @@ class Policy:
         return policy if timeout is None else replace(policy, timeout=timeout)
 
 
-@dataclass(slots=True, eq=False)
-class _Worker:
-    """An agent, the scenario that it is at, and the instant until which it must have finished or begun with it.
-
-    ``following`` are the scenarios that it does next, because they share the execution of this one.
-    """
-
-    agent: Agent
-    index: int | None = None
-    following: deque[int] = field(default_factory=deque[int])
-    deadline: float = inf
-    started: bool = False
-    failed: bool = False
-    timed_out: bool = False
-    complaint: str = "the agent cannot work"
-    judged: set[int] = field(default_factory=set[int])
-    shared_outputs: int = 0
-
-    def employ(self, task: Iterable[int]) -> None:
-        """Give it scenarios to execute, one after the other."""
-        self.following = deque(task)
-        self.index = index = self.following.popleft()
-        self.started = self.failed = False
-        self.judged = set()
-        self.deadline = monotonic() + STARTUP
-        self.agent.execute(index)
-
-    def release(self) -> None:
-        """Let it go on with what follows; else take note that it has nothing to do."""
-        self.index, self.deadline, self.started = None, inf, False
-        if self.following:
-            self.employ(self.following)
-
-    def expire(self) -> None:
-        """End it because it missed its deadline."""
-        self.timed_out, self.deadline = True, inf
-        self.agent.kill()
-
-
 def _tasks(manifest: Manifest, indices: Iterable[int]) -> Iterator[tuple[int, ...]]:
     """Put the scenarios that share an execution together, each task where its first scenario stands."""
     together: dict[int | str, list[int]] = {}
@@ -119,7 +80,7 @@ def _before(index: int, task: Iterable[int]) -> tuple[int, ...]:
     return tuple(waiting for waiting in task if waiting < index)
 
 
-Event = tuple[_Worker, RunMessage | None]
+Event = tuple[AgentWorker, RunMessage | None]
 
 
 def no_watcher(_: RunMessage) -> None:
@@ -133,7 +94,8 @@ class Scheduler:
     ``watch`` is told every message when it comes; those that ``messages`` yields are in the manifest's order, so that
     they do not depend on how many processes there are. ``ending`` says why scenarios were left open.
     ``indices`` are those of the scenarios to be executed, increasing; all when ``None``. Scenarios that share an
-    execution go to one process, one after the other.
+    execution go to one process, one after the other. ``execute`` executes single scenarios in any order instead; the
+    processes stay until ``close``. ``first_agent`` is the number of the first process, which names its log.
     """
 
     def __init__(
@@ -143,6 +105,7 @@ class Scheduler:
         policy: Policy | None = None,
         watch: Callable[[RunMessage], None] = no_watcher,
         indices: Sequence[int] | None = None,
+        first_agent: int = 1,
     ) -> None:
         self._folder = folder
         self._specs = manifest.scenarios
@@ -151,9 +114,9 @@ class Scheduler:
         self._events: SimpleQueue[Event | None] = SimpleQueue()
         self._indices = range(len(self._specs)) if indices is None else indices
         self._waiting = deque(_tasks(manifest, self._indices))
-        self._workers: list[_Worker] = []
+        self._workers: list[AgentWorker] = []
         self._order = InOrder(self._indices)
-        self._launched = 0
+        self._agent_numbers = count(first_agent)
         self._wasted = 0
         self._greeted = False
         self._cancelled = False
@@ -171,6 +134,20 @@ class Scheduler:
         self._cancelled = True
         self._events.put(None)
 
+    def execute(self, index: int) -> Iterator[RunMessage]:
+        """Execute one scenario and yield its messages.
+
+        It is not finished when they end without ``ScenarioFinished``; ``ending`` says why. Raises ``OSError``.
+        """
+        self._order = InOrder([index])
+        self._waiting.clear()
+        self._waiting.append((index,))
+        yield from self._until_done()
+
+    def close(self) -> None:
+        """End the processes."""
+        stop(worker.agent for worker in self._workers)
+
     def messages(self) -> Iterator[RunMessage]:
         """Yield the messages of the run until its end; the last one is ``RunFinished``. Raises ``OSError``."""
         complaints: set[str] = set()
@@ -185,16 +162,19 @@ class Scheduler:
 
     def _messages(self) -> Iterator[RunMessage]:
         try:
-            while not (self._cancelled or self._gave_up) and self._open:
-                self._employ()
-                event = self._next_event()
-                if event is not None and event[0] in self._workers:
-                    yield from self._take(*event)
-            if self._cancelled and self._open:
-                self.ending = CANCELLED
+            yield from self._until_done()
             yield from self._order.finished()
         finally:
-            stop(worker.agent for worker in self._workers)
+            self.close()
+
+    def _until_done(self) -> Iterator[RunMessage]:
+        while not (self._cancelled or self._gave_up) and self._open:
+            self._employ()
+            event = self._next_event()
+            if event is not None and event[0] in self._workers:
+                yield from self._take(*event)
+        if self._cancelled and self._open:
+            self.ending = CANCELLED
 
     @property
     def _gave_up(self) -> bool:
@@ -211,14 +191,13 @@ class Scheduler:
             worker = idle.pop() if idle else self._launch()
             worker.employ(self._waiting.popleft())
 
-    def _launch(self) -> _Worker:
-        self._launched += 1
-        worker = _Worker(Agent(self._folder, self._launched, log_limit=self._policy.log_limit))
+    def _launch(self) -> AgentWorker:
+        worker = AgentWorker(Agent(self._folder, next(self._agent_numbers), log_limit=self._policy.log_limit))
         self._workers.append(worker)
         threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
         return worker
 
-    def _listen(self, worker: _Worker) -> None:
+    def _listen(self, worker: AgentWorker) -> None:
         for message in worker.agent.messages():
             self._events.put((worker, message))
         self._events.put((worker, None))
@@ -237,7 +216,7 @@ class Scheduler:
         except Empty:
             return None
 
-    def _take(self, worker: _Worker, message: RunMessage | None) -> Iterator[RunMessage]:
+    def _take(self, worker: AgentWorker, message: RunMessage | None) -> Iterator[RunMessage]:
         """Act on a message, or on the end of a process (``None``); one that cannot be meant is logged."""
         problem = "" if message is None else self._misfit(worker, message)
         if problem:
@@ -283,7 +262,7 @@ class Scheduler:
             case ScenarioFinished():
                 yield from self._finish(worker, message)
 
-    def _misfit(self, worker: _Worker, message: RunMessage) -> str:
+    def _misfit(self, worker: AgentWorker, message: RunMessage) -> str:
         """Say why a message of a process cannot be meant; nothing when it fits what the process does."""
         match message:
             case ClauseJudged(line=line) if line in worker.judged:
@@ -299,7 +278,7 @@ class Scheduler:
         """Seconds that a scenario may take."""
         return self._policy.timeout or inf
 
-    def _finish(self, worker: _Worker, message: ScenarioFinished) -> Iterator[RunMessage]:
+    def _finish(self, worker: AgentWorker, message: ScenarioFinished) -> Iterator[RunMessage]:
         if worker.failed and self._policy.stop_on_failure:
             self._stop_after(message.index)
         yield from self._pass_on(worker, message)
@@ -317,7 +296,7 @@ class Scheduler:
             worker.following = deque(_before(index, worker.following))
         stop(worker.agent for worker in beyond)
 
-    def _bury(self, worker: _Worker) -> Iterator[RunMessage]:
+    def _bury(self, worker: AgentWorker) -> Iterator[RunMessage]:
         """Judge what a process left open when it ended, or have it done by another when it had not begun."""
         if worker.index is None:
             return
@@ -341,7 +320,7 @@ class Scheduler:
             late = f"the agent process did not begin within {STARTUP:g} s"
             self.ending = late if worker.timed_out else worker.agent.ending()
 
-    def _pass_on(self, worker: _Worker, message: RunMessage) -> Iterator[RunMessage]:
+    def _pass_on(self, worker: AgentWorker, message: RunMessage) -> Iterator[RunMessage]:
         self._watch(message)
         if worker.index is None:
             yield message

@@ -12,7 +12,7 @@ import json
 import os
 import shutil
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -63,7 +63,8 @@ class RunRecord:
     ``path`` is the model's relative to the project's root, ``origin`` relative to the run's folder; ``version`` is that
     of this package, ``simulator`` that of the engine. ``files`` are digests of the other files that were used, by
     their paths relative to the run's folder. ``user_seed`` is the seed that the user gave, ``None`` without one: then
-    executions of a model have their own.
+    executions of a model have their own. ``models`` are the paths of the models relative to the run's folder, where
+    they are not all of ``path``, which is then a folder above them.
     """
 
     path: str
@@ -74,6 +75,7 @@ class RunRecord:
     simulator: str = ""
     files: Mapping[str, str] = field(default_factory=dict[str, str])
     user_seed: int | None = None
+    models: Sequence[str] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +107,7 @@ class StoredRun:
         """Return what was run; raises ``NoSuchRun``."""
         fields = self._json(RECORD)
         try:
-            return RunRecord(**fields)
+            return RunRecord(**{**fields, "models": tuple(fields.get("models", ()))})
         except TypeError:
             raise NoSuchRun(f"{self.folder / RECORD} is not the record of a run") from None
 
@@ -144,6 +146,10 @@ class StoredRun:
     def model(self) -> Path:
         """Return what was run, a file or a folder, which may be gone by now; raises ``NoSuchRun``."""
         return (self.folder / self.record().origin).resolve()
+
+    def models(self) -> list[Path]:
+        """Return the files and folders that were run, which may be gone by now; raises ``NoSuchRun``."""
+        return [(self.folder / model).resolve() for model in self.record().models] or [self.model()]
 
     def write_record(self, record: RunRecord) -> None:
         """Write what is run; raises ``OSError``."""

@@ -105,10 +105,10 @@ class Finding:
 
 def findings(snapshot: Snapshot, diagnostics: Iterable[Diagnostic]) -> tuple[Finding, ...]:
     """Return diagnostics of a snapshot with lines and columns."""
-    return tuple(_finding(_Places(snapshot), diagnostic) for diagnostic in diagnostics)
+    return tuple(_finding(Places(snapshot), diagnostic) for diagnostic in diagnostics)
 
 
-class _Places:
+class Places:
     """Converts offsets to places; reads each file that is not a model (shapes, settings) once."""
 
     def __init__(self, snapshot: Snapshot) -> None:
@@ -116,6 +116,7 @@ class _Places:
         self._others: dict[str, Document] = {}
 
     def of(self, uri: str, span: Span) -> Place:
+        """Return a range of a file."""
         document = self._document(uri)
         start, end = document.position(span.start), document.position(span.end)
         return Place(uri, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
@@ -131,7 +132,7 @@ class _Places:
         return self._others[uri]
 
 
-def _finding(places: _Places, diagnostic: Diagnostic) -> Finding:
+def _finding(places: Places, diagnostic: Diagnostic) -> Finding:
     return Finding(
         places.of(diagnostic.uri, diagnostic.span),
         diagnostic.severity,
@@ -142,12 +143,12 @@ def _finding(places: _Places, diagnostic: Diagnostic) -> Finding:
     )
 
 
-def _quick_fix(places: _Places, fix: Fix) -> QuickFix:
+def _quick_fix(places: Places, fix: Fix) -> QuickFix:
     made = () if fix.new_file is None else ((fix.new_file.uri, fix.new_file.text),)
     return QuickFix(fix.title, tuple(_text_edit(places, edit) for edit in fix.edits), made)
 
 
-def _text_edit(places: _Places, edit: Edit) -> TextEdit:
+def _text_edit(places: Places, edit: Edit) -> TextEdit:
     return TextEdit(places.of(edit.uri, edit.span), edit.text)
 
 

@@ -17,7 +17,7 @@ from robbdd_tools.graph.write.foreign import GRAPH_FORMATS, graph_format
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.syntax.parse import LANGUAGES
-from robbdd_tools.workbench.diagnostics import Finding, Place, findings
+from robbdd_tools.workbench.diagnostics import Finding, Place, Places, findings
 
 if TYPE_CHECKING:
     from robbdd_tools.graph.acceptance_model import AcceptanceModel
@@ -72,6 +72,11 @@ class ModelFile:
         from robbdd_tools.graph.places import placed_model
 
         return placed_model(self.graph, self.snapshot)
+
+    def place(self, iri: str) -> Place | None:
+        """Return where an element is declared, ``None`` for one of another model; raises ``ModelErrors``."""
+        location = self.graph.sources.node(iri)
+        return None if location is None else Places(self.snapshot).of(location.uri, location.span)
 
     @cached_property
     def digest(self) -> str:

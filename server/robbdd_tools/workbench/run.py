@@ -6,6 +6,7 @@ import asyncio
 import tempfile
 import threading
 from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Self
@@ -79,22 +80,14 @@ class Run(Recorded):
 
         Raises ``OSError``, ``NothingSelected`` and ``UserCodeRefused``.
         """
-        recording: Recording | None = None
         try:
-            manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept)
-            refuse_user_code(manifest, place.folder)
-            recording = Recording(place, manifest)
-            record = _record(plan, place.folder, manifest, plan.selection.seed if seed is None else seed)
-            recording.begin(record, policy, prepared_digest(place.folder))
-            place.write_record(record)
+            recording = begin_recording(plan, place, policy, seed=seed, repeat=repeat)
         except BaseException:
-            if recording is not None:
-                recording.close()
             if place.number:
                 place.discard()
             on_close()
             raise
-        return cls(place, policy, recording, RunResults(manifest), on_close=on_close)
+        return cls(place, policy, recording, RunResults(recording.manifest), on_close=on_close)
 
     @property
     def manifest(self) -> Manifest:
@@ -224,6 +217,34 @@ def check_user_code(plan: Plan) -> None:
     """
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
         refuse_user_code(plan.prepare(Path(folder)), Path(folder))
+
+
+def begin_recording(
+    plan: Plan,
+    place: StoredRun,
+    policy: Policy,
+    *,
+    seed: int | None = None,
+    repeat: int | None = None,
+    models: Sequence[Path] = (),
+) -> Recording:
+    """Write all that agents need into a run folder, and the beginning of the run into its database.
+
+    ``models`` are the model files where they are not all of the plan's folder. Raises ``OSError``, ``NothingSelected``
+    and ``UserCodeRefused``.
+    """
+    manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept)
+    refuse_user_code(manifest, place.folder)
+    recording = Recording(place, manifest)
+    try:
+        record = _record(plan, place.folder, manifest, plan.selection.seed if seed is None else seed)
+        record = replace(record, models=tuple(origin(model, place.folder) for model in models))
+        recording.begin(record, policy, prepared_digest(place.folder))
+        place.write_record(record)
+    except BaseException:
+        recording.close()
+        raise
+    return recording
 
 
 def _record(plan: Plan, folder: Path, manifest: Manifest, user_seed: int | None) -> RunRecord:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.run.used_files import changed
-from robbdd_tools.workbench.model import Model, load
+from robbdd_tools.workbench.model import Model, load_all
 
 if TYPE_CHECKING:
     from robbdd_tools.run.store import StoredRun
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 def model_now(place: StoredRun) -> Model | str:
     """Return the model of a stored run as it is now, or why it cannot be run; raises ``NoSuchRun``."""
-    path, shown = place.model(), place.record().path
-    if not path.exists():
+    shown, paths = place.record().path, place.models()
+    if not all(path.exists() for path in paths):
         return f"the model of the run, {shown}, is gone"
     try:
-        model = load(path)
+        model = load_all(paths)
         _ = model.runnable
     except RobbddError as error:
         return f"the model of the run, {shown}, cannot be run as it is now: {error}"

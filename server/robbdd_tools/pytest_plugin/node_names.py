@@ -1,0 +1,44 @@
+"""Names of stories and scenarios in node ids: readable, unique, and the same in every session."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from robbdd_tools.base.printable import printable
+from robbdd_tools.protocol.specs import ScenarioSpec
+from robbdd_tools.run.report import value_words
+
+LONGEST = 120
+"""Characters that the values in a name have at most."""
+
+
+def local_name(iri: str) -> str:
+    """Return the end of an IRI or CURIE, without what pytest splits node ids at."""
+    local = iri.replace("#", "/").rsplit("/", 1)[-1].rsplit(":", 1)[-1]
+    return printable(local).replace("[", "(").replace("::", ":")
+
+
+def scenario_names(specs: Sequence[ScenarioSpec]) -> list[str]:
+    """Return the names of the executions of one story: ``part-to-bin[cube0-left_ws]``.
+
+    The values are in the order of the variables, after the execution's name if there is one. An execution keeps its
+    name when others are selected: from the second repetition on, the name has its number.
+    """
+    names = [_name(spec, numbered=False) for spec in specs]
+    count = Counter(names)
+    return [
+        name if count[name] == 1 and len(name) <= LONGEST else _name(spec, numbered=True)
+        for name, spec in zip(names, specs, strict=True)
+    ]
+
+
+def _name(spec: ScenarioSpec, *, numbered: bool) -> str:
+    execution = [] if spec.execution is None else [local_name(spec.execution.iri)]
+    values = [printable(value_words("", value).removeprefix(" = ")) for value in spec.values.values()]
+    words = "-".join([*execution, *values])
+    if numbered:
+        words = f"{words[:LONGEST]}-#{spec.variation}"
+    if spec.repetition > 1:
+        words = f"{words}-repetition{spec.repetition}"
+    return f"{local_name(spec.variant)}[{words.removeprefix('-')}]" if words else local_name(spec.variant)

@@ -1,0 +1,49 @@
+"""What the command line of pytest asks of the plugin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robbdd_tools.workbench.folder import Keeping
+from robbdd_tools.workbench.plan import Selection
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """The selection of scenarios, how often and how long each is executed (wall time, s), where the run is kept."""
+
+    selection: Selection
+    repeat: int | None
+    timeout: float | None
+    keeping: Keeping
+
+
+OPTIONS = pytest.StashKey[Options]()
+
+
+def read_options(config: pytest.Config) -> Options:
+    """Return the options; raises ``UsageError``."""
+
+    def given(name: str) -> Any:
+        return config.getoption(f"robbdd_{name}")
+
+    for name in ("repeat", "first", "sample"):
+        if given(name) is not None and given(name) < 1:
+            raise pytest.UsageError(f"--robbdd-{name}: {given(name)} is not a number above 0")
+    if given("pairwise") not in (None, 2, 3):
+        raise pytest.UsageError(f"--robbdd-pairwise: {given('pairwise')} is not 2 or 3")
+    reducing = [f"--robbdd-{name}" for name in ("first", "sample", "pairwise") if given(name) is not None]
+    if len(reducing) > 1:
+        raise pytest.UsageError(f"give only one of {' and '.join(reducing)}")
+    timeout = given("timeout")
+    if timeout is not None and not (timeout >= 0 and isfinite(timeout)):
+        raise pytest.UsageError(f"--robbdd-timeout: {timeout} is not a number of seconds")
+    names = tuple(given("scenario") or ())
+    selection = Selection(names, given("where"), given("first"), given("sample"), given("pairwise"), given("seed"))
+    store = None if given("store") is None else Path(given("store")).absolute()
+    return Options(selection, given("repeat"), timeout, Keeping(store=store, keep=not given("no_store")))

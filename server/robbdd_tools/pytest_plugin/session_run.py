@@ -1,0 +1,166 @@
+"""The one stored run of a pytest session: who makes its folder, who executes its scenarios, who ends it.
+
+Without pytest-xdist one process does all of it. With it, the controller makes the folder and ends the run, and the
+workers execute: the first one that has a scenario prepares the folder, and each records what it executes.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.base.locks import hold
+from robbdd_tools.workbench.folder import RunFolder, new_folder
+from robbdd_tools.workbench.on_demand import Executed, OnDemand, end_run
+from robbdd_tools.workbench.plan import Plan
+
+if TYPE_CHECKING:
+    from robbdd_tools.protocol.specs import ScenarioSpec
+    from robbdd_tools.pytest_plugin.plugin_options import Options
+    from robbdd_tools.run.results import RunResults
+    from robbdd_tools.run.store import StoredRun
+    from robbdd_tools.workbench.folder import Keeping
+    from robbdd_tools.workbench.model import ModelFile
+
+ENDED = "pytest ended before it was executed"
+PATIENCE = 120.0
+"""Seconds that a worker waits while another one prepares the run."""
+
+Key = tuple[str, str, str, int, int]
+"""What an execution is found by: path of the model, variant, execution (IRIs), variation, repetition."""
+
+
+def key_of(spec: ScenarioSpec) -> Key:
+    """Return what an execution is found by in the session."""
+    execution = "" if spec.execution is None else spec.execution.iri
+    return spec.model, spec.variant, execution, spec.variation, spec.repetition
+
+
+class Owner:
+    """Makes the folder of the session's run when it is first needed, and ends the run."""
+
+    def __init__(self, keeping: Keeping) -> None:
+        self._keeping = keeping
+        self._folder: RunFolder | None = None
+
+    @property
+    def remark(self) -> str:
+        """What the user should know of the store; empty without a run."""
+        return "" if self._folder is None else self._folder.remark
+
+    def open(self, model: Path) -> StoredRun:
+        """Return the folder of the run; ``model`` decides whose project's store it is in. Raises ``OSError``."""
+        if self._folder is None:
+            self._folder = new_folder(model, self._keeping)
+        return self._folder.place
+
+    def end(self) -> tuple[StoredRun, RunResults] | None:
+        """End the run; returns it with its results, ``None`` when no scenario was to be executed.
+
+        Scenarios that were not executed are unknown. Raises ``OSError``.
+        """
+        if self._folder is None:
+            return None
+        place = self._folder.place
+        try:
+            if not place.began:
+                place.discard()
+                return None
+            return place, end_run(place, ENDED)
+        finally:
+            self._folder.remove()
+            self._folder = None
+
+
+class Executor:
+    """Executes the scenarios of a session, ``specs`` of the models ``files``, in this process.
+
+    ``open_place`` returns the run's folder. ``lock`` is a file that keeps others from preparing it at the same time,
+    where there are others; ``first_agent`` is the number of this process's first agent.
+    """
+
+    def __init__(
+        self,
+        options: Options,
+        specs: Iterable[ScenarioSpec],
+        files: Iterable[ModelFile],
+        open_place: Callable[[], StoredRun],
+        lock: Path | None = None,
+        first_agent: int = 1,
+    ) -> None:
+        self._options = options
+        self._wanted = {key_of(spec) for spec in specs}
+        self._files = model_files(files)
+        self._open_place = open_place
+        self._lock = lock
+        self._first_agent = first_agent
+        self._on_demand: OnDemand | None = None
+        self._problem: Exception | None = None
+
+    @property
+    def place(self) -> StoredRun:
+        """The run's folder."""
+        return self._open_place()
+
+    def execute(self, spec: ScenarioSpec) -> Executed:
+        """Execute one of the scenarios; raises ``RobbddError`` and ``OSError`` when nothing can be executed."""
+        if self._problem is not None:
+            raise self._problem
+        try:
+            on_demand = self._on_demand = self._on_demand or self._begin()
+        except (RobbddError, OSError) as error:
+            self._problem = error
+            raise
+        wanted = key_of(spec)
+        index = next(n for n, one in enumerate(on_demand.manifest.scenarios) if key_of(one) == wanted)
+        return on_demand.execute(index)
+
+    def close(self) -> None:
+        """End the agent."""
+        if self._on_demand is not None:
+            self._on_demand.close()
+            self._on_demand = None
+
+    def _begin(self) -> OnDemand:
+        place = self._open_place()
+        lock = None if self._lock is None else hold(self._lock, PATIENCE)
+        try:
+            if lock is None and self._lock is not None:
+                raise RobbddError(f"another process has been preparing {place.folder} for {PATIENCE:g} s")
+            # The process that made the folder ends the run and then releases its lock.
+            return self._join(replace(place, lock=None)) if place.began else self._prepare(replace(place, lock=None))
+        finally:
+            if lock is not None:
+                lock.release()
+
+    def _join(self, place: StoredRun) -> OnDemand:
+        return OnDemand.join(place, timeout=self._options.timeout, first_agent=self._first_agent)
+
+    def _prepare(self, place: StoredRun) -> OnDemand:
+        plan = session_plan(self._files, self._options, lambda spec: key_of(spec) in self._wanted)
+        return OnDemand.begin(
+            plan,
+            place,
+            repeat=self._options.repeat,
+            timeout=self._options.timeout,
+            models=[Path(file.name) for file in plan.files] if len(plan.files) > 1 else (),
+            first_agent=self._first_agent,
+        )
+
+
+def session_plan(
+    files: tuple[ModelFile, ...], options: Options, only: Callable[[ScenarioSpec], bool] | None = None
+) -> Plan:
+    """Return the plan of models, called like their folder if they are several; raises ``SelectionError``."""
+    path = Path(files[0].name if len(files) == 1 else os.path.commonpath([file.name for file in files]))
+    return Plan.of_files(str(path), path, files, replace(options.selection, only=only))
+
+
+def model_files(files: Iterable[ModelFile]) -> tuple[ModelFile, ...]:
+    """Return models, each once, those with executions first, as a folder's models are executed."""
+    found = {file.uri: file for file in files}
+    return tuple(sorted(found.values(), key=lambda file: not file.uri.endswith(".bddx")))

@@ -1,0 +1,170 @@
+"""Execute single scenarios of a run in the order in which a test runner asks for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.protocol.messages import ClauseJudged, LogLine, Output, UserCodeFailed
+from robbdd_tools.run.recording import OtherSimulator, Recording, why
+from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.scheduler import Policy, Scheduler
+from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_result
+from robbdd_tools.workbench.run import begin_recording
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from robbdd_tools.monitor.fault import Fault
+    from robbdd_tools.protocol.messages import RunMessage
+    from robbdd_tools.protocol.specs import Manifest
+    from robbdd_tools.run.store import StoredRun
+    from robbdd_tools.workbench.plan import Plan
+
+
+class CannotRecord(RobbddError):
+    """Results cannot be stored any more; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Executed:
+    """One execution: its result, and what users' code has to do with it.
+
+    ``faults`` are errors in users' code that left clauses unknown, ``output`` the lines that this code printed, and
+    ``log`` the warnings and errors of the agent.
+    """
+
+    result: ExecutionResult
+    faults: tuple[Fault, ...]
+    output: tuple[str, ...]
+    log: tuple[str, ...]
+
+
+class OnDemand:
+    """Executes scenarios of a prepared run one at a time, in one agent process that stays for the next one.
+
+    Use it as a context manager; leaving it ends the agent. ``begin`` begins a run, ``join`` takes part in one that
+    another process has begun; ``end_run`` ends it. ``first_agent`` is the number of the first agent, different for each
+    process that executes scenarios of the run.
+    """
+
+    def __init__(self, place: StoredRun, recording: Recording, timeout: float | None = None, first_agent: int = 1):
+        self.place = place
+        self._recording = recording
+        policy = Policy.of(jobs=1, timeout=timeout)
+        self._scheduler = Scheduler(place.folder, self.manifest, policy, self._take, first_agent=first_agent)
+        self._results = RunResults(self.manifest)
+        self._shared_faults: list[Fault] = []
+        self._listener: Callable[[RunMessage], None] | None = None
+        self._problem = ""
+
+    @classmethod
+    def begin(
+        cls,
+        plan: Plan,
+        place: StoredRun,
+        *,
+        repeat: int | None = None,
+        timeout: float | None = None,
+        models: Sequence[Path] = (),
+        first_agent: int = 1,
+    ) -> Self:
+        """Begin the run of a plan in a run folder that the caller made; raises as ``begin_recording``."""
+        recording = begin_recording(plan, place, Policy.of(jobs=1, timeout=timeout), repeat=repeat, models=models)
+        return cls(place, recording, timeout, first_agent)
+
+    @classmethod
+    def join(cls, place: StoredRun, *, timeout: float | None = None, first_agent: int = 1) -> Self:
+        """Take part in a run that has begun; raises ``NoSuchRun`` and ``OSError``."""
+        return cls(place, Recording(place, place.manifest()), timeout, first_agent)
+
+    @property
+    def manifest(self) -> Manifest:
+        """The scenarios of the run; ``execute`` takes their positions."""
+        return self._recording.manifest
+
+    def execute(self, index: int) -> Executed:
+        """Execute a scenario and return its result when it is stored.
+
+        Clauses without a verdict, such as those of an agent that died, are unknown. A scenario that was executed before
+        is executed again, and its result replaced. Raises ``CannotRecord``.
+        """
+        faults: list[Fault] = []
+        output: list[str] = []
+        log: list[str] = []
+
+        def collect(message: RunMessage) -> None:
+            match message:
+                case UserCodeFailed(None, fault):
+                    # Code that all scenarios share fails once for each agent process.
+                    self._shared_faults.append(fault)
+                case UserCodeFailed(_, fault):
+                    faults.append(fault)
+                case Output(_, text):
+                    output.extend(text.split("\n"))
+                case LogLine(level, text) if level != "info":
+                    log.append(text)
+                case _:
+                    self._results.apply(message)
+
+        if self._problem:
+            raise CannotRecord(self._problem)
+        self._results.scenarios[index].judged.clear()
+        self._results.scenarios[index].finished = None
+        self._listener = collect
+        try:
+            self._recording.forget(index)
+            for _ in self._scheduler.execute(index):
+                pass
+        except OtherSimulator as error:
+            self._problem = str(error)
+        except OSError as error:
+            self._problem = why(error)
+        if self._problem:
+            raise CannotRecord(self._problem)
+        self._leave_unknown(index)
+        result = execution_result(index, self._results.scenario_json(index))
+        if result.verdict is Outcome.UNKNOWN:
+            faults.extend(fault for fault in self._shared_faults if fault not in faults)
+        return Executed(result, tuple(faults), tuple(output), tuple(log))
+
+    def close(self) -> None:
+        """End the agent and release the database; the run goes on."""
+        self._scheduler.close()
+        self._recording.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _take(self, message: RunMessage) -> None:
+        self._recording.take(message)
+        if self._listener is not None:
+            self._listener(message)
+
+    def _leave_unknown(self, index: int) -> None:
+        """Judge the clauses unknown that have no verdict because the scenario was not executed."""
+        scenario = self._results.scenarios[index]
+        if scenario.finished is not None:
+            return
+        reason = self._scheduler.ending or "the scenario was not executed"
+        for clause in scenario.spec.clauses:
+            if clause.line not in scenario.judged:
+                self._results.apply(ClauseJudged(index, clause.line, Outcome.UNKNOWN, None, "", None, reason))
+
+
+def end_run(place: StoredRun, ending: str) -> RunResults:
+    """End a run and return its results; ``ending`` is why scenarios that were not executed are unknown.
+
+    The run can be resumed unless all were executed. Raises ``NoSuchRun`` and ``OSError``.
+    """
+    recording = Recording(place, place.manifest())
+    try:
+        return recording.end(ending, interrupted=True)
+    finally:
+        recording.close()
