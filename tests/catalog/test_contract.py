@@ -12,7 +12,8 @@ import pytest
 
 from robbdd_tools.catalog.api import Behaviour, ObjectModel, Predicate, RobotModel
 from robbdd_tools.catalog.registry import DuplicateWord, build_catalog, load_catalog
-from robbdd_tools.judging.parsed_sentences import Fluent, fluent_pattern, read_clause, read_doing
+from robbdd_tools.judging.parsed_sentences import fluent_pattern, read_clause, read_step
+from robbdd_tools.protocol.clauses import BehaviourCall, Fluent
 from robbdd_tools.world.composition import mjcf_path
 from robbdd_tools.world.engine import mujoco
 
@@ -66,8 +67,8 @@ def test_a_predicate_reads_back_from_its_own_sentence(predicate: Predicate) -> N
 @every_behaviour
 def test_a_behaviour_reads_back_from_its_own_sentence(behaviour: Behaviour) -> None:
     words = {slot.name: f"t:{slot.name}" for slot in behaviour.slots}
-    found = read_doing(behaviour.sentence.format(**words))
-    assert found is not None
+    found = read_step("when", behaviour.sentence.format(**words))
+    assert isinstance(found, BehaviourCall)
     assert (found.behaviour, found.arguments) == (behaviour, words)
 
 

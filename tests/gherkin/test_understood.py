@@ -1,15 +1,29 @@
-"""What we write into a feature, the agent reads back as the same clause."""
+"""The sentence of a clause says what its data says, to a reader of the feature and to the agent alike."""
 
 from __future__ import annotations
 
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kit import MODELS
+from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.steps import StepWriter
+from robbdd_tools.gherkin.variations import bindings
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Exists, Fluent, Iri, Junction, TextClause
-from robbdd_tools.judging import parsed_sentences as read
+from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.write.build import build_graph
+from robbdd_tools.judging.parsed_sentences import read_step
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.names.project import Project
+from robbdd_tools.protocol import clauses as stated
+from robbdd_tools.protocol.clauses import Statement, from_plain, to_plain
 
 MODEL = AcceptanceModel((), {}, {Iri("x:set"): (Iri("x:a"), Iri("x:b"))}, {"x": "x:"})
 WRITER = StepWriter(MODEL, load_catalog())
@@ -44,48 +58,48 @@ def junctions(parts: st.SearchStrategy[Clause]) -> st.SearchStrategy[Clause]:
 SIMPLE: st.SearchStrategy[Clause] = st.builds(located, TIMES) | st.builds(told, TEXT, TIMES)
 
 
-def shape(clause: Clause) -> object:
-    """The structure of a clause that is written."""
-    match clause:
-        case Junction(operator=operator, operands=operands):
-            return (operator, *map(shape, operands))
-        case Fluent(time=time):
-            return time
+def bare(statement: Statement | None) -> object:
+    """What a statement says, without the IRIs that no sentence has; one operand alone is that operand."""
+    match statement:
+        case stated.Junction("and" | "or", (operand,)):
+            return bare(operand)
+        case stated.Junction(operator, operands):
+            return (operator, *map(bare, operands))
+        case stated.Fluent() | stated.BehaviourCall():
+            return replace(statement, iri="") if isinstance(statement, stated.Fluent) else statement
+        case stated.Text(words, time):
+            return "text", _words(words), time
         case _:
-            return "text"
+            return statement
 
 
-def shape_read(clause: read.Clause) -> object:
-    """The structure of a clause that was read."""
-    match clause:
-        case read.Junction(operator, operands):
-            return (operator, *map(shape_read, operands))
-        case read.Fluent(time=time):
-            return time
-        case read.Unmatched():
-            return "text"
+def _words(text: str) -> str:
+    """The words of a text without the signs that keep them apart from a group around them."""
+    return re.sub(r"\\(.)", r"\1", text).strip()
+
+
+def read(sentence: str, role: str = "then") -> object:
+    return bare(read_step(role, sentence))
 
 
 @given(junctions(st.recursive(SIMPLE, junctions, max_leaves=6)), CELLS, CELLS)
 def test_groups_are_read_back_as_they_were_written(clause: Clause, thing: Cell, place: Cell) -> None:
-    sentence = WRITER.sentence(clause, {THING: thing, PLACE: place})
-    assert shape_read(read.read_clause(sentence)) == shape(clause)
+    for step in WRITER.steps((clause,), {THING: thing, PLACE: place}):
+        assert read(step.text) == bare(step.statement)
 
 
 @given(CELLS, CELLS, TIMES)
 def test_values_are_read_back_as_they_were_written(thing: Cell, place: Cell, time: TimeConstraint) -> None:
-    (sentence,) = WRITER.steps((located(time),), {THING: thing, PLACE: place})
-    found = read.read_clause(sentence.text)
-    assert isinstance(found, read.Fluent)
-    assert (found.arguments, found.time) == ({"object": thing, "workspace": place}, time)
+    (step,) = WRITER.steps((located(time),), {THING: thing, PLACE: place})
+    assert read(step.text) == bare(step.statement)
 
 
 def test_an_existential_choice_is_read_back_as_one() -> None:
     body = Fluent(NAME, "then", "located-at", {"object": THING, "workspace": CHOICE}, After("x:e"))
     (step,) = WRITER.steps((Exists(NAME, "then", CHOICE, Iri("x:set"), (body,)),), {})
-    found = read.read_clause(step.text)
-    assert isinstance(found, read.Fluent)
-    assert found.arguments["workspace"] == read.AnyOf(("x:a", "x:b"))
+    assert isinstance(step.statement, stated.Fluent)
+    assert step.statement.arguments["workspace"] == stated.AnyOf(("x:a", "x:b"))
+    assert read(step.text) == bare(step.statement)
 
 
 def test_a_choice_that_must_do_several_things_is_read_back_as_alternatives() -> None:
@@ -94,5 +108,27 @@ def test_a_choice_that_must_do_several_things_is_read_back_as_alternatives() -> 
         for time in (Before("x:e"), After("x:e"))
     )
     (step,) = WRITER.steps((Exists(NAME, "then", CHOICE, Iri("x:set"), bodies),), {})
-    one = ("and", Before("x:e"), After("x:e"))
-    assert shape_read(read.read_clause(step.text)) == ("or", one, one)
+    found = bare(step.statement)
+    assert isinstance(step.statement, stated.Junction)
+    assert [one.operator for one in step.statement.operands if isinstance(one, stated.Junction)] == ["and", "and"]
+    assert read(step.text) == found
+
+
+@given(junctions(st.recursive(SIMPLE, junctions, max_leaves=6)), CELLS, CELLS)
+def test_what_a_clause_states_survives_json(clause: Clause, thing: Cell, place: Cell) -> None:
+    for step in WRITER.steps((clause,), {THING: thing, PLACE: place}):
+        assert from_plain(json.loads(json.dumps(to_plain(step.statement)))) == step.statement
+
+
+@pytest.mark.parametrize("model", [path for path in MODELS if path.suffix == ".bdd"], ids=lambda path: path.name)
+def test_every_sentence_of_the_examples_says_what_its_clause_states(model: Path) -> None:
+    project = Project()
+    uri = path_to_uri(model)
+    project.load(uri)
+    criteria = read_model(build_graph(project.snapshot(), uri).graph)
+    writer = StepWriter(criteria, load_catalog())
+    for story in criteria.stories:
+        for variant in story.variants:
+            values = next(bindings(variant.variation))
+            for step in writer.steps((*variant.template.clauses, *variant.clauses), values):
+                assert read(step.text, step.role) == bare(step.statement)

@@ -10,7 +10,8 @@ import pytest
 
 from judging.test_decisions import EVENTS, REGIONS, a_trace
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
-from robbdd_tools.judging.parsed_sentences import read_clause, read_doing
+from robbdd_tools.judging.parsed_sentences import read_clause, read_step
+from robbdd_tools.protocol.clauses import BehaviourCall
 from robbdd_tools.world.drawn_shapes import thinned
 
 
@@ -43,10 +44,10 @@ def test_what_cannot_be_judged_has_no_points(sentence: str) -> None:
 
 
 def test_a_behaviour_lasts_from_its_first_event_to_its_last(tmp_path: Path) -> None:
-    doing = read_doing('"arm" picks "ball"')
-    assert doing is not None
-    assert behaviour_curves(doing, a_trace(), {"t:x": "pick-start"}) == ()
-    (found,) = behaviour_curves(doing, a_trace(), EVENTS)
+    call = read_step("when", '"arm" picks "ball"')
+    assert isinstance(call, BehaviourCall)
+    assert behaviour_curves(call, a_trace(), {"t:x": "pick-start"}) == ()
+    (found,) = behaviour_curves(call, a_trace(), EVENTS)
     assert (found.start, found.end) == (0.2, 0.2)
     write_curves(tmp_path / "margins" / "000000.json", ("t:v", 1), {7: (found,)}, a_trace())
     document = json.loads((tmp_path / "margins" / "000000.json").read_text(encoding="utf-8"))

@@ -6,17 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robbdd_tools.judging.parsed_sentences import (
-    AnyOf,
-    Fluent,
-    Junction,
-    Unmatched,
-    fluents_of,
-    read_clause,
-    read_doing,
-    read_event,
-)
+from robbdd_tools.judging.parsed_sentences import read_clause, read_step
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.protocol.clauses import AnyOf, BehaviourCall, EventOccurrence, Fluent, Junction, Text, fluents_of
 
 AT = '"env:cube" is located at "env:bin_ws"'
 
@@ -73,36 +65,35 @@ def test_words_within_quotes_do_not_split_a_sentence() -> None:
     assert fluent(text).arguments == {"object": "this and that", "workspace": "( here or there"}
 
 
-def test_what_nothing_says_is_unmatched() -> None:
-    assert read_clause("the lamp is green") == Unmatched("the lamp is green")
-    assert read_clause(AT) == Unmatched(AT)
+def test_what_nothing_in_the_catalog_states_is_text() -> None:
+    assert read_clause("the lamp is green") == Text("the lamp is green")
+    assert read_clause(AT) == Text(AT)
 
 
 def test_a_part_that_nothing_says_does_not_hide_the_others() -> None:
     found = read_clause(f'( the lamp is green or {AT} after event "t:e" )')
     assert isinstance(found, Junction)
-    assert found.operands[0] == Unmatched("the lamp is green")
+    assert found.operands[0] == Text("the lamp is green")
     assert isinstance(found.operands[1], Fluent)
 
 
 def test_the_longer_behaviour_is_not_taken_for_the_shorter() -> None:
-    both = read_doing('"env:arm" picks "env:cube" and places it at "env:bin_ws"')
-    pick = read_doing('"env:arm" picks "env:cube"')
-    assert both is not None
-    assert pick is not None
+    both = read_step("when", '"env:arm" picks "env:cube" and places it at "env:bin_ws"')
+    pick = read_step("when", '"env:arm" picks "env:cube"')
+    assert isinstance(both, BehaviourCall)
+    assert isinstance(pick, BehaviourCall)
     assert (both.behaviour.name, pick.behaviour.name) == ("pick-place", "pick")
-    assert read_doing('"env:arm" juggles "env:cube"') is None
+    assert read_step("when", '"env:arm" juggles "env:cube"') is None
 
 
 def test_reads_an_event() -> None:
-    assert read_event('event "t:e" occurs') == "t:e"
-    assert read_event('"env:arm" picks "env:cube"') is None
+    assert read_step("when", 'event "t:e" occurs') == EventOccurrence("t:e")
 
 
 @given(st.text(max_size=80))
 def test_no_text_raises(text: str) -> None:
     read_clause(text)
-    read_doing(text)
+    read_step("when", text)
 
 
 @given(st.text(alphabet='()"andor not', max_size=60))

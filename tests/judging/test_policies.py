@@ -12,12 +12,12 @@ from monitor.traces import still, trace_of
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.judging.decisions import decide
-from robbdd_tools.judging.parsed_sentences import Fluent, Junction, fluents_of, read_clause
-from robbdd_tools.judging.policies import with_policies
+from robbdd_tools.judging.scenario_clauses import judged_clause, stated_by_step
 from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
 from robbdd_tools.monitor.time import After, During
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.protocol.clauses import Clause, Fluent, Junction, Text, fluents_of
 from robbdd_tools.protocol.specs import ClauseSpec, ExecutionSpec, ScenarioSpec
 from world.worlds import BIN_WS, CUBE, PANDA, execution, pick_place, scenario
 
@@ -48,8 +48,14 @@ def moving(distances: list[float]) -> Trace:
     return trace_of({CUBE: path, "env:bin": still(len(path))}, events)
 
 
+def as_judged(sentence: str, known: ClauseSpec, spec: ScenarioSpec) -> Clause:
+    statement = stated_by_step("then", sentence, known)
+    assert isinstance(statement, Fluent | Text | Junction)
+    return judged_clause(statement, known, spec)
+
+
 def judged(spec: ScenarioSpec, trace: Trace, sentence: str = SENTENCE) -> Verdict:
-    clause = with_policies(read_clause(sentence), STATED, spec)
+    clause = as_judged(sentence, STATED, spec)
     return decide(clause, trace, {}, {"t:a", "t:b"})
 
 
@@ -75,13 +81,13 @@ def test_every_form_of_a_distance_has_its_margin(form: str, bounds: tuple[float,
 def test_a_policy_replaces_the_evaluator_of_its_clause_and_of_no_other() -> None:
     spec = spec_of()
     assert judged(spec, moving([0.2])).outcome is Outcome.HOLDS
-    other = with_policies(read_clause(SENTENCE), replace(STATED, iri="https://x/other"), spec)
+    other = as_judged(SENTENCE, replace(STATED, iri="https://x/other"), spec)
     assert decide(other, moving([0.2]), {}, {"t:a", "t:b"}).outcome is Outcome.UNKNOWN
 
 
 def test_a_part_of_a_group_has_its_policy() -> None:
-    group = read_clause(f"( {SENTENCE} or not ( {SENTENCE} ) )")
-    found = with_policies(group, replace(STATED, parts=("https://x/other", CLAUSE)), spec_of())
+    group = f"( {SENTENCE} or not ( {SENTENCE} ) )"
+    found = as_judged(group, replace(STATED, parts=("https://x/other", CLAUSE)), spec_of())
     assert isinstance(found, Junction)
     assert [fluent.predicate.name for fluent in fluents_of(found)] == ["located-at", "x:policy"]
 
@@ -92,11 +98,17 @@ def test_free_text_is_judged_by_a_policy() -> None:
     assert judged(spec_of(), moving([0.6]), text).outcome is Outcome.VIOLATED
 
 
+def test_a_text_keeps_its_horizon_when_a_policy_judges_it() -> None:
+    text = 'the cube is near within 0.15 seconds after event "t:a"'
+    assert judged(spec_of(), moving([0.2, 0.9, 0.2]), text).outcome is Outcome.VIOLATED
+    assert judged(spec_of(), moving([0.2, 0.2, 0.9]), text).outcome is Outcome.HOLDS
+
+
 def test_the_horizon_of_a_policy_takes_the_place_of_that_of_the_clause() -> None:
-    clause = with_policies(read_clause('the cube is near after event "t:a"'), STATED, spec_of(horizon=2.0))
+    clause = as_judged('the cube is near after event "t:a"', STATED, spec_of(horizon=2.0))
     assert isinstance(clause, Fluent)
     assert clause.time == After("t:a", 2.0)
-    interval = with_policies(read_clause(SENTENCE), STATED, spec_of(horizon=2.0))
+    interval = as_judged(SENTENCE, STATED, spec_of(horizon=2.0))
     assert isinstance(interval, Fluent)
     assert interval.time == During("t:a", "t:b")
 
@@ -222,7 +234,7 @@ def carried() -> Execution:
 @pytest.mark.parametrize(("bound", "outcome"), [(0.15, Outcome.HOLDS), (0.001, Outcome.VIOLATED)])
 def test_in_physics_a_distance_to_the_goal_is_observed(carried: Execution, bound: float, outcome: Outcome) -> None:
     spec = spec_of(Rule("distance", form="less-than", bounds=(bound,)), targets=("t:var-thing", BIN_WS))
-    clause = with_policies(read_clause('it is near after event "t:place-end"'), STATED, spec)
+    clause = as_judged('it is near after event "t:place-end"', STATED, spec)
     assert decide(clause, carried.trace, carried.regions, {"t:place-end"}).outcome is outcome
 
 
@@ -233,7 +245,7 @@ def test_in_physics_latency_and_noise_are_seen(carried: Execution) -> None:
     within = Rule("distance", form="less-than", bounds=(2.0,))
     margins: list[float] = []
     for provider in (TRUTH, replace(TRUTH, noise=0.02), replace(TRUTH, latency=0.2)):
-        clause = with_policies(read_clause(window), STATED, spec_of(within, provider, tool))
+        clause = as_judged(window, STATED, spec_of(within, provider, tool))
         found = decide(clause, carried.trace, carried.regions, {"t:pick-start", "t:place-end"})
         assert found.robustness is not None
         margins.append(found.robustness)
@@ -249,6 +261,8 @@ def test_users_code_gets_what_fills_the_slots_and_quantified_variables_of_its_cl
     )
     arguments = {"thing": "env:bin", "part": CUBE, "others": ["a", "b"]}
     spec = spec_of(Rule("python", "own_arguments:judge"), targets=("t:part",), model=str(tmp_path / "m.bddx"))
-    clause = with_policies(read_clause(SENTENCE), replace(STATED, arguments=(arguments,)), spec)
+    located = stated_by_step("then", SENTENCE, STATED)
+    assert isinstance(located, Fluent)
+    clause = judged_clause(replace(located, named=arguments), STATED, spec)
     found = decide(clause, moving([0.2, 0.4]), {}, {"t:a", "t:b"})
     assert (found.outcome, found.robustness, found.reason) == (Outcome.VIOLATED, pytest.approx(-0.1), "")

@@ -10,7 +10,7 @@ from monitor.traces import heights, still, trace_of
 from robbdd_tools.catalog.api import Region
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import read_clause
-from robbdd_tools.judging.scenario_clauses import stated_clause
+from robbdd_tools.judging.scenario_clauses import judged_clause
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.protocol.specs import ClauseSpec
 from world.worlds import EVENTS, PANDA, scenario
@@ -36,7 +36,7 @@ def held(sentence: str, ball: list[float], role: str = "then", iterations: tuple
     stated = ClauseSpec(3, "t:c", "c", role, sentence, iterations=iterations)
     spec = scenario(clauses=(*whens, stated), events=EVENTS)
     assert read_clause(sentence)
-    found = margin_ranges(0, stated_clause(sentence, stated, spec), stated, spec, a_trace(ball), REGIONS)
+    found = margin_ranges(0, judged_clause(read_clause(sentence), stated, spec), stated, spec, a_trace(ball), REGIONS)
     return None if found is None else found.held_before
 
 

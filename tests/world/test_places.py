@@ -11,7 +11,8 @@ from robbdd_tools.agent.beginning import call_of
 from robbdd_tools.agent.course import Call
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import Implementation, Origin
-from robbdd_tools.judging.parsed_sentences import read_doing
+from robbdd_tools.judging.parsed_sentences import read_step
+from robbdd_tools.protocol.clauses import BehaviourCall
 from robbdd_tools.protocol.specs import ExecutionSpec
 from robbdd_tools.world.errors import SceneError
 from world.worlds import BALL, BIN_WS, CUBE, OTHER_WS, PANDA, SCENE, execution, scenario
@@ -57,9 +58,9 @@ def test_what_cannot_be_placed_anywhere_names_the_places() -> None:
 
 def test_sentences_with_sets_are_read() -> None:
     for text in (ANY_BIN, f"['{BIN_WS}', '{OTHER_WS}']"):
-        doing = read_doing(f'"{PANDA}" picks "{CUBE}" and places it at "{text}"')
-        assert doing is not None
-        assert call_of(doing) == placing()
+        call = read_step("when", f'"{PANDA}" picks "{CUBE}" and places it at "{text}"')
+        assert isinstance(call, BehaviourCall)
+        assert call_of(call) == placing()
 
 
 @pytest.mark.parametrize(
@@ -70,10 +71,10 @@ def test_sentences_with_sets_are_read() -> None:
     ],
 )
 def test_only_places_may_be_sets(text: str, reason: str) -> None:
-    doing = read_doing(text)
-    assert doing is not None
+    call = read_step("when", text)
+    assert isinstance(call, BehaviourCall)
     with pytest.raises(SceneError, match=reason):
-        call_of(doing)
+        call_of(call)
 
 
 @pytest.mark.physics

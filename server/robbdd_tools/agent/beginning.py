@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.agent.course import TIMEOUT, Call, Course, Timing
 from robbdd_tools.catalog.api import Kind
-from robbdd_tools.judging.parsed_sentences import AnyOf, Clause, Doing, fluents_of, read_doing
+from robbdd_tools.judging.scenario_clauses import behaviour_calls
 from robbdd_tools.monitor.time import After, Before
+from robbdd_tools.protocol.clauses import AnyOf, BehaviourCall, Clause, fluents_of
 from robbdd_tools.world.errors import SceneError
 
 if TYPE_CHECKING:
@@ -46,26 +47,25 @@ def calls_of(spec: ScenarioSpec) -> list[Call]:
     """
     if spec.tree is not None:
         return [Call(leaf.behaviour, leaf.arguments) for leaf in spec.tree.leaves() if leaf.behaviour]
-    doings = (read_doing(clause.sentence) for clause in spec.clauses if clause.role == "when")
-    return [call_of(doing) for doing in doings if doing is not None]
+    return [call_of(call) for call in behaviour_calls(spec)]
 
 
-def call_of(doing: Doing) -> Call:
+def call_of(call: BehaviourCall) -> Call:
     """Return a behaviour as it is executed.
 
     A place may be a set, of which the behaviour chooses an element. Raises ``SceneError`` for any other set, and for
     an empty one.
     """
     arguments: dict[str, str | tuple[str, ...]] = {}
-    for slot in doing.behaviour.slots:
-        filler = doing.arguments[slot.name]
+    for slot in call.behaviour.slots:
+        filler = call.arguments[slot.name]
         found = filler.elements if isinstance(filler, AnyOf) else filler
         if not isinstance(found, str) and slot.kind is not Kind.WORKSPACE:
-            raise SceneError(f"'{doing.behaviour.name}' needs one {slot.name}, not a set of them")
+            raise SceneError(f"'{call.behaviour.name}' needs one {slot.name}, not a set of them")
         if not found:
-            raise SceneError(f"'{doing.behaviour.name}' has no {slot.name} to choose: the set is empty")
+            raise SceneError(f"'{call.behaviour.name}' has no {slot.name} to choose: the set is empty")
         arguments[slot.name] = found
-    return Call(doing.behaviour.name, arguments)
+    return Call(call.behaviour.name, arguments)
 
 
 def timing_of(spec: ScenarioSpec, clauses: Iterable[Clause]) -> Timing:

@@ -15,9 +15,9 @@ from robbdd_tools.world.engine import TICK
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
-    from robbdd_tools.judging.parsed_sentences import Clause
     from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.monitor.judge import Regions
+    from robbdd_tools.protocol.clauses import Clause
     from robbdd_tools.protocol.specs import ScenarioSpec
     from robbdd_tools.world.simulation import Simulation
 

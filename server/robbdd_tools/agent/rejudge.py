@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +19,12 @@ from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.judging.decisions import decide
 from robbdd_tools.judging.margin_ranges import margin_ranges
-from robbdd_tools.judging.parsed_sentences import fluents_of, read_event
-from robbdd_tools.judging.scenario_clauses import stated_clause, stated_iteration
+from robbdd_tools.judging.scenario_clauses import behaviour_calls, clause_of, iteration_of, statement_of
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.time import never_occurred, occurrences
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.protocol.clauses import EventOccurrence, fluents_of
 from robbdd_tools.protocol.manifest_file import STORED_RESULTS, read_manifest
 from robbdd_tools.protocol.messages import (
     LogLine,
@@ -67,7 +67,7 @@ class StoredTraces:
             if stored is None or evidence is None or reason:
                 yield clause, unknown(reason)
             elif clause.role == "when":
-                yield clause, self._done(clause, evidence, index, spec)
+                yield clause, self._done(clause, evidence, index, spec, stored)
             else:
                 yield clause, _decided(clause, evidence, spec, stored)
 
@@ -86,7 +86,7 @@ class StoredTraces:
         except UnreadableTrace:
             return
         for clause in (clause for clause in spec.clauses if clause.role != "when"):
-            read = stated_clause(clause.sentence, clause, spec)
+            read = clause_of(clause, spec)
             found = margin_ranges(number, read, clause, spec, evidence.trace, evidence.regions)
             if found is not None:
                 yield found
@@ -100,25 +100,37 @@ class StoredTraces:
             evidence = read_trace(trace_file(self._folder, index))
         except UnreadableTrace:
             return ()
-        clauses = [stated_clause(clause.sentence, clause, spec) for clause in spec.clauses if clause.role != "when"]
+        clauses = [clause_of(clause, spec) for clause in spec.clauses if clause.role != "when"]
         return unnamed_contacts(clauses, evidence.trace, evidence.regions)
 
-    def _done(self, clause: ClauseSpec, evidence: Evidence, index: int, spec: ScenarioSpec) -> Verdict:
+    def _done(
+        self, clause: ClauseSpec, evidence: Evidence, index: int, spec: ScenarioSpec, stored: ScenarioSpec
+    ) -> Verdict:
         """Return the verdict on a When clause: an event of the trace, or what the run said of the behaviour."""
-        event = read_event(clause.sentence)
-        if event is not None:
-            trace, iteration = evidence.trace, stated_iteration(clause)
+        statement = statement_of(clause)
+        if isinstance(statement, EventOccurrence):
+            event, trace, iteration = statement.event, evidence.trace, iteration_of(clause)
             time = trace.event_time(event, iteration)
             if time is None:
                 return unknown(trace.unreached or never_occurred(trace, event, iteration))
             return Verdict(Outcome.HOLDS, at=time)
-        # Iterations may state one behaviour several times.
-        same = [one for one in spec.clauses if one.sentence == clause.sentence]
-        found = [entry for entry in self._results[index]["clauses"] if entry["sentence"] == clause.sentence]
-        if len(same) != len(found):
+        entry = _stored_behaviour(clause, spec, stored, self._results[index]["clauses"])
+        if entry is None:
             return unknown(CHANGED.format("the behaviour"))
-        entry = found[same.index(clause)]
         return Verdict(Outcome(entry["verdict"]), entry["robustness"], entry["unit"], entry["at"], entry["reason"])
+
+
+def _stored_behaviour(
+    clause: ClauseSpec, spec: ScenarioSpec, stored: ScenarioSpec, results: Sequence[Mapping[str, Any]]
+) -> Mapping[str, Any] | None:
+    """Return the stored result of the same behaviour: the scenarios execute the same ones in the same order."""
+    then = [entry for one, entry in zip(stored.clauses, results, strict=True) if _is_behaviour(one)]
+    now = [one for one in spec.clauses if _is_behaviour(one)]
+    return then[now.index(clause)] if len(now) == len(then) else None
+
+
+def _is_behaviour(clause: ClauseSpec) -> bool:
+    return clause.role == "when" and not isinstance(statement_of(clause), EventOccurrence)
 
 
 def _change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
@@ -127,17 +139,13 @@ def _change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
         return CHANGED.format("the scene")
     if (spec.tree, spec.node) != (stored.tree, stored.node):
         return CHANGED.format("the behaviour tree")
-    if _behaviours(spec) != _behaviours(stored):
+    if behaviour_calls(spec) != behaviour_calls(stored):
         return CHANGED.format("the behaviour")
     return ""
 
 
-def _behaviours(spec: ScenarioSpec) -> list[str]:
-    return [one.sentence for one in spec.clauses if one.role == "when" and read_event(one.sentence) is None]
-
-
 def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored: ScenarioSpec) -> Verdict:
-    read, trace = stated_clause(clause.sentence, clause, spec), evidence.trace
+    read, trace = clause_of(clause, spec), evidence.trace
     for fluent in fluents_of(read):
         for event, iteration in occurrences(fluent.time):
             if event in spec.events and spec.events[event] != stored.events.get(event):

@@ -104,12 +104,12 @@ def _videos(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
     from robbdd_tools.agent.execution import Execution
     from robbdd_tools.agent.moments import Moments
     from robbdd_tools.agent.video import Violation, write_video
-    from robbdd_tools.judging.parsed_sentences import read_clause
+    from robbdd_tools.judging.scenario_clauses import clause_of
 
     moments = list(Moments(folder))
     for index, spec in enumerate(manifest.scenarios):
         names = {clause.line: clause.name for clause in spec.clauses}
-        clauses = [read_clause(clause.sentence) for clause in spec.clauses if clause.role != "when"]
+        clauses = [clause_of(clause, spec) for clause in spec.clauses if clause.role != "when"]
         execution = Execution(spec, calls_of(spec), timing_of(spec, clauses))
         execution.advance_until(lambda _: False)
         violations = [Violation(moment.at, names[moment.line]) for moment in moments if moment.index == index]

@@ -16,11 +16,12 @@ from robbdd_tools.agent.printed_output import finish_output
 from robbdd_tools.judging.decisions import decide, is_closed
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
-from robbdd_tools.judging.parsed_sentences import Fluent, Unmatched, read_clause, read_doing, read_event
-from robbdd_tools.judging.scenario_clauses import stated_clause, stated_iteration
+from robbdd_tools.judging.parsed_sentences import read_clause
+from robbdd_tools.judging.scenario_clauses import iteration_of, judged_clause, stated_by_step
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.time import never_occurred
 from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, Text
 from robbdd_tools.protocol.messages import (
     NO_STEP,
     VIEWER,
@@ -71,10 +72,15 @@ class ScenarioRun:
         self._channel = channel
         self._moments = moments
         self._open = {clause.line: clause.sentence for clause in spec.clauses}
-        self._doings = {line: doing for line, role, text in texts if role == "when" and (doing := read_doing(text))}
-        self._stated = {clause.line: clause for clause in spec.clauses}
+        self._known = {clause.line: clause for clause in spec.clauses}
+        steps = {line: stated_by_step(role, text, self._known.get(line)) for line, role, text in texts}
+        self._calls = {line: step for line, step in steps.items() if isinstance(step, BehaviourCall)}
+        self._events = {line: step.event for line, step in steps.items() if isinstance(step, EventOccurrence)}
+        self._texts = {line for line, step in steps.items() if isinstance(step, Text)}
         self._clauses = {
-            line: stated_clause(text, self._stated.get(line), spec) for line, role, text in texts if role != "when"
+            line: judged_clause(step, self._known.get(line), spec)
+            for line, step in steps.items()
+            if isinstance(step, Fluent | Text | Junction)
         }
         self._execution: Execution | None = None
         self._viewer: Viewer | None = None
@@ -92,8 +98,7 @@ class ScenarioRun:
             raise self._broken
         if self._execution is None:
             try:
-                doings = self._doings.values()
-                calls = [call_of(doing) for doing in doings] if self._spec.tree is None else calls_of(self._spec)
+                calls = [*map(call_of, self._calls.values())] if self._spec.tree is None else calls_of(self._spec)
                 timing = timing_of(self._spec, self._clauses.values())
                 course = self._courses.course(self._spec, calls, timing)
                 self._execution = Execution(self._spec, calls, timing, course)
@@ -138,7 +143,7 @@ class ScenarioRun:
 
     def behaviour(self, line: int, text: str) -> Verdict:
         """Run to the end of a behaviour; its clause holds when the behaviour went through."""
-        index = list(self._doings).index(line) if line in self._doings else None
+        index = list(self._calls).index(line) if line in self._calls else None
 
         def verdict(execution: Execution) -> Verdict:
             if index is None:
@@ -156,7 +161,7 @@ class ScenarioRun:
 
     def event(self, line: int, text: str) -> Verdict:
         """Run on until the event that a When step names has occurred."""
-        event, iteration = read_event(text) or text, stated_iteration(self._stated.get(line))
+        event, iteration = self._events.get(line, text), iteration_of(self._known.get(line))
 
         def verdict(execution: Execution) -> Verdict:
             if event not in self._spec.events:
@@ -179,7 +184,7 @@ class ScenarioRun:
         """Judge texts that a policy judges, report what is left open as unknown, and the scenario as finished."""
         for line, sentence in list(self._open.items()):
             # behave knows no step for such a text.
-            if isinstance(read_clause(sentence), Unmatched) and isinstance(self._clauses.get(line), Fluent):
+            if line in self._texts and isinstance(self._clauses[line], Fluent):
                 self.clause(line, sentence)
         for line, sentence in list(self._open.items()):
             self._report(line, _unknown(self._broken) if self._broken else unknown(f"{NO_STEP} for '{sentence}'"))
@@ -205,11 +210,11 @@ class ScenarioRun:
     def _tell_ranges(self, execution: Execution) -> None:
         """Tell how far the margins varied in all that happened, for clauses that could not have failed."""
         for line, clause in self._clauses.items():
-            stated = self._stated.get(line)
-            if stated is None:
+            known = self._known.get(line)
+            if known is None:
                 continue
             trace = execution.measured(clause, execution.trace)
-            found = margin_ranges(self._index, clause, stated, self._spec, trace, execution.regions)
+            found = margin_ranges(self._index, clause, known, self._spec, trace, execution.regions)
             if found is not None:
                 self._channel.send(found)
 
@@ -227,9 +232,9 @@ class ScenarioRun:
         for line in (clause.line for clause in self._spec.clauses):
             if line in self._clauses:
                 yield line, tuple(curves(self._clauses[line], trace, execution.regions))
-            elif line in self._doings:
-                iteration = stated_iteration(self._stated[line])
-                yield line, behaviour_curves(self._doings[line], trace, self._spec.events, self._spec.node, iteration)
+            elif line in self._calls:
+                iteration = iteration_of(self._known[line])
+                yield line, behaviour_curves(self._calls[line], trace, self._spec.events, self._spec.node, iteration)
 
     def _judged(self, line: int, text: str, verdict: Callable[[Execution], Verdict]) -> Verdict:
         if line in self._open:

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 from robbdd_tools.gherkin import text
 from robbdd_tools.gherkin.background_tables import SceneTable, elements_of
-from robbdd_tools.gherkin.steps import Placeholder, Step, StepWriter, UnknownElements
+from robbdd_tools.gherkin.binding import UnknownElements
+from robbdd_tools.gherkin.steps import Step, StepWriter
+from robbdd_tools.gherkin.words import Placeholder
 from robbdd_tools.graph.acceptance_model import Cell, Clause, Iri, Product, Selection, Table
 
 

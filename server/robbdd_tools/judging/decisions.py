@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.judging.observation_streams import Unobserved
-from robbdd_tools.judging.parsed_sentences import AnyOf, Clause, Filler, Fluent, Junction, Unmatched, fluents_of
 from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import NoWindow, occurrences, window
 from robbdd_tools.monitor.vacuity import Range, joined
 from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation, unknown
+from robbdd_tools.protocol.clauses import AnyOf, Clause, Filler, Fluent, Junction, Text, fluents_of
 from robbdd_tools.protocol.messages import NO_STEP
 from robbdd_tools.user_code.calls import UserCodeError, fault_of
 
@@ -37,8 +37,8 @@ def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[s
         case Junction(operator, operands):
             verdicts = [decide(operand, trace, regions, events) for operand in operands]
             return conjunction(verdicts) if operator == "and" else disjunction(verdicts)
-        case Unmatched(text):
-            return unknown(f"{NO_STEP} for '{text}'")
+        case Text(words):
+            return unknown(f"{NO_STEP} for '{words}'")
 
 
 def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:

@@ -13,10 +13,10 @@ import numpy as np
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.judging.decisions import ways
-from robbdd_tools.judging.parsed_sentences import Clause, Doing, Fluent, Junction, Unmatched
 from robbdd_tools.monitor.curve import Curve, curve
 from robbdd_tools.monitor.judge import WindowEvidence
 from robbdd_tools.monitor.time import Window
+from robbdd_tools.protocol.clauses import BehaviourCall, Clause, Fluent, Junction, Text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,19 +34,19 @@ def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False
         case Junction(operator, operands):
             for operand in operands:
                 yield from curves(operand, trace, regions, negated != (operator == "not"))
-        case Unmatched():
+        case Text():
             return
 
 
 def behaviour_curves(
-    doing: Doing, trace: Trace, emitters: Mapping[str, str], node: str = "", iteration: int = 0
+    call: BehaviourCall, trace: Trace, emitters: Mapping[str, str], node: str = "", iteration: int = 0
 ) -> tuple[Curve, ...]:
     """Return the duration of a behaviour, without a margin; ``emitters`` maps events to what emits them.
 
     ``node`` is that of the behaviour tree which executes it, if one does; ``iteration`` is 0 for a behaviour that is
     executed once.
     """
-    limits = doing.behaviour.events[0], doing.behaviour.events[-1]
+    limits = call.behaviour.events[0], call.behaviour.events[-1]
     if node:
         limits = emitter(node, START), emitter(node, END)
     stamps = [stamp for stamp in trace.events if stamp.iteration == iteration or not iteration]

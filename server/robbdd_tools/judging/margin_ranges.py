@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.coordination import START, emitter
 from robbdd_tools.judging.decisions import decide, ranges
-from robbdd_tools.judging.parsed_sentences import Clause, Fluent, Junction, fluents_of, read_doing
+from robbdd_tools.judging.scenario_clauses import behaviour_calls
 from robbdd_tools.monitor.time import Before, During
 from robbdd_tools.monitor.trace import EventStamp
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.protocol.clauses import Clause, Fluent, Junction, fluents_of
 from robbdd_tools.protocol.messages import MarginRanges
 
 if TYPE_CHECKING:
@@ -60,12 +61,11 @@ def _beginning(stated: ClauseSpec, spec: ScenarioSpec, trace: Trace) -> float | 
     if spec.node:
         emitting = emitter(spec.node, START)
     else:
-        doings = [read_doing(one.sentence) for one in spec.clauses if one.role == "when"]
-        behaviours = [doing.behaviour for doing in doings if doing is not None]
+        calls = behaviour_calls(spec)
         number = stated.iterations[0] if stated.iterations else 1
-        if len(behaviours) < number:
+        if len(calls) < number:
             return None
-        emitting = behaviours[number - 1].events[0]
+        emitting = calls[number - 1].behaviour.events[0]
     names = [event for event, emits in spec.events.items() if emits == emitting]
     return trace.event_time(names[0], stated.iterations[0] if stated.iterations else 0) if names else None
 

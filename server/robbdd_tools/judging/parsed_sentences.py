@@ -1,16 +1,25 @@
-"""Reads the sentences of a feature back into clauses and behaviours; every pattern derives from the catalog."""
+"""Reads sentences that a person has written into a feature; every pattern derives from the catalog."""
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.protocol.clauses import (
+    AnyOf,
+    BehaviourCall,
+    Clause,
+    EventOccurrence,
+    Filler,
+    Fluent,
+    Junction,
+    Statement,
+    Text,
+)
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Behaviour, Predicate, Slot
@@ -32,51 +41,6 @@ _NAMED = {"n": "\n", "r": "\r", "t": "\t"}
 _OPAQUE = re.compile(rf'"{QUOTED}"|\\.')
 
 
-@dataclass(frozen=True, slots=True)
-class AnyOf:
-    """Some element of these: what an existential variable stands for."""
-
-    elements: tuple[str, ...]
-
-
-Filler = str | tuple[str, ...] | AnyOf
-
-
-@dataclass(frozen=True, slots=True)
-class Fluent:
-    """``holds(predicate, time)`` with what fills the predicate's slots."""
-
-    predicate: Predicate
-    arguments: Mapping[str, Filler]
-    time: TimeConstraint
-
-
-@dataclass(frozen=True, slots=True)
-class Junction:
-    """Clauses joined by ``and`` or ``or``, or one clause negated."""
-
-    operator: Literal["and", "or", "not"]
-    operands: tuple[Clause, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Unmatched:
-    """A sentence that nothing in the catalog says."""
-
-    text: str
-
-
-Clause = Fluent | Junction | Unmatched
-
-
-@dataclass(frozen=True, slots=True)
-class Doing:
-    """A behaviour with what fills its slots."""
-
-    behaviour: Behaviour
-    arguments: Mapping[str, Filler]
-
-
 def sentence_pattern(sentence: str) -> str:
     """Return the regular expression of a catalog sentence, one named group per slot."""
     parts = re.split(r"\{(\w+)\}", sentence)
@@ -88,6 +52,18 @@ def sentence_pattern(sentence: str) -> str:
 def fluent_pattern(predicate: Predicate) -> str:
     """Return the regular expression of a step that states a fluent of this predicate."""
     return f"{sentence_pattern(predicate.sentence)} {TIME}"
+
+
+def read_step(role: str, text: str) -> Statement | None:
+    """Read the sentence of a step; ``None`` for a When step that neither the catalog nor an event states."""
+    if role != "when":
+        return read_clause(text)
+    if (match := re.fullmatch(OCCURS, text)) is not None:
+        return EventOccurrence(match["event"])
+    for behaviour, pattern in _behaviours():
+        if (match := pattern.fullmatch(text)) is not None:
+            return BehaviourCall(behaviour, _fillers(match, behaviour.slots))
+    return None
 
 
 def read_clause(text: str) -> Clause:
@@ -104,39 +80,10 @@ def read_clause(text: str) -> Clause:
         parts = _split(inner, f" {operator} ")
         if len(parts) > 1:
             return Junction(operator, tuple(read_clause(part) for part in parts))
-    return read_clause(inner) if inner != text else Unmatched(text)
-
-
-def read_doing(text: str) -> Doing | None:
-    """Read the sentence of a When step, ``None`` when it names no behaviour of the catalog."""
-    for behaviour, pattern in _doings():
-        if (match := pattern.fullmatch(text)) is not None:
-            return Doing(behaviour, _fillers(match, behaviour.slots))
-    return None
-
-
-def read_event(text: str) -> str | None:
-    """Return the event of the step ``event "…" occurs``, ``None`` for any other."""
-    match = re.fullmatch(OCCURS, text)
-    return match["event"] if match is not None else None
-
-
-def fluents_of(clause: Clause) -> Iterator[Fluent]:
-    """Yield the fluents of a clause."""
-    match clause:
-        case Fluent():
-            yield clause
-        case Junction():
-            for operand in clause.operands:
-                yield from fluents_of(operand)
-        case Unmatched():
-            return
-
-
-def read_timed_text(text: str) -> tuple[str, TimeConstraint] | None:
-    """Split a text that nothing in the catalog says from the time constraint it ends with, ``None`` without one."""
-    match = re.fullmatch(rf"(?P<words>.*) {TIME}", text)
-    return (match["words"], _time(match)) if match is not None else None
+    if inner != text:
+        return read_clause(inner)
+    match = re.fullmatch(rf"(?P<words>.*?) {TIME}", text)
+    return Text(text) if match is None else Text(match["words"], _time(match))
 
 
 def unescaped(text: str) -> str:
@@ -151,7 +98,7 @@ def _fluents() -> tuple[tuple[Predicate, re.Pattern[str]], ...]:
 
 
 @cache
-def _doings() -> tuple[tuple[Behaviour, re.Pattern[str]], ...]:
+def _behaviours() -> tuple[tuple[Behaviour, re.Pattern[str]], ...]:
     behaviours = load_catalog().behaviours.values()
     return tuple((word, re.compile(sentence_pattern(word.sentence))) for word in behaviours)
 

@@ -4,56 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from robbdd_tools.catalog.api import Predicate
 from robbdd_tools.judging.observation_streams import Stream, Unobserved
-from robbdd_tools.judging.parsed_sentences import Clause, Fluent, Junction, Unmatched, read_timed_text
 from robbdd_tools.monitor.time import After, Before, TimeConstraint
+from robbdd_tools.protocol.clauses import Fluent, Junction
 from robbdd_tools.protocol.specs import plain_name
 from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray
     from robbdd_tools.monitor.policy import Policy, Rule
-    from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
+    from robbdd_tools.protocol.clauses import Clause
+    from robbdd_tools.protocol.specs import ScenarioSpec
 
-NOTHING: Mapping[str, Any] = {}
 
-
-def with_policies(clause: Clause, stated: ClauseSpec | None, spec: ScenarioSpec) -> Clause:
-    """Return a clause whose fluents are judged by the policies of the scenario's execution, where it has any.
-
-    ``stated`` tells which fluents these are, in order.
-    """
+def with_policies(clause: Clause, spec: ScenarioSpec) -> Clause:
+    """Return a clause whose fluents are judged by the policies of the scenario's execution, where it has any."""
     policies = {} if spec.execution is None else {policy.clause: policy for policy in spec.execution.policies}
-    parts = () if stated is None else stated.parts or (stated.iri,)
-    if stated is None or not policies.keys() & set(parts):
-        return clause
-    stated_parts = zip_longest(parts, stated.arguments, fillvalue=NOTHING)
-    return _attached(clause, stated_parts, policies, spec)
+    return _attached(clause, policies, spec) if policies else clause
 
 
-def _attached(clause: Clause, parts: Iterator[Any], policies: Mapping[str, Policy], spec: ScenarioSpec) -> Clause:
+def _attached(clause: Clause, policies: Mapping[str, Policy], spec: ScenarioSpec) -> Clause:
     if isinstance(clause, Junction):
-        return replace(clause, operands=tuple(_attached(one, parts, policies, spec) for one in clause.operands))
-    part, arguments = next(parts, ("", NOTHING))
-    policy = policies.get(part)
-    if policy is None:
+        return replace(clause, operands=tuple(_attached(one, policies, spec) for one in clause.operands))
+    policy = policies.get(clause.iri)
+    if policy is None or clause.time is None:
         return clause
-    if isinstance(clause, Unmatched):
-        timed = read_timed_text(clause.text)
-        if timed is None:
-            return clause
-        time = timed[1]
-    else:
-        time = clause.time
-    return Fluent(_predicate(policy, spec, arguments), {}, _with_horizon(time, policy.horizon))
+    time = _with_horizon(clause.time, policy.horizon)
+    return Fluent(_predicate(policy, spec, clause.named), {}, time, clause.iri)
 
 
 def _with_horizon(time: TimeConstraint, horizon: float | None) -> TimeConstraint:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import product
 
-from robbdd_tools.judging.parsed_sentences import AnyOf, Clause, Filler, Fluent, fluents_of
+from robbdd_tools.protocol.clauses import AnyOf, Clause, Filler, Fluent, fluents_of
 
 
 def wanting(clause: Clause, quantity: str) -> Iterator[tuple[Fluent, Mapping[str, str]]]:

@@ -1,34 +1,74 @@
-"""Clauses as a scenario states them: their sentence, with its policies and the occurrences of events it refers to."""
+"""The clauses of a scenario as they are to be judged: with its policies, in their iterations of ``for all``."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.judging.parsed_sentences import Clause, Fluent, Junction, Unmatched, read_clause
+from robbdd_tools.judging.parsed_sentences import read_step
 from robbdd_tools.judging.policies import with_policies
 from robbdd_tools.monitor.time import in_iterations
+from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Junction
 
 if TYPE_CHECKING:
+    from robbdd_tools.protocol.clauses import Clause, Statement
     from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
 
-def stated_clause(text: str, stated: ClauseSpec | None, spec: ScenarioSpec) -> Clause:
-    """Return the Given or Then clause of a sentence; ``stated`` is what the manifest says of it, if anything."""
-    clause = with_policies(read_clause(text), stated, spec)
-    return clause if stated is None else _within(clause, stated)
+def statement_of(known: ClauseSpec) -> Statement | None:
+    """Return what a clause of the manifest states; the sentence is read where an earlier version wrote no more."""
+    return known.statement or _with_iris(read_step(known.role, known.sentence), known)
 
 
-def stated_iteration(stated: ClauseSpec | None) -> int:
+def stated_by_step(role: str, text: str, known: ClauseSpec | None) -> Statement | None:
+    """Return what a step states: the clause ``known`` of its line, or, where a person has edited it, its sentence."""
+    if known is None:
+        return read_step(role, text)
+    return statement_of(known) if known.sentence == text else _with_iris(read_step(role, text), known)
+
+
+def judged_clause(clause: Clause, known: ClauseSpec | None, spec: ScenarioSpec) -> Clause:
+    """Return a clause with the policies of the scenario's execution, its events those of its iterations."""
+    found = with_policies(clause, spec)
+    return found if known is None else _in_iterations(found, known)
+
+
+def clause_of(known: ClauseSpec, spec: ScenarioSpec) -> Clause:
+    """Return a Given or Then clause of the manifest as it is to be judged; raises ``TypeError`` for a When clause."""
+    statement = statement_of(known)
+    if statement is None or isinstance(statement, BehaviourCall | EventOccurrence):
+        raise TypeError(f"{known.sentence} is a When clause")
+    return judged_clause(statement, known, spec)
+
+
+def behaviour_calls(spec: ScenarioSpec) -> list[BehaviourCall]:
+    """Return the behaviours of a scenario in the order in which they are executed."""
+    statements = (statement_of(clause) for clause in spec.clauses if clause.role == "when")
+    return [statement for statement in statements if isinstance(statement, BehaviourCall)]
+
+
+def iteration_of(known: ClauseSpec | None) -> int:
     """Return the iteration in which a When clause expects its event, 0 for any."""
-    return stated.iterations[0] if stated is not None and stated.iterations else 0
+    return known.iterations[0] if known is not None and known.iterations else 0
 
 
-def _within(clause: Clause, stated: ClauseSpec) -> Clause:
-    match clause:
-        case Fluent():
-            return replace(clause, time=in_iterations(clause.time, stated.role, stated.iterations))
-        case Junction():
-            return replace(clause, operands=tuple(_within(operand, stated) for operand in clause.operands))
-        case Unmatched():
-            return clause
+def _with_iris(statement: Statement | None, known: ClauseSpec) -> Statement | None:
+    """Name the fluents and texts of a sentence that was read, in order."""
+    if statement is None or isinstance(statement, BehaviourCall | EventOccurrence):
+        return statement
+    return _named(statement, iter(known.parts or (known.iri,)))
+
+
+def _named(clause: Clause, iris: Iterator[str]) -> Clause:
+    if isinstance(clause, Junction):
+        return replace(clause, operands=tuple(_named(operand, iris) for operand in clause.operands))
+    return replace(clause, iri=next(iris, ""))
+
+
+def _in_iterations(clause: Clause, known: ClauseSpec) -> Clause:
+    if isinstance(clause, Junction):
+        return replace(clause, operands=tuple(_in_iterations(operand, known) for operand in clause.operands))
+    if clause.time is None:
+        return clause
+    return replace(clause, time=in_iterations(clause.time, known.role, known.iterations))

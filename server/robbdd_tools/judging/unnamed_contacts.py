@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.predicates.does_not_collide import DOES_NOT_COLLIDE
 from robbdd_tools.judging.decisions import ways
-from robbdd_tools.judging.parsed_sentences import Clause, fluents_of
+from robbdd_tools.protocol.clauses import Clause, fluents_of
 
 if TYPE_CHECKING:
     from robbdd_tools.monitor.contact import Contact

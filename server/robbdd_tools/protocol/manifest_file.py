@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,8 @@ from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.writing import replacing
 from robbdd_tools.catalog.coordination import TreeSpec
+from robbdd_tools.protocol.clauses import Statement, to_plain
+from robbdd_tools.protocol.clauses import from_plain as statement_from_plain
 from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, Manifest, ScenarioSpec, SceneSpec
 
 MANIFEST = "manifest.json"
@@ -74,11 +76,19 @@ def _scenario(
             tuple(scene.get("unused", ())),
             {name: tuple(sets) for name, sets in scene.get("sets", {}).items()},
         ),
-        clauses=tuple(from_plain(ClauseSpec, clause) for clause in clauses),
+        clauses=tuple(map(_clause, clauses)),
         execution=None if execution is None else executions[execution],
         tree=None if tree is None else trees[tree],
         **entry,
     )
+
+
+def _clause(entry: dict[str, Any]) -> ClauseSpec:
+    # Earlier versions wrote the values for users' code beside the sentence.
+    entry.pop("arguments", None)
+    statement = entry.pop("statement", None)
+    found = from_plain(ClauseSpec, entry)
+    return found if statement is None else replace(found, statement=statement_from_plain(statement))
 
 
 def _json(value: object) -> str:
@@ -91,6 +101,8 @@ def _plain(value: Any) -> object:
         return value.iri
     if isinstance(value, TreeSpec):
         return value.name
+    if isinstance(value, Statement):
+        return to_plain(value)
     return {name: getattr(value, name) for name in _names(value.__class__)}
 
 

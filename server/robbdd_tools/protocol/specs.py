@@ -10,6 +10,7 @@ from typing import Any
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.policy import Policy
+from robbdd_tools.protocol.clauses import Statement
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +64,8 @@ class ExecutionSpec:
 class ClauseSpec:
     """One clause of one scenario: the feature line of its step, the IRI it judges, its place in the scenario.
 
-    ``parts`` are the IRIs of the fluents of a group, in the order of the sentence. ``arguments`` are, for a clause that
-    users' code judges, what fills the slots and quantified variables of each of these fluents, by name. ``iterations``
+    ``statement`` is what it states; a run that an earlier version has stored has none, and its ``sentence`` is read.
+    ``parts`` are the IRIs of the fluents and texts of a group, in the order of the sentence. ``iterations``
     are the first and the last behaviour of the clause's scope, counted from 1 within the scenario; nothing where the
     scenario executes a single one.
     """
@@ -74,8 +75,8 @@ class ClauseSpec:
     name: str
     role: str
     sentence: str
+    statement: Statement | None = None
     parts: tuple[str, ...] = ()
-    arguments: tuple[Mapping[str, Any], ...] = ()
     iterations: tuple[int, ...] = ()
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from robbdd_tools.gherkin.steps import Scope, Step
-from robbdd_tools.graph.acceptance_model import BehaviourClause
+from robbdd_tools.protocol.clauses import BehaviourCall
 
 
 def behaviour_scopes(steps: Iterable[Step]) -> list[Scope]:
     """Return the scope of each behaviour among the steps of a scenario, in the order in which they are executed."""
-    return [step.scope for step in steps if step.source is not None and isinstance(step.source[0], BehaviourClause)]
+    return [step.scope for step in steps if isinstance(step.statement, BehaviourCall)]
 
 
 def iterations_of(scope: Scope, behaviours: Sequence[Scope]) -> tuple[int, ...]:

@@ -10,8 +10,9 @@ from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.gherkin.background_tables import elements_of
+from robbdd_tools.gherkin.binding import Binder
 from robbdd_tools.gherkin.feature import ScenarioText
-from robbdd_tools.gherkin.steps import AnyOf, Bound, Filler, Placeholder, Step, StepWriter
+from robbdd_tools.gherkin.steps import Step
 from robbdd_tools.graph.acceptance_model import (
     AcceptanceModel,
     BehaviourClause,
@@ -28,7 +29,9 @@ from robbdd_tools.graph.acceptance_model import (
 )
 from robbdd_tools.graph.read.clauses import used_names
 from robbdd_tools.monitor.policy import Observation, Policy
-from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec, plain_name
+from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, leaves_of
+from robbdd_tools.protocol.clauses import Junction as StatedJunction
+from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
 from robbdd_tools.run.iterations import behaviour_scopes, iterations_of
 from robbdd_tools.run.related import Linked, Relations
 from robbdd_tools.run.seeds import scenario_seed
@@ -76,8 +79,8 @@ class SpecWriter:
             lambda variant: self._known(variant).events,
         )
         policies = () if execution is None else execution.policies
-        self._by_code = {policy.clause for policy in policies if policy.rule.kind == "python"}
-        self._steps = StepWriter(model, load_catalog())
+        by_code = frozenset(policy.clause for policy in policies if policy.rule.kind == "python")
+        self._binder = Binder(model, load_catalog(), by_code)
         self._sets: dict[str, tuple[str, ...]] = {}
         for name, elements in model.sets.items():
             for element in elements:
@@ -148,23 +151,14 @@ class SpecWriter:
 
     def _clause(self, line: int, step: Step, iterations: tuple[int, ...]) -> ClauseSpec:
         name = self._curie(step.clause).rsplit(":", 1)[-1]
-        found = ClauseSpec(line, step.clause, name, step.role, step.text, step.parts, iterations=iterations)
-        if step.source is None or not self._by_code & {step.clause, *step.parts}:
+        statement = step.statement
+        found = ClauseSpec(line, step.clause, name, step.role, step.text, statement, (), iterations)
+        if isinstance(statement, BehaviourCall | EventOccurrence):
             return found
-        return replace(found, arguments=tuple(map(self._arguments, self._steps.parts(*step.source))))
-
-    def _arguments(self, bound: Bound) -> dict[str, object]:
-        """Return by name what the variables of a clause stand for, and what fills its slots."""
-        clause, values = bound
-        slots: Mapping[str, Iri | str] = getattr(clause, "arguments", {})
-        filled = {name: values.get(term, term) if isinstance(term, Iri) else term for name, term in slots.items()}
-        named = {plain_name(self._curie(variable)): value for variable, value in values.items()}
-        return {name: self._filler(value) for name, value in {**named, **filled}.items()}
-
-    def _filler(self, value: Filler) -> object:
-        if isinstance(value, AnyOf):
-            return list(value.elements)
-        return value.name if isinstance(value, Placeholder) else self._plain(value)
+        parts = tuple(leaf.iri for leaf in leaves_of(statement))
+        if not self._binder.by_code.isdisjoint(parts):
+            found = replace(found, statement=self._binder.bind(*step.source))
+        return replace(found, parts=parts) if isinstance(statement, StatedJunction) else found
 
     def _curie(self, iri: str) -> str:
         found = self._curies.get(iri)

@@ -1,0 +1,211 @@
+"""Fills the variables of a model's clauses in: what a clause states in one scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Set
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.api import Kind
+from robbdd_tools.gherkin import text
+from robbdd_tools.gherkin.words import Placeholder, filled
+from robbdd_tools.graph.acceptance_model import (
+    AcceptanceModel,
+    BehaviourClause,
+    Cell,
+    Clause,
+    EventClause,
+    Exists,
+    Fluent,
+    ForAll,
+    Iri,
+    Junction,
+    TextClause,
+    TextFluent,
+)
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.protocol import clauses as stated
+from robbdd_tools.protocol.specs import plain_name
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.registry import Catalog
+
+Value = Cell | stated.AnyOf
+"""What a variable stands for; in a Scenario Outline a ``Placeholder``."""
+Values = Mapping[Iri, Value]
+
+
+class UnknownElements(Exception):
+    """A set whose elements a Scenario Outline leaves open would have to be gone through."""
+
+
+@dataclass(frozen=True, slots=True)
+class Binder:
+    """Fills the clauses of one model in. Clauses whose IRIs are in ``by_code`` carry their values by name."""
+
+    model: AcceptanceModel
+    catalog: Catalog
+    by_code: Set[str] = frozenset()
+    _curies: dict[str, str] = field(default_factory=dict[str, str])
+
+    def curie(self, iri: str) -> str:
+        """Return the short form of an IRI; a model has few and writes them often."""
+        found = self._curies.get(iri)
+        if found is None:
+            found = self._curies[iri] = self.model.curie(iri)
+        return found
+
+    def bind(self, clause: Clause, values: Values) -> stated.Statement:
+        """Return what a clause states."""
+        match clause:
+            case BehaviourClause():
+                behaviour = self.catalog.behaviours[clause.behaviour]
+                places = [clause.arguments.get(slot.name) for slot in behaviour.slots if slot.kind is Kind.WORKSPACE]
+                any_place = {place: self._any_of(place, values) for place in places if isinstance(place, Iri)}
+                slots = (slot.name for slot in behaviour.slots)
+                return stated.BehaviourCall(behaviour, self._slots(slots, clause.arguments, {**values, **any_place}))
+            case EventClause():
+                return stated.EventOccurrence(self.curie(clause.event))
+            case _:
+                return self.clause(clause, values)
+
+    def clause(self, clause: Clause, values: Values) -> stated.Clause:
+        """Return what a clause states that is no When clause."""
+        match clause:
+            case Fluent():
+                predicate = self.catalog.predicates[clause.predicate]
+                slots = self._slots((slot.name for slot in predicate.slots), clause.arguments, values)
+                return stated.Fluent(predicate, slots, self._time(clause), clause.iri, self._named(clause, values))
+            case TextFluent():
+                fillers = self._slots(clause.arguments, clause.arguments, values)
+                words = filled(text.free(clause.template), fillers)
+                return stated.Text(words, self._time(clause), clause.iri, self._named(clause, values))
+            case TextClause():
+                return stated.Text(text.free(clause.text), self._time(clause), clause.iri, self._named(clause, values))
+            case Junction(operator="not"):
+                return stated.Junction("not", (self._joined("and", clause.operands, values),))
+            case Junction():
+                operands = tuple(self.clause(operand, values) for operand in clause.operands)
+                return stated.Junction("or" if clause.operator == "or" else "and", operands)
+            case Exists() if self.is_one_choice(clause, values):
+                return self._joined("and", clause.clauses, self.some(clause, values))
+            case Exists():
+                each = tuple(self._joined("and", clause.clauses, inner) for inner in self._each(clause, values))
+                return each[0] if len(each) == 1 else stated.Junction("or", each)
+            case ForAll():
+                each = tuple(self._joined("and", clause.clauses, inner) for inner in self._each(clause, values))
+                return each[0] if len(each) == 1 else stated.Junction("and", each)
+            case BehaviourClause() | EventClause():
+                raise TypeError("a When clause cannot be a part of a group")
+
+    def elements(self, in_set: Iri, values: Values) -> tuple[Cell, ...]:
+        """Return the elements of a set: the value of a variable, or a constant set; raises ``UnknownElements``."""
+        match values.get(in_set, self.model.sets.get(in_set, ())):
+            case stated.AnyOf(elements):
+                return elements
+            case Placeholder():
+                raise UnknownElements
+            case tuple() as several:
+                return several
+            case one:
+                return (one,)
+
+    def some(self, exists: Exists, values: Values) -> Values:
+        """Return values in which the variable of a quantifier stands for any element of its set."""
+        elements = tuple(self._plain(element) for element in self.elements(exists.in_set, values))
+        return {**values, exists.variable: stated.AnyOf(elements)}
+
+    def is_one_choice(self, exists: Exists, values: Values) -> bool:
+        """Whether *any of* in one place says all: otherwise each choice has to be written out and joined by *or*.
+
+        One element must satisfy all clauses, and "some element is not there" is not "it is not any of them".
+        """
+        if not self.elements(exists.in_set, values):
+            return True
+        about = [clause for clause in exists.clauses if mentions(clause, exists.variable)]
+        return not about or (len(about) == 1 and _mentions_once(about[0], exists.variable))
+
+    def filler(self, value: Value) -> stated.Filler:
+        """Return a value as it fills a slot."""
+        match value:
+            case Iri():
+                return self.curie(value)
+            case str() | stated.AnyOf():
+                return value
+            case tuple():
+                return tuple(map(self._plain, value))
+            case _:
+                return str(value)
+
+    def _joined(self, operator: str, parts: tuple[Clause, ...], values: Values) -> stated.Clause:
+        found = tuple(self.clause(part, values) for part in parts)
+        return found[0] if len(found) == 1 else stated.Junction("or" if operator == "or" else "and", found)
+
+    def _any_of(self, place: Iri, values: Values) -> Value:
+        """Return what a place stands for; of a set, a behaviour chooses any element."""
+        value = values.get(place, self.model.sets.get(place, place))
+        return stated.AnyOf(tuple(map(self._plain, value))) if isinstance(value, tuple) else value
+
+    def _each(self, quantified: Exists | ForAll, values: Values) -> Iterator[Values]:
+        for element in self.elements(quantified.in_set, values):
+            yield {**values, quantified.variable: element}
+
+    def _plain(self, value: Value) -> str:
+        return self.curie(value) if isinstance(value, Iri) else str(value)
+
+    def _slots(
+        self, slots: Iterable[str], arguments: Mapping[str, Iri | str], values: Values
+    ) -> dict[str, stated.Filler]:
+        return {slot: self._slot(slot, arguments.get(slot), values) for slot in slots}
+
+    def _slot(self, slot: str, term: Iri | str | None, values: Values) -> stated.Filler:
+        # An incomplete graph may leave a slot open; its name in braces shows it.
+        if term is None:
+            return f"{{{slot}}}"
+        return self.filler(values.get(term, term) if isinstance(term, Iri) else term)
+
+    def _time(self, clause: Fluent | TextFluent | TextClause) -> TimeConstraint:
+        match clause.time:
+            case During(start, end):
+                return During(self.curie(start), self.curie(end))
+            case Before(event, horizon):
+                return Before(self.curie(event), horizon)
+            case After(event, horizon):
+                return After(self.curie(event), horizon)
+
+    def _named(self, clause: Fluent | TextFluent | TextClause, values: Values) -> dict[str, object]:
+        """Return by name what the variables of a clause stand for, and what fills its slots."""
+        if clause.iri not in self.by_code:
+            return {}
+        slots: Mapping[str, Iri | str] = {} if isinstance(clause, TextClause) else clause.arguments
+        own = {name: values.get(term, term) if isinstance(term, Iri) else term for name, term in slots.items()}
+        variables = {plain_name(self.curie(variable)): value for variable, value in values.items()}
+        return {name: self._value(value) for name, value in {**variables, **own}.items()}
+
+    def _value(self, value: Value) -> object:
+        match value:
+            case stated.AnyOf(elements):
+                return list(elements)
+            case tuple():
+                return [self._value(one) for one in value]
+            case _:
+                return self.curie(value) if isinstance(value, Iri) else value
+
+
+def mentions(clause: Clause, variable: Iri) -> bool:
+    """Tell whether a clause speaks of a variable."""
+    match clause:
+        case Fluent() | TextFluent() | BehaviourClause():
+            return variable in clause.arguments.values()
+        case Junction():
+            return any(mentions(operand, variable) for operand in clause.operands)
+        case ForAll() | Exists():
+            return clause.in_set == variable or any(mentions(part, variable) for part in clause.clauses)
+        case TextClause() | EventClause():
+            return False
+
+
+def _mentions_once(clause: Clause, variable: Iri) -> bool:
+    if isinstance(clause, Fluent | TextFluent):
+        return list(clause.arguments.values()).count(variable) == 1
+    return isinstance(clause, Exists) and len(clause.clauses) == 1 and _mentions_once(clause.clauses[0], variable)

@@ -1,0 +1,45 @@
+"""How values stand in the sentences of steps."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import cache
+
+from robbdd_tools.gherkin import text
+from robbdd_tools.protocol.clauses import AnyOf, Filler
+
+
+class Placeholder(str):
+    """What a variable stands for in a Scenario Outline: the name of its column."""
+
+    __slots__ = ()
+
+
+def word(filler: Filler) -> str:
+    """Return a value as it stands inside the quotes of a sentence."""
+    match filler:
+        case Placeholder():
+            return f"<{filler}>"
+        case AnyOf(elements):
+            return f"any of {text.set_inside_quotes(elements)}"
+        case str():
+            return text.inside_quotes(filler)
+        case _:
+            return text.set_inside_quotes(filler)
+
+
+def filled(sentence: str, fillers: Mapping[str, Filler]) -> str:
+    """Return a sentence with its ``{slots}`` filled in; a slot that nothing fills stays."""
+    parts = list(_slots(sentence))
+    for index in range(1, len(parts), 2):
+        filler = fillers.get(parts[index])
+        parts[index] = f"{{{parts[index]}}}" if filler is None else word(filler)
+    return "".join(parts)
+
+
+# Not str.format: a user's template must not reach attributes or items of our objects.
+@cache
+def _slots(sentence: str) -> tuple[str, ...]:
+    """Split a sentence at its ``{slots}``: words and names of slots in turn."""
+    return tuple(re.split(r"\{(\w[\w-]*)\}", sentence))

@@ -1,0 +1,188 @@
+"""What the clauses of one scenario state, as data: every variable is filled in, names are CURIEs.
+
+The parent process makes them of the model and writes the sentences of features from them; the agent takes them from
+the manifest and reads a sentence only where a person has written it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import Behaviour, Predicate
+
+
+@dataclass(frozen=True, slots=True)
+class AnyOf:
+    """Some element of these: what an existential variable, or a set as a place, stands for."""
+
+    elements: tuple[str, ...]
+
+
+Filler = str | tuple[str, ...] | AnyOf
+"""What fills a slot: an element or a value, a set, or any element of a set."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fluent:
+    """``holds(predicate, time)`` with what fills the predicate's slots.
+
+    ``iri`` is that of the model's clause. ``named`` are, for users' code that judges it, the values of its slots and
+    quantified variables by name.
+    """
+
+    predicate: Predicate
+    arguments: Mapping[str, Filler]
+    time: TimeConstraint
+    iri: str = ""
+    named: Mapping[str, Any] = field(default_factory=dict[str, Any])
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """Words that nothing in the catalog states, as they stand in the step; ``time`` is ``None`` where they have none.
+
+    ``iri`` and ``named`` are as those of a fluent.
+    """
+
+    words: str
+    time: TimeConstraint | None = None
+    iri: str = ""
+    named: Mapping[str, Any] = field(default_factory=dict[str, Any])
+
+
+@dataclass(frozen=True, slots=True)
+class Junction:
+    """Clauses joined by ``and`` or ``or``, or one clause negated."""
+
+    operator: Literal["and", "or", "not"]
+    operands: tuple[Clause, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class BehaviourCall:
+    """A behaviour with what fills its slots."""
+
+    behaviour: Behaviour
+    arguments: Mapping[str, Filler]
+
+
+@dataclass(frozen=True, slots=True)
+class EventOccurrence:
+    """An event that a When clause waits for."""
+
+    event: str
+
+
+Clause = Fluent | Text | Junction
+"""What a Given or Then clause states."""
+Statement = Clause | BehaviourCall | EventOccurrence
+"""What any clause states."""
+
+
+def leaves_of(clause: Clause) -> Iterator[Fluent | Text]:
+    """Yield the fluents and texts of a clause, in the order of its sentence."""
+    if isinstance(clause, Junction):
+        for operand in clause.operands:
+            yield from leaves_of(operand)
+    else:
+        yield clause
+
+
+def fluents_of(clause: Clause) -> Iterator[Fluent]:
+    """Yield the fluents of a clause, in the order of its sentence."""
+    return (leaf for leaf in leaves_of(clause) if isinstance(leaf, Fluent))
+
+
+def to_plain(statement: Statement) -> dict[str, Any]:
+    """Return a statement as it is written to JSON."""
+    match statement:
+        case Fluent(predicate, arguments):
+            return {"predicate": predicate.name, "arguments": _plain_arguments(arguments), **_leaf(statement)}
+        case Text(words):
+            return {"text": words, **_leaf(statement)}
+        case Junction(operator, operands):
+            return {"operator": operator, "operands": [to_plain(operand) for operand in operands]}
+        case BehaviourCall(behaviour, arguments):
+            return {"behaviour": behaviour.name, "arguments": _plain_arguments(arguments)}
+        case EventOccurrence(event):
+            return {"event": event}
+
+
+def from_plain(data: Mapping[str, Any]) -> Statement:
+    """Return the statement that ``to_plain`` has written; raises ``KeyError``, ``TypeError`` or ``ValueError``."""
+    match data:
+        case {"behaviour": str(name), "arguments": arguments}:
+            return BehaviourCall(load_catalog().behaviours[name], _arguments(arguments))
+        case {"event": str(event)}:
+            return EventOccurrence(event)
+        case _:
+            return _clause(data)
+
+
+def _clause(data: Mapping[str, Any]) -> Clause:
+    match data:
+        case {"operator": "and" | "or" | "not" as operator, "operands": operands}:
+            return Junction(operator, tuple(map(_clause, operands)))
+        case {"predicate": str(name), "arguments": arguments, "time": time}:
+            found = _time(time)
+            assert found is not None
+            iri, named = data.get("iri", ""), data.get("named", {})
+            return Fluent(load_catalog().predicates[name], _arguments(arguments), found, iri, named)
+        case {"text": str(words)}:
+            return Text(words, _time(data.get("time")), data.get("iri", ""), data.get("named", {}))
+        case _:
+            raise ValueError(f"{data!r} is no clause")
+
+
+def _leaf(leaf: Fluent | Text) -> dict[str, Any]:
+    found: dict[str, Any] = {} if leaf.time is None else {"time": _plain_time(leaf.time)}
+    return {**found, "iri": leaf.iri, **({"named": dict(leaf.named)} if leaf.named else {})}
+
+
+def _plain_arguments(arguments: Mapping[str, Filler]) -> dict[str, object]:
+    plain = {name: {"any": list(one.elements)} if isinstance(one, AnyOf) else one for name, one in arguments.items()}
+    return cast(dict[str, object], plain)
+
+
+def _arguments(data: Mapping[str, Any]) -> dict[str, Filler]:
+    return {name: _filler(value) for name, value in data.items()}
+
+
+def _filler(value: Any) -> Filler:
+    match value:
+        case str():
+            return value
+        case {"any": elements}:
+            return AnyOf(tuple(map(str, elements)))
+        case _:
+            return tuple(map(str, value))
+
+
+def _plain_time(time: TimeConstraint) -> dict[str, Any]:
+    match time:
+        case During(start, end):
+            return {"from": start, "until": end}
+        case Before(event, horizon):
+            return {"before": event, "horizon": horizon}
+        case After(event, horizon):
+            return {"after": event, "horizon": horizon}
+
+
+def _time(data: Mapping[str, Any] | None) -> TimeConstraint | None:
+    match data:
+        case None:
+            return None
+        case {"from": str(start), "until": str(end)}:
+            return During(start, end)
+        case {"before": str(event), "horizon": horizon}:
+            return Before(event, horizon)
+        case {"after": str(event), "horizon": horizon}:
+            return After(event, horizon)
+        case _:
+            raise ValueError(f"{data!r} is no time constraint")
