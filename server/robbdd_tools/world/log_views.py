@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.world.drawn_shapes import DIGITS, color, geometry, shown_geoms
@@ -51,8 +50,8 @@ def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float
     """Yield the verdicts, each at its instant, or at the trace's end (s) where it has none."""
     clauses = {clause.line: clause for clause in spec.clauses}
     for one in judged:
-        clause = asdict(clauses[one.line])
-        del clause["line"]
+        stated = clauses[one.line]
+        clause = {"iri": stated.iri, "name": stated.name, "role": stated.role, "sentence": stated.sentence}
         details = {"verdict": one.verdict, "robustness": one.robustness, "unit": one.unit, "reason": one.reason}
         yield (end if one.at is None else one.at), "/verdicts", {**clause, **details}
 
