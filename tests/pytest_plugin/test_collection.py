@@ -28,12 +28,6 @@ def loaded() -> None:
     load(EXAMPLES / "pickplace" / "pickplace.bdd").scenarios()
 
 
-@pytest.fixture(autouse=True)
-def _quiet(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Spare the sessions the warnings of a plugin that wants to be configured."""
-    monkeypatch.setenv("PYTEST_ADDOPTS", "-p no:asyncio")
-
-
 @pytest.fixture
 def bench(pytester: pytest.Pytester) -> Path:
     """A project with one model of four scenarios."""
@@ -43,16 +37,21 @@ def bench(pytester: pytest.Pytester) -> Path:
     return path
 
 
+def session(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
+    """Run pytest, without a plugin that warns when nobody configures it."""
+    return pytester.runpytest_inprocess("-p", "no:asyncio", *arguments)
+
+
 def collected(pytester: pytest.Pytester, *arguments: str) -> list[str]:
     """Return the ids of the tests that pytest would run."""
-    done = pytester.runpytest_inprocess("--collect-only", "-q", *arguments)
+    done = session(pytester, "--collect-only", "-q", *arguments)
     return [line for line in done.outlines if "::" in line and not line.startswith(("ERROR", "FAILED"))]
 
 
 def test_nothing_changes_while_it_is_off(pytester: pytest.Pytester, bench: Path) -> None:
     pytester.makepyfile("def test_sum():\n    assert 1 + 1 == 2")
     assert collected(pytester) == ["test_nothing_changes_while_it_is_off.py::test_sum"]
-    done = pytester.runpytest_inprocess(bench.name)
+    done = session(pytester, bench.name)
     assert done.ret == pytest.ExitCode.USAGE_ERROR
     assert not (pytester.path / ".robbdd").exists()
 
@@ -76,7 +75,7 @@ def test_an_installed_plugin_that_is_off_loads_pytest_only(pytester: pytest.Pyte
 
 
 def test_an_option_without_the_switch_is_refused(pytester: pytest.Pytester) -> None:
-    done = pytester.runpytest_inprocess("--robbdd-where", "part=bolt")
+    done = session(pytester, "--robbdd-where", "part=bolt")
     assert done.ret == pytest.ExitCode.USAGE_ERROR
     done.stderr.fnmatch_lines(["*--robbdd-where needs --robbdd, or 'robbdd = true' in the ini file*"])
 
@@ -145,7 +144,7 @@ def test_an_error_in_a_model_is_a_collection_error_with_its_place(pytester: pyte
     bad = MODEL.replace("obj set <parts>", "obj set <part>")
     (pytester.path / "bad.bdd").write_text(bad, encoding="utf-8")
     line = next(n for n, text in enumerate(bad.splitlines(), start=1) if "obj set <part>" in text)
-    done = pytester.runpytest_inprocess("--robbdd", "--collect-only")
+    done = session(pytester, "--robbdd", "--collect-only")
     done.stdout.fnmatch_lines([f"bad.bdd:{line}:*: error: *[[]unknown-name[]]"])
     assert done.ret == pytest.ExitCode.INTERRUPTED
     assert "Traceback" not in done.stdout.str()
@@ -154,7 +153,7 @@ def test_an_error_in_a_model_is_a_collection_error_with_its_place(pytester: pyte
 def test_a_warning_about_a_model_is_a_warning_of_pytest(pytester: pytest.Pytester, bench: Path) -> None:
     warnings = [finding for finding in load(bench).diagnostics if finding.severity.name == "WARNING"]
     assert warnings
-    done = pytester.runpytest_inprocess("--robbdd", "--collect-only")
+    done = session(pytester, "--robbdd", "--collect-only")
     assert f"ModelWarning: {warnings[0]}" in done.stdout.str()
 
 
@@ -170,7 +169,7 @@ def test_a_warning_about_a_model_is_a_warning_of_pytest(pytester: pytest.Pyteste
 )
 def test_a_selection_of_nothing_is_an_error_not_a_pass(pytester: pytest.Pytester, option: str, reason: str) -> None:
     pytester.makepyfile("def test_sum():\n    assert 1 + 1 == 2")
-    done = pytester.runpytest_inprocess("--robbdd", option)
+    done = session(pytester, "--robbdd", option)
     done.assert_outcomes(passed=1, errors=1)
     done.stdout.fnmatch_lines([reason])
     assert "/_pytest/" not in done.stdout.str()
@@ -187,7 +186,7 @@ def test_a_selection_of_nothing_is_an_error_not_a_pass(pytester: pytest.Pytester
     ],
 )
 def test_numbers_that_make_no_sense_are_refused(pytester: pytest.Pytester, option: list[str], reason: str) -> None:
-    done = pytester.runpytest_inprocess("--robbdd", *option)
+    done = session(pytester, "--robbdd", *option)
     assert done.ret == pytest.ExitCode.USAGE_ERROR
     done.stderr.fnmatch_lines([f"*{reason}"])
 
@@ -206,7 +205,7 @@ def test_a_model_without_scenarios_is_an_error_when_it_is_named(pytester: pytest
     library = MODEL.partition("User Story")[0]
     (pytester.path / "library.bdd").write_text(library, encoding="utf-8")
     assert collected(pytester, "--robbdd") == ALL
-    done = pytester.runpytest_inprocess("--robbdd", "library.bdd")
+    done = session(pytester, "--robbdd", "library.bdd")
     done.stdout.fnmatch_lines(["*library.bdd: the model has no scenario to run"])
     assert done.ret == pytest.ExitCode.INTERRUPTED
 

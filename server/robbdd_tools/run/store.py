@@ -107,7 +107,8 @@ class StoredRun:
         """Return what was run; raises ``NoSuchRun``."""
         fields = self._json(RECORD)
         try:
-            return RunRecord(**{**fields, "models": tuple(fields.get("models", ()))})
+            found = RunRecord(**fields)
+            return replace(found, models=tuple(found.models))
         except TypeError:
             raise NoSuchRun(f"{self.folder / RECORD} is not the record of a run") from None
 
