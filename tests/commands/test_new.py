@@ -9,7 +9,7 @@ import pytest
 from kit import EXAMPLES
 from robbdd_tools.cli import main
 
-TEMPLATES = sorted(path.name for path in EXAMPLES.iterdir() if path.is_dir())
+TEMPLATES = sorted({path.parent.name for path in EXAMPLES.glob("*/*.bdd")})
 
 
 def test_the_templates_are_listed_with_what_they_are_for(capsys: pytest.CaptureFixture[str]) -> None:
