@@ -22,8 +22,9 @@ KINOVA_GEN3 = RobotModel(
     doc="Kinova Gen3: seven axes, two-finger gripper with an opening of 85 mm that grips by friction at 20 N.",
     source=(
         "Kinematics (classic Denavit-Hartenberg), ranges of joints 2, 4 and 6 and the largest tool speed of 0.5 m/s: "
-        "Kinova, 'KINOVA Gen3 Ultra lightweight robot User Guide'. Link masses, joint speeds and torques: the "
-        "description of the Gen3 that Kinova publishes with its robot driver. Stroke, smallest gripping force and mass "
+        "Kinova, 'KINOVA Gen3 Ultra lightweight robot User Guide'. Masses, centres of mass and "
+        "inertias of the links (bracelet without camera), joint speeds and torques: Kinova, ros_kortex, "
+        "kortex_description/arms/gen3/7dof/urdf/gen3_macro.xacro. Stroke, smallest gripping force and mass "
         "of the gripper: Robotiq, '2F-85 and 2F-140 Instruction Manual'; its linkage is ours: pads that slide in "
         "parallel. It stands on the table's edge, which is ours: its reach is the shortest of the catalog."
     ),

@@ -21,8 +21,10 @@ UR10 = RobotModel(
     stroke=0.030,
     doc="Universal Robots UR10: six axes, a suction cup of 30 mm that lets go at 42 N and grips only what it touches.",
     source=(
-        "Denavit-Hartenberg parameters and link masses: Universal Robots, 'DH Parameters for calculations of "
-        "kinematics and dynamics'. Joint ranges and speeds: Universal Robots, UR10 technical specifications. Joint "
+        "Denavit-Hartenberg parameters, masses, centres of mass and inertias of the links: Universal Robots, 'DH "
+        "Parameters for calculations of kinematics and dynamics', and with five digits config/ur10/"
+        "physical_parameters.yaml of its Universal_Robots_ROS2_Description. "
+        "Joint ranges and speeds: Universal Robots, UR10 technical specifications. Joint "
         "torques: Universal Robots, 'Max. joint torques' (joint sizes 4, 4, 3, 2, 2, 2). Height of the base above the "
         "world's origin: the scene of the RobBDD experiment. The cup and its tube are ours: 60 kPa below ambient "
         "pressure on a disc with a radius of 15 mm."
