@@ -21,6 +21,7 @@ from robbdd_tools.world.friction import pair_pads, rank_by_friction
 from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.scene import Cast, cast_scene
+from robbdd_tools.world.self_collision import name_bodies, pairs_apart
 from robbdd_tools.world.staging import Staging
 
 if TYPE_CHECKING:
@@ -30,7 +31,9 @@ if TYPE_CHECKING:
 FLOOR = TABLE_TOP - HEIGHT
 """Height of the floor, m, world frame."""
 THINGS = 1
-"""Collision group (bit) of objects; the n-th robot has the bit ``2 << n``. A robot does not hit itself."""
+"""Collision group (bit) of objects; the n-th robot has the bit ``2 << n``."""
+COLUMN = "robbdd-column"
+"""Name of the body that a robot stands on, among those of the robot's file."""
 TORSION, ROLLING = 0.005, 0.0005
 """Torsional and rolling friction of objects, m; without the latter a ball never comes to rest."""
 
@@ -180,11 +183,13 @@ def _add_scenery(spec: Any, scenery: Any, prefix: str, robots: int) -> None:
 
 def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, count: int) -> None:
     child = load_robot(robot)
-    own = 2 << index
+    name_bodies(child)
+    apart, beside_base = _pairs_apart(robot)
+    robots = sum(2 << other for other in range(count))
     for geom in child.geoms:
         if geom.contype or geom.conaffinity:
-            geom.contype = own
-            geom.conaffinity = THINGS | sum(2 << other for other in range(count) if other != index)
+            geom.contype = 2 << index
+            geom.conaffinity = THINGS | robots
     for servo in child.actuators:
         if servo.target in robot.joints:
             # What controls it is the speed of the target: one that jumps with every tick would shake the arm.
@@ -195,10 +200,19 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
     spec.attach(child, prefix=f"{name}/", frame=frame)
     half = (base.position[2] - FLOOR) / 2
     x, y, z = base.position
-    kind = mujoco.mjtGeom.mjGEOM_CYLINDER
-    column = spec.worldbody.add_geom(name=f"{name}/column", type=kind, size=[0.1, half, 0.0], pos=[x, y, z - half])
-    column.contype, column.conaffinity = 0, THINGS
+    foot = spec.worldbody.add_body(name=f"{name}/{COLUMN}", pos=[x, y, z - half])
+    column = foot.add_geom(type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[0.1, half, 0.0])
+    column.contype, column.conaffinity = 0, THINGS | robots
     column.rgba = [0.45, 0.47, 0.50, 1.0]
+    for one, other in (*apart, *((COLUMN, body) for body in beside_base)):
+        spec.add_exclude(bodyname1=f"{name}/{one}", bodyname2=f"{name}/{other}")
+
+
+@cache
+def _pairs_apart(robot: RobotModel) -> tuple[list[tuple[str, str]], list[str]]:
+    child = load_robot(robot)
+    name_bodies(child)
+    return pairs_apart(child, robot)
 
 
 def _geom_name(thing: str, index: int) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robbdd_tools.monitor.contact import Contact
-from robbdd_tools.world.engine import TICK, TIMESTEP, mujoco
+from robbdd_tools.world.engine import TICK, mujoco
 from robbdd_tools.world.owners import geom_owners
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ class ContactForces:
         self._model = model
         self._agents = tuple(agents)
         self._owners = geom_owners(model, self._agents)
+        self._step = float(model.opt.timestep)
         gravity = float(np.linalg.norm(model.opt.gravity))
         self._weights = {thing: float(model.body(thing).subtreemass[0]) * gravity for thing in things}
         self._in_every_step = frozenset(in_every_step)
@@ -67,7 +68,7 @@ class ContactForces:
             if holders[first] != holders[second] or (holders[first] and not (steady[first] or steady[second]))
         ]
         if counted:
-            self._measure(data, counted, TIMESTEP)
+            self._measure(data, counted, self._step)
 
     def record(self, data: Any, held: Mapping[str, Iterable[str]]) -> None:
         """Take a sample; from now on each agent grips the things ``held``."""

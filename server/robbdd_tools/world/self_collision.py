@@ -1,0 +1,78 @@
+"""Which parts of a robot can hit one another: all but those that are always close to each other."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+from robbdd_tools.world.engine import mujoco
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robbdd_tools.catalog.api import RobotModel
+
+NEAR = 2
+"""Joints between two parts up to which they do not hit each other: the housings of wrists overlap across two joints."""
+WORLD = 0
+
+
+def name_bodies(child: Any) -> None:
+    """Give a name to every body of a robot's editable description that has none."""
+    for number, body in enumerate(child.bodies[1:]):
+        body.name = body.name or f"part{number}"
+
+
+def pairs_apart(child: Any, robot: RobotModel) -> tuple[list[tuple[str, str]], list[str]]:
+    """Return the pairs of bodies of a robot that never count as hitting each other, and those beside its base.
+
+    As usual in motion planning these are neighbours (``NEAR``), parts of one gripper, and what touches at home with the
+    gripper open, where shapes are coarser than the arm. All bodies have names, see ``name_bodies``.
+    """
+    model = child.copy().compile()
+    names = [str(model.body(body).name) for body in range(model.nbody)]
+    near = (pair for pair in combinations(range(1, model.nbody), 2) if _joints_between(model, *pair) <= NEAR)
+    found = {*near, *combinations(_gripper(model, robot), 2), *_touching_at_home(child, robot)}
+    beside = [names[body] for body in range(1, model.nbody) if _joints_between(model, WORLD, body) <= NEAR]
+    return [(names[one], names[other]) for one, other in sorted(found)], beside
+
+
+def _path(model: Any, body: int) -> list[int]:
+    """Return a body and all that it hangs on, the world last."""
+    found = [body]
+    while found[-1] != WORLD:
+        found.append(int(model.body_parentid[found[-1]]))
+    return found
+
+
+def _joints_between(model: Any, one: int, other: int) -> int:
+    apart = set(_path(model, one)) ^ set(_path(model, other))
+    return sum(int(model.body_jntnum[body]) for body in apart)
+
+
+def _gripper(model: Any, robot: RobotModel) -> list[int]:
+    """Return the bodies of the gripper: all that hangs on the last body that carries every gripping face."""
+    paths = [_path(model, int(model.geom_bodyid[model.geom(pad).id])) for pad in robot.pads]
+    palm = next(body for body in paths[0] if all(body in path for path in paths))
+    return [] if palm == WORLD else [body for body in range(1, model.nbody) if palm in _path(model, body)]
+
+
+def _touching_at_home(child: Any, robot: RobotModel) -> Iterator[tuple[int, int]]:
+    alone = child.copy()
+    for geom in alone.geoms:
+        geom.contype = geom.conaffinity = int(bool(geom.contype or geom.conaffinity))
+    model = alone.compile()
+    data = mujoco.MjData(model)
+    for joint, angle in zip(robot.joints, robot.home, strict=True):
+        data.qpos[model.joint(joint).qposadr[0]] = angle
+    for pad in robot.pads:
+        body = model.body(int(model.geom_bodyid[model.geom(pad).id]))
+        for joint in range(int(body.jntadr[0]), int(body.jntadr[0] + body.jntnum[0])):
+            data.qpos[model.jnt_qposadr[joint]] = robot.gripper_open
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_collision(model, data)
+    for first, second in data.contact.geom.tolist():
+        one, other = sorted((int(model.geom_bodyid[first]), int(model.geom_bodyid[second])))
+        if one != WORLD:
+            yield one, other
