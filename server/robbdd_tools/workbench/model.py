@@ -13,7 +13,7 @@ from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.diagnostics import all_diagnostics
-from robbdd_tools.graph.write.foreign import GRAPH_FORMATS, graph_format
+from robbdd_tools.graph.write.foreign_imports import GRAPH_FORMATS, graph_format
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.syntax.parse import LANGUAGES

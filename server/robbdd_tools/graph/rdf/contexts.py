@@ -1,4 +1,7 @@
-"""JSON-LD contexts by name: ours, one beside the model, or one that the user once allowed to be fetched."""
+"""JSON-LD contexts by name: one beside the model, ours, or one that the user once allowed to be fetched.
+
+The contexts of the published metamodels are known by their addresses: they are ours with the terms of older versions.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,9 @@ import json
 import os
 import urllib.request
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from time import monotonic
 from typing import Any, cast
 from urllib.error import URLError
@@ -20,11 +23,30 @@ from robbdd_tools.base.files import Unreadable, load_text, read_text, uri_to_pat
 from robbdd_tools.base.limits import MIB, MODEL_SIZE
 from robbdd_tools.base.user_settings import user_file
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.graph.rdf.vocabulary import METAMODELS
 
 Json = dict[str, Any]
 CONTEXT_FILE = "context.jsonld"
 CONTEXT_IRI = f"https://robbdd.org/metamodels/{CONTEXT_FILE}"
 """Under this name, or as ``context.jsonld`` beside a model, our context is known without any network."""
+_PUBLISHED = frozenset(
+    {
+        *("agent", "bdd", "behaviour", "behaviour-tree", "environment", "event", "execution-context"),
+        *("observation", "python", "task", "time"),
+    }
+)
+"""Names of the published files whose terms our context has."""
+_OLDER = {
+    "holds": "bdd:holds",
+    "holds-at": "bdd:holds-at",
+    "predicate": "bdd:predicate",
+    "time-constraint": "bdd:time-constraint",
+    "of-clause": "bdd:of-clause",
+    "of-variable": "bdd:of-variable",
+    "ref-event": "time:ref-event",
+    "of-constraint": "time:of-constraint",
+}
+"""Terms of older published metamodels, which are kept so that no triple is lost."""
 TIMEOUT = 20.0
 """Seconds that a server may take to answer."""
 _WANTED = "application/ld+json, application/json;q=0.9"
@@ -36,9 +58,18 @@ class UnknownContext(Exception):
 
 @dataclass(frozen=True, slots=True)
 class ContextLoader:
-    """Loads contexts for pyld. Only ``hosts``, named by the user, are ever asked, and each of their contexts once."""
+    """Loads contexts for pyld. Only ``hosts``, named by the user, are ever asked, and each of their contexts once.
+
+    A file in ``folder``, that of the model, takes the place of a web address that ends with its path.
+    """
 
     hosts: frozenset[str] = frozenset()
+    folder: Path | None = None
+
+    def beside(self, document: str) -> ContextLoader:
+        """Return a loader that looks into the folder of a document, given by its URI."""
+        path = uri_to_path(document) if document else None
+        return self if path is None else replace(self, folder=path.parent)
 
     def __call__(self, url: str, _options: Mapping[str, Any]) -> Json:
         """Return what pyld expects of a document loader; raises ``UnknownContext``."""
@@ -58,6 +89,11 @@ class ContextLoader:
             return _local(url, path)
         if urlsplit(url).scheme not in ("http", "https"):
             raise UnknownContext(f"the context '{url}' is neither a file nor a web address")
+        own = None if self.folder is None else file_for(url, self.folder)
+        if own is not None:
+            return _local(url, own)
+        if is_published(url):
+            return {"@context": published_context()}
         text = _cached(url)
         return _json(url, self._fetch(url) if text is None else text)
 
@@ -117,6 +153,31 @@ def bundled_context() -> Json:
     """Return our JSON-LD context."""
     text = load_text(data_file("metamodels", CONTEXT_FILE))
     return cast(Json, json.loads(text)["@context"])
+
+
+def is_published(url: str) -> bool:
+    """Tell whether an address is that of a context of the published metamodels, in any of their layouts."""
+    if not url.startswith(METAMODELS):
+        return False
+    path = PurePosixPath(urlsplit(url).path)
+    return path.suffix in (".json", ".jsonld") and path.stem in _PUBLISHED
+
+
+@cache
+def published_context() -> Json:
+    """Return the context that stands for all published ones: values are named by strings, as published."""
+    named = {"@type": "@id", "@container": "@list"}
+    values = {"elements": {"@id": "bdd:elements", "@type": "@id"}}
+    values |= {term: {"@id": f"bdd:{term}", **named} for term in ("of-sets", "rows")}
+    older = {term: {"@id": name, "@type": "@id"} for term, name in _OLDER.items()}
+    return {**bundled_context(), **older, **values, "repetition": "bdd:repetition-allowed"}
+
+
+def file_for(url: str, folder: Path) -> Path | None:
+    """Return the file in a folder that a web address ends with, by the longest path that fits."""
+    parts = PurePosixPath(urlsplit(url).path).parts[1:]
+    candidates = (folder.joinpath(*parts[start:]) for start in range(len(parts)) if ".." not in parts)
+    return next((path for path in candidates if path.is_file()), None)
 
 
 def cache_folder() -> Path:

@@ -141,7 +141,7 @@ def parse(text: str, format: str, base: str = "", loader: ContextLoader | None =
 
     _check_format(format)
     graph = Graph(bind_namespaces="none")
-    loader = loader or ContextLoader()
+    loader = (loader or ContextLoader()).beside(base)
     try:
         if FORMATS[format] == "json-ld":
             document: Any = json.loads(text)

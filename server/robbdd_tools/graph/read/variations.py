@@ -27,10 +27,16 @@ class VariationReader:
         if self.records.is_a(node, "bdd:TableVariation"):
             rows = tuple(self._row(row, len(variables)) for row in self.records.list_of(node, "bdd:rows"))
             return Table(variables, rows)
-        choices = tuple(self._choices(entry) for entry in self.records.list_of(node, "bdd:of-sets"))
-        if len(choices) != len(variables):
-            raise Incomplete(f"{node} has {len(choices)} sets for {len(variables)} variables")
-        return Product(variables, choices)
+        entries = self.records.list_of(node, "bdd:of-sets")
+        if len(entries) != len(variables):
+            raise Incomplete(f"{node} has {len(entries)} sets for {len(variables)} variables")
+        pairs = zip(variables, map(self._choices, entries), strict=True)
+        return Product(variables, tuple(self._fitting(variable, choices) for variable, choices in pairs))
+
+    def _fitting(self, variable: Iri, choices: tuple[Cell, ...] | Selection) -> tuple[Cell, ...] | Selection:
+        """Return each element for a variable that is no set, where a published graph selects one element."""
+        single = isinstance(choices, Selection) and choices.length == 1 and not self.records.is_a(variable, "bdd:Set")
+        return choices.source if isinstance(choices, Selection) and single else choices
 
     def _row(self, row: Node, width: int) -> tuple[Cell, ...]:
         cells = self.records.items(row)

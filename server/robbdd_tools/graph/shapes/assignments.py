@@ -113,7 +113,11 @@ def _choices(records: Records, product: Iri, assigned: Iterable[Iri], variable: 
         if any(records.is_a(str(entry), kind) for kind in SELECTIONS.values()):
             sources = records.iris(records.all(str(entry), "bdd:from"))
             values = tuple(value for source in sources for value in elements_of(records, source))
-            yield _Choice(entry, True, values)
+            # Published graphs select one element for a variable that is no set.
+            single = records.literal(str(entry), "bdd:length") == 1 and not records.is_a(variable, "bdd:Set")
+            yield from (
+                (_Choice(entry, False, (value,)) for value in values) if single else [_Choice(entry, True, values)]
+            )
         elif records.is_a(str(entry), "bdd:ConstantSet"):
             yield from (_Choice(entry, False, (value,)) for value in elements_of(records, str(entry)))
         else:

@@ -139,7 +139,19 @@ class FindingWriter:
             return self._name(values[0]) if values else match[0]
 
         message = _PLACEHOLDER.sub(fill, result.message)
-        return f"'{self._subject(result.focus)}': {message}" if self.built.is_read else message
+        return f"'{self._subject(result.focus)}': {message}{self._found(result)}" if self.built.is_read else message
+
+    def _found(self, result: Result) -> str:
+        """Say what a value of a foreign graph is where the IRI of a node is expected."""
+        from rdflib import Literal, URIRef
+
+        if not result.message.startswith(("'{value}' cannot stand for", "'{value}' is no ")):
+            return ""
+        if isinstance(result.value, Literal):
+            return " (it is text; the IRI of a node is expected)"
+        if isinstance(result.value, URIRef) and (result.value, None, None) not in self.built.graph:
+            return " (nothing in the graph describes it)"
+        return ""
 
     def _subject(self, focus: Node) -> str:
         """Return the name of what a finding is about; a derived node is called after what it was derived from."""

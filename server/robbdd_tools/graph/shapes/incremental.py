@@ -22,7 +22,7 @@ from robbdd_tools.graph.shapes.neighbourhood import Fingerprint, Identity, Neigh
 from robbdd_tools.graph.shapes.project_shapes import ProjectShapes, ShapeFile
 from robbdd_tools.graph.shapes.validate import NO_SHAPES, project_findings, together, validate
 from robbdd_tools.graph.write.build import build_declarations, build_graph
-from robbdd_tools.graph.write.foreign import graph_format
+from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.names.anchors import Anchored, Anchors
 
 if TYPE_CHECKING:

@@ -130,7 +130,7 @@ def _read(path: Path, _time: int, _size: int) -> ShapeFile:
         faults.append(_fault(path, error.offset, "shapes-syntax", str(error)))
     document = Document(uri, 0, text)
     faults += _followed_services(path, document, graph)
-    return ShapeFile(uri, path.name, graph, graph_places(document, graph), tuple(faults))
+    return ShapeFile(uri, path.name, graph, graph_places([document], graph), tuple(faults))
 
 
 def _followed_services(path: Path, document: Document, graph: Graph) -> Iterator[Diagnostic]:

@@ -16,7 +16,8 @@ from robbdd_tools.graph.write.built import Clash
 from robbdd_tools.graph.write.clauses import ClauseWriter, add_time
 from robbdd_tools.graph.write.declarations import Reached, Uses, doubtful, reach
 from robbdd_tools.graph.write.executions import add_execution
-from robbdd_tools.graph.write.foreign import graph_format, read_graph_file
+from robbdd_tools.graph.write.foreign import read_graph_file
+from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.graph.write.identities import SHARED, Identities, identities
 from robbdd_tools.graph.write.instances import add_instances
 from robbdd_tools.graph.write.scenes import (

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import PurePosixPath
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.graph.rdf.prefixes import bind_prefixes, user_prefixes
-from robbdd_tools.graph.rdf.serialize import UnreadableGraph, parse
-from robbdd_tools.graph.rdf.vocabulary import PREFIXES
+from robbdd_tools.graph.rdf.serialize import UnreadableGraph
 from robbdd_tools.graph.read.acceptance import incomplete_variants
 from robbdd_tools.graph.write.built import BuiltGraph
+from robbdd_tools.graph.write.foreign_imports import graph_format, merge_imports
+from robbdd_tools.graph.write.foreign_namespaces import foreign_namespaces
 from robbdd_tools.graph.write.node_positions import json_occurrences, turtle_occurrences
 from robbdd_tools.graph.write.source_map import Location, SourceMap, SourceMapBuilder
 
@@ -21,14 +22,6 @@ if TYPE_CHECKING:
 
     from robbdd_tools.base.document import Document
 
-GRAPH_FORMATS = {"ttl": "ttl", "json": "json-ld", "jsonld": "json-ld"}
-"""Ending of a model that is a graph → its format."""
-
-
-def graph_format(uri: str) -> str:
-    """Return the format of a file that is a graph by its ending; ``""`` for any other file."""
-    return GRAPH_FORMATS.get(PurePosixPath(uri).suffix.removeprefix(".").lower(), "")
-
 
 def read_graph_file(document: Document) -> BuiltGraph:
     """Return the graph that a document is; an empty one with a fault when it cannot be read."""
@@ -36,13 +29,14 @@ def read_graph_file(document: Document) -> BuiltGraph:
 
     uri = document.uri
     try:
-        graph = parse(document.text, graph_format(uri), uri)
+        merged = merge_imports(document)
     except UnreadableGraph as error:
         fault = Diagnostic(uri, Span(error.offset, error.offset), Severity.ERROR, "graph-syntax", str(error))
         return BuiltGraph(uri, Graph(), SourceMap({}), {}, (), (), frozenset(), (fault,), True)
-    places = graph_places(document, graph)
+    graph = merged.graph
+    places = graph_places(merged.documents, graph)
     names = node_names(graph)
-    faults = (*_strangers(uri, graph), *_left_out(uri, graph, places, names))
+    faults = (*merged.faults, *foreign_namespaces(document, graph), *_left_out(uri, graph, places, names))
     return BuiltGraph(uri, graph, places, names, (), (), frozenset(), faults, True)
 
 
@@ -85,28 +79,24 @@ def _blank_owners(graph: Graph) -> list[tuple[Node, Node]]:
     return found
 
 
-def graph_places(document: Document, graph: Graph) -> SourceMap:
-    """Return where the nodes of a graph stand in its text; a blank one where the node stands that it belongs to."""
+def graph_places(documents: Iterable[Document], graph: Graph) -> SourceMap:
+    """Return where the nodes of a graph stand in its texts; a blank one where the node stands that it belongs to.
+
+    A node of several texts stands where the last of them has it: those before import what describes it.
+    """
     namespaces = {prefix: str(namespace) for prefix, namespace in graph.namespaces()}
-    find = json_occurrences if graph_format(document.uri) == "json-ld" else turtle_occurrences
-    spans = find(document.text, namespaces, document.uri)
+    places: dict[str, Location] = {}
+    for document in documents:
+        find = json_occurrences if graph_format(document.uri) == "json-ld" else turtle_occurrences
+        found = find(document.text, namespaces, document.uri)
+        places |= {node: Location(document.uri, span) for node, span in found.items()}
     builder = SourceMapBuilder()
-    for node, span in spans.items():
-        builder.mark([(node,)], Location(document.uri, span))
+    for node, place in places.items():
+        builder.mark([(node,)], place)
     for owner, node in _blank_owners(graph):
-        if str(owner) in spans:
-            builder.mark([(str(node),)], Location(document.uri, spans[str(owner)]))
+        if str(owner) in places:
+            builder.mark([(str(node),)], places[str(owner)])
     return builder.build()
-
-
-def _strangers(uri: str, graph: Graph) -> list[Diagnostic]:
-    from rdflib.namespace import RDF
-
-    own = tuple(PREFIXES[prefix] for prefix in ("bdd", "time", "task", "bhv", "env", "agn", "obs", "rbw"))
-    if any(str(kind).startswith(own) for kind in graph.objects(None, RDF.type)):
-        return []
-    message = "nothing in this graph is of the vocabulary of acceptance criteria: is it the right file?"
-    return [Diagnostic(uri, Span(0, 0), Severity.WARNING, "no-criteria", message)]
 
 
 def _left_out(uri: str, graph: Graph, places: SourceMap, names: dict[str, str]) -> list[Diagnostic]:

@@ -1,0 +1,97 @@
+"""Merges the graphs that a foreign graph imports (``owl:imports``) from files on this machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.base.files import Unreadable, path_to_uri, read_text, uri_to_path
+from robbdd_tools.graph.rdf.contexts import file_for
+from robbdd_tools.graph.rdf.serialize import UnreadableGraph, parse
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rdflib import Graph
+
+GRAPH_FORMATS = {"ttl": "ttl", "json": "json-ld", "jsonld": "json-ld"}
+"""Ending of a model that is a graph → its format."""
+IMPORTS = "http://www.w3.org/2002/07/owl#imports"
+
+
+def graph_format(uri: str) -> str:
+    """Return the format of a file that is a graph by its ending; ``""`` for any other file."""
+    return GRAPH_FORMATS.get(PurePosixPath(uri).suffix.removeprefix(".").lower(), "")
+
+
+@dataclass(slots=True)
+class Merged:
+    """A graph with those that it imports, the documents they come from, and what is wrong with the imports."""
+
+    graph: Graph
+    documents: list[Document]
+    faults: list[Diagnostic] = field(default_factory=list[Diagnostic])
+
+
+def merge_imports(document: Document) -> Merged:
+    """Return the graph of a document and of all that it imports, directly or not; raises ``UnreadableGraph``.
+
+    An import is a file by its relative path, or a web address whose path ends with that of a file in the folder of the
+    document that imports it. Nothing is fetched.
+    """
+    from rdflib import URIRef
+
+    merged = Merged(parse(document.text, graph_format(document.uri), document.uri), [document])
+    imported = sorted(str(name) for name in merged.graph.objects(None, URIRef(IMPORTS)))
+    waiting = [(document, name) for name in imported]
+    seen = {document.uri}
+    for importer, name in waiting:
+        path = _file(importer.uri, name)
+        uri = name if path is None else path_to_uri(path)
+        if uri in seen:
+            continue
+        seen.add(uri)
+        found = _read(path, name)
+        if isinstance(found, str):
+            merged.faults.append(_fault(importer, name, found))
+            continue
+        other, graph = found
+        merged.documents.append(other)
+        for prefix, namespace in graph.namespaces():
+            merged.graph.bind(prefix, namespace, override=False)
+        waiting += ((other, str(inner)) for inner in sorted(graph.objects(None, URIRef(IMPORTS)), key=str))
+        merged.graph += graph
+    return merged
+
+
+def _file(importer: str, name: str) -> Path | None:
+    path, own = uri_to_path(name), uri_to_path(importer)
+    if path is not None or own is None:
+        return path
+    return file_for(name, own.parent)
+
+
+def _read(path: Path | None, name: str) -> tuple[Document, Graph] | str:
+    """Return the document and graph of an imported file, else what is wrong with the import."""
+    if path is None:
+        return f"'{name}' is not fetched: put the file beside this one, under the name that its address ends with"
+    uri = path_to_uri(path)
+    if not graph_format(uri):
+        return f"'{path.name}' is no graph: import a file that ends in .{', .'.join(GRAPH_FORMATS)}"
+    text = read_text(path)
+    if isinstance(text, Unreadable):
+        return text.reason
+    try:
+        return Document(uri, 0, text), parse(text, graph_format(uri), uri)
+    except UnreadableGraph as error:
+        return f"'{path.name}' cannot be read: {error}"
+
+
+def _fault(importer: Document, name: str, message: str) -> Diagnostic:
+    written = name.rpartition("/")[2]
+    start = max(importer.text.find(written), 0)
+    span = Span(start, start + len(written) if start else 0)
+    return Diagnostic(importer.uri, span, Severity.ERROR, "import", message)
