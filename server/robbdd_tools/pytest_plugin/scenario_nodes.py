@@ -49,13 +49,15 @@ class ModelWarning(UserWarning):
 class ModelNode(pytest.File):
     """A model file; errors in it are collection errors."""
 
+    file: ModelFile | None = None
+    """The model when it was collected, is sound and has scenarios."""
     unselected: SelectionError | None = None
     """Why the selection leaves nothing of the model, if so."""
 
     def collect(self) -> Iterator[StoryNode]:
         """Yield the stories with a selected scenario."""
         try:
-            file = self._sound_file(load(self.path))
+            self.file = file = self._sound_file(load(self.path))
             specs = () if file is None else self._selected(file)
         except (RobbddError, OSError) as error:
             raise self.CollectError(str(error)) from error

@@ -30,6 +30,7 @@ from robbdd_tools.run.store import StoredRun
 
 if TYPE_CHECKING:
     from robbdd_tools.run.results import RunResults
+    from robbdd_tools.workbench.model import ModelFile
 
 MODELS = (".bdd", ".bddx")
 """Ends of the names of files that are collected in folders; graphs are collected when they are named."""
@@ -84,7 +85,7 @@ class Hooks:
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """Get ready to execute what was collected."""
         items = [item for item in session.items if isinstance(item, ScenarioItem)]
-        specs, files = [item.spec for item in items], [item.file for item in items]
+        specs, files = [item.spec for item in items], self._files
         if self._worker is None:
             executor = Executor(self._options, specs, files, lambda: self._owner.open(Path(files[0].name)))
         else:
@@ -150,10 +151,14 @@ class Hooks:
         if self._shared is not None:
             shutil.rmtree(self._shared, ignore_errors=True)
 
+    @property
+    def _files(self) -> tuple[ModelFile, ...]:
+        return model_files(node.file for node in self._models if node.file is not None)
+
     def _doubled(self, items: Sequence[ScenarioItem]) -> Iterator[ScenarioItem]:
         """Yield the tests of scenarios that the plan of all models takes from another one."""
-        files = model_files(item.file for item in items)
-        if len(files) < 2:
+        files = self._files
+        if len(files) < 2 or not items:
             return
         with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
             plan = session_plan(files, self._options).prepare(Path(folder), repeat=self._options.repeat)

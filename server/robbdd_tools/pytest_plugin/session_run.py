@@ -87,14 +87,14 @@ class Executor:
         self,
         options: Options,
         specs: Iterable[ScenarioSpec],
-        files: Iterable[ModelFile],
+        files: tuple[ModelFile, ...],
         open_place: Callable[[], StoredRun],
         lock: Path | None = None,
         first_agent: int = 1,
     ) -> None:
         self._options = options
         self._wanted = {key_of(spec) for spec in specs}
-        self._files = model_files(files)
+        self._files = files
         self._open_place = open_place
         self._lock = lock
         self._first_agent = first_agent
