@@ -49,6 +49,8 @@ DAMAGE: dict[str, list[str]] = {
     "during-end": ["- t:drop time:before-event"],
     "during-start": ["- t:drop time:after-event"],
     "element-value": [f"set {TABLE} bdd:rows ((lab:nut 7 lab:tray_ws 1 ()))"],
+    "emission-event": ["+ t:emits a rbw:Emission", "+ t:emits rbw:event t:task"],
+    "emission-moment": ["+ t:emits a rbw:Emission", "+ t:emits rbw:event t:end"],
     "empty-duration": ["- t:drop time:after-event", "+ t:drop time:after-event t:end"],
     "event-type-after": ["- t:taken time:after-event", "+ t:taken time:after-event t:task"],
     "event-type-before": ["- t:seen time:before-event", "+ t:seen time:before-event t:task"],

@@ -16,6 +16,7 @@ from robbdd_tools.checks.contradictory_order import contradictory_order
 from robbdd_tools.checks.cyclic_import import cyclic_import
 from robbdd_tools.checks.distribution import distribution
 from robbdd_tools.checks.duplicate_iri import duplicate_iri
+from robbdd_tools.checks.emission import emission
 from robbdd_tools.checks.empty_duration import empty_duration
 from robbdd_tools.checks.empty_set import empty_set
 from robbdd_tools.checks.execution_fit import execution_fit
@@ -55,6 +56,7 @@ if TYPE_CHECKING:
 DECLARATION_RULES = (
     contradictory_order,
     distribution,
+    emission,
     empty_duration,
     empty_set,
     foreign_variable,

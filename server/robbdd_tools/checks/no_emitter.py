@@ -62,7 +62,12 @@ def _emitters(site: Site, template: tree.Template) -> _Emitters:
             if event is not None:
                 found.bound.setdefault(_key(event), ref.path)
     for behaviour in behaviours:
-        found.inner |= dict.fromkeys(load_catalog().behaviours[behaviour.action.word].events)
+        events = load_catalog().behaviours[behaviour.action.word].events
+        found.inner |= dict.fromkeys(events)
+        for emission in behaviour.emissions:
+            event = site.target(emission.event) if emission.moment.text in events else None
+            if event is not None:
+                found.bound.setdefault(_key(event), emission.event.path)
     return found
 
 
@@ -74,7 +79,9 @@ def _unemitted(site: Site, node: tree.Node, emitters: _Emitters) -> Iterator[Dia
         names = list(emitters.bound.values())
         message = f"nothing emits '{ref.path}', so that its clause stays unknown: this scenario has {_listed(names)}"
         if emitters.inner:
-            message += f", and its behaviours emit {_listed(list(emitters.inner))}, under these names"
+            message += (
+                f", and its behaviours emit {_listed(list(emitters.inner))}, under these names or with 'emits … as'"
+            )
         near = get_close_matches(ref.path, names, n=MOST_OFFERED, cutoff=0.0)
         fixes = tuple(change(site, f"Change to '{name}'", ref, name) for name in near)
         yield finding(site, ref, Severity.WARNING, CODE, message, fixes=fixes)

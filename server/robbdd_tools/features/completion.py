@@ -10,6 +10,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.checks.lines import import_edit
 from robbdd_tools.features.cursor import Cursor, cursor_at
@@ -36,6 +37,7 @@ MOST_BROKEN_LINES = 50
 MOST_TO_IMPORT = 300
 """Names of files to import that are offered; loaded files and those beside go first."""
 _CONFIGURED = re.compile(r"\bhas\s+config\s+\Z")
+_EMITTED = re.compile(r"\bemits\s+\Z")
 _STARTS = frozenset({"import", "ns"})
 _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet", "AgentSet", "ConstantSet", "AnySet")}
 
@@ -87,6 +89,7 @@ def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | N
     names = _Names(snapshot, analysis, cursor, whole, elsewhere)
     if "NameText" in expected.rules:
         found += names.settings()
+        found += names.moments()
     found += names.proposals(expected.rules, bracket="")
     if "<" in expected.literals:
         _, inside = _expected(language, before + "<")
@@ -156,6 +159,16 @@ class _Names:
             for name, setting in SETTINGS.items():
                 detail = f"of {setting.target}" + (f", {setting.unit}" if setting.unit else "")
                 yield Completion(name, "setting", detail, name, self.cursor.span, self.whole)
+
+    def moments(self) -> Iterator[Completion]:
+        """Yield the events of the catalog's behaviours, which ``emits`` names."""
+        if _EMITTED.search(self.cursor.before):
+            emitting: dict[str, list[str]] = {}
+            for behaviour in load_catalog().behaviours.values():
+                for event in behaviour.events:
+                    emitting.setdefault(event, []).append(behaviour.name)
+            for event, names in emitting.items():
+                yield Completion(event, "event", f"of {', '.join(names)}", event, self.cursor.span, self.whole)
 
     def proposals(self, rules: Iterable[str], bracket: str) -> Iterator[Completion]:
         """Yield the names that fit some rules: those in scope, then those of files to import."""

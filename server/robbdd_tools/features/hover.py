@@ -10,7 +10,7 @@ from robbdd_tools.features.clause_results import clause_hints
 from robbdd_tools.features.describe import describe, describe_import, result_words
 from robbdd_tools.features.goto_definition import symbol_at
 from robbdd_tools.features.run_verdicts import NOTHING
-from robbdd_tools.features.sentences import time_meaning, word_meaning, word_of
+from robbdd_tools.features.sentences import emission_meaning, time_meaning, word_meaning, word_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.symbols import walk_at
@@ -65,6 +65,8 @@ def _words(snapshot: Snapshot, uri: str, offset: int) -> Hover | None:
                 return Hover(word_meaning(word_of(node)), span)
             if isinstance(node, tree.During | tree.Before | tree.After):
                 return Hover(time_meaning(node), span)
+            if isinstance(node, tree.Emission):
+                return Hover(emission_meaning(node), span)
     return None
 
 

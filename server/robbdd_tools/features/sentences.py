@@ -42,6 +42,12 @@ def time_meaning(time: tree.TimeConstraint) -> str:
     return f"Judged throughout the {time.horizon.value} s {ends} `{time.event.path}`."
 
 
+def emission_meaning(emission: tree.Emission) -> str:
+    """Say what a behaviour emits as an event of the model."""
+    moment = emission.moment.text
+    return f"When the behaviour emits its own event `{moment}`, the event `{emission.event.path}` of the model occurs."
+
+
 def word_of(use: tree.PhraseUse) -> Predicate | Behaviour:
     """Return the catalog's word behind a phrase."""
     catalog = load_catalog()

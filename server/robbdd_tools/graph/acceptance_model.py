@@ -84,7 +84,8 @@ class EventClause:
 class BehaviourClause:
     """The behaviour in ``When``: ``behaviour`` is the catalog name, ``start``/``end`` the events of its duration.
 
-    ``node`` is that of a behaviour tree which executes it, if there is one.
+    ``node`` is that of a behaviour tree which executes it, if there is one. ``emits`` are the behaviour's own events
+    (``pick-end``) that the model gives another event for, in written order.
     """
 
     iri: Iri
@@ -93,6 +94,7 @@ class BehaviourClause:
     start: Iri
     end: Iri
     node: Iri | None = None
+    emits: tuple[tuple[str, Iri], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

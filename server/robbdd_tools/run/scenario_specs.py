@@ -260,8 +260,9 @@ def _value(term: Iri | str, values: Values) -> Cell:
 def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
     """Which emitter stamps which event of the model.
 
-    The template's duration is the execution's, a behaviour's duration is that of its first and last emitted event;
-    any other event is the behaviour's event of the same name (``inner_event``). Of a scenario
+    The template's duration is the execution's, a behaviour's duration is that of its first and last emitted event.
+    Any other event is the behaviour's event that the model states (``emits``), else that of the same name
+    (``inner_event``). Of a scenario
     that is ``linked`` to a node of a behaviour tree, the duration is the node's, unless that is the root.
     """
     template = variant.template
@@ -270,6 +271,7 @@ def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
         bound = {template.start: emitter(linked.node, START), template.end: emitter(linked.node, END)}
     behaviours = load_catalog().behaviours
     emitted: dict[str, None] = {}
+    stated: dict[Iri, str] = {}
     clauses = tuple(_every((*template.clauses, *variant.clauses)))
     for clause in clauses:
         if isinstance(clause, BehaviourClause):
@@ -279,9 +281,10 @@ def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
             if linked is not None:
                 first, last = emitter(linked.node, START), emitter(linked.node, END)
             bound |= {clause.start: first, clause.end: last}
+            stated |= {event: moment for moment, event in clause.emits if moment in events}
     for clause in clauses:
         for event in _named_events(clause):
-            name = inner_event(event, emitted)
+            name = stated.get(event) or inner_event(event, emitted)
             if name is not None:
                 bound.setdefault(event, name if linked is None else emitter(linked.node, name))
     return bound

@@ -163,8 +163,16 @@ class Occurrence(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Emission(Node):
+    """``emits <moment> as <event>``: the behaviour's own event ``moment`` (``pick-end``) is this event of the model."""
+
+    moment: Name
+    event: Ref
+
+
+@dataclass(frozen=True, slots=True)
 class BehaviourUse(Node):
-    """``Behaviour (ns=…) name { duration: … action node: … }``.
+    """``Behaviour (ns=…) name { duration: … action emits … node: … }``.
 
     ``duration`` is ``None`` where the published form gives none and the clauses do not tell it. ``node`` is that of
     a behaviour tree to link to.
@@ -174,6 +182,7 @@ class BehaviourUse(Node):
     name: Name
     duration: During | None
     action: PhraseUse
+    emissions: tuple[Emission, ...]
     node: Ref | None
 
 

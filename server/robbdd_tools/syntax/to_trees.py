@@ -91,7 +91,7 @@ def _clauses(raw: RawNode, span: Span, text: str) -> tree.Expression:
 
 def _bare_behaviour(raw: RawNode, span: Span, text: str) -> tree.BehaviourUse:
     duration = _value(raw.duration, text)
-    return tree.BehaviourUse(span, None, unnamed_at(span), duration, convert(raw.action, text), None)
+    return tree.BehaviourUse(span, None, unnamed_at(span), duration, convert(raw.action, text), (), None)
 
 
 def _listed_assignment(raw: RawNode, span: Span, text: str) -> tree.Assignment:

@@ -20,7 +20,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextClause,
     TextFluent,
 )
-from robbdd_tools.graph.rdf.records import Incomplete, Records
+from robbdd_tools.graph.rdf.records import Incomplete, Records, items_of
 from robbdd_tools.graph.rdf.vocabulary import JUNCTIONS, expand
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
 
@@ -103,7 +103,12 @@ class ClauseReader:
             raise Incomplete(f"{iri} has no start and end")
         nodes = records.iris(records.all(behaviour, "rbw:coordination-node"))
         node = nodes[0] if len(nodes) == 1 else None
-        return BehaviourClause(iri, word.name, self._arguments(iri, word.slots), Iri(time.start), Iri(time.end), node)
+        arguments, emits = self._arguments(iri, word.slots), tuple(self._emissions(iri))
+        return BehaviourClause(iri, word.name, arguments, Iri(time.start), Iri(time.end), node, emits)
+
+    def _emissions(self, iri: Iri) -> Iterator[tuple[str, Iri]]:
+        for emission in self.records.iris(items_of(self.records, iri, "rbw:emission-list")):
+            yield self.records.text(emission, "rbw:moment"), self.records.one(emission, "rbw:event")
 
     def _arguments(self, iri: Iri, slots: Iterable[Slot]) -> Mapping[str, Iri | str]:
         return {

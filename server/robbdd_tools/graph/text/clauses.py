@@ -19,7 +19,7 @@ from robbdd_tools.graph.acceptance_model import (
     TextClause,
     TextFluent,
 )
-from robbdd_tools.graph.rdf.records import Incomplete
+from robbdd_tools.graph.rdf.records import Incomplete, items_of
 from robbdd_tools.graph.read.clauses import ClauseReader
 from robbdd_tools.graph.text.names import NAME, Names, indented, quoted
 from robbdd_tools.monitor.time import Before, During, TimeConstraint
@@ -161,7 +161,10 @@ class ClauseText:
         duration = self.time(During(clause.start, clause.end))
         head = f"Behaviour (ns={names.prefix(namespace)}) {name}"
         link = "" if clause.node is None else f"\n    node: {names.reference(clause.node)}"
-        return f"{head} {{\n    duration: {duration}\n    {action}{link}\n}}"
+        moments = [f"\n    emits {moment} as {names.lazily(event, 'event')}" for moment, event in clause.emits]
+        for index, emission in enumerate(items_of(names.records, clause.iri, "rbw:emission-list")):
+            self._named(Iri(str(emission)), "emits", f"{path}.when.{index}")
+        return f"{head} {{\n    duration: {duration}\n    {action}{''.join(moments)}{link}\n}}"
 
     def _named(self, node: Iri, kind: str, path: str) -> None:
         made = f"{self.namespace}{kind}-{self.owner}{path}"

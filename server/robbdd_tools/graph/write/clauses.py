@@ -183,7 +183,22 @@ class ClauseWriter:
         self._arguments(node, word.slots, use.action)
         if use.duration is not None:
             self._time(node, use.duration)
+        self._emissions(node, use, f"{path}.when")
         return [node]
+
+    def _emissions(self, node: URIRef, use: tree.BehaviourUse, path: str) -> None:
+        """State which events of the model the behaviour's own events are."""
+        sink, at = self._sink, self.frame.at
+        found: list[Node] = []
+        for index, emission in enumerate(use.emissions):
+            part, event = self._generated("emits", f"{path}.{index}"), self.frame.target(emission.event)
+            if part is not None and event is not None:
+                sink.add_types(part, ["rbw:Emission"], at(emission.moment))
+                sink.add(part, "rbw:moment", sink.literal(emission.moment.text), at(emission.moment))
+                sink.add(part, "rbw:event", event, at(emission.event))
+                found.append(part)
+        if found:
+            sink.add(node, "rbw:emission-list", sink.make_list(found))
 
     def _arguments(self, node: URIRef, slots: Iterable[Slot], phrase: tree.PhraseUse) -> None:
         written = dict(phrase.arguments)
