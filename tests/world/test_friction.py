@@ -11,6 +11,7 @@ import pytest
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.catalog.executable import Implementation, ModelSource, Origin, Realisation, SceneInstance
 from robbdd_tools.protocol.specs import ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
+from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.engine import TICK, mujoco
 from robbdd_tools.world.friction import rank_by_friction
 from robbdd_tools.world.simulation import Simulation
@@ -180,3 +181,34 @@ def test_the_smoother_of_two_surfaces_brings_the_rolling_resistance_of_the_other
     mujoco.mj_forward(model, data)
     assert data.contact.dim.tolist() == [6]
     assert data.contact.friction[0].tolist() == [0.2, 0.2, 0.005, 0.0005, 0.0005]
+
+
+SLIDE = """<mujoco><worldbody>
+<body name="slab" pos="2 0 0.2"><geom name="top" type="box" size="1 .2 .1" friction="0.6"/></body>
+<body name="block" pos="1.5 0 0.3201"><freejoint/>
+<geom name="side" type="box" size=".02 .02 .02" mass="0.1" friction="0.6"/></body>
+</worldbody>{}</mujoco>"""
+DECLARED = '<contact><pair geom1="top" geom2="side" friction="0.05 0.05 0.001 0.0001 0.0001" condim="4"/></contact>'
+
+
+@pytest.mark.parametrize(("declared", "friction"), [("", 0.6), (DECLARED, 0.05)])
+@pytest.mark.parametrize("elements", [("env:block",), ("env:block", "env:slab")])
+def test_a_pair_that_a_model_of_the_scene_declares_has_its_own_friction(
+    tmp_path: Path, declared: str, friction: float, elements: tuple[str, ...]
+) -> None:
+    """Whether slab and block are elements of the scene, taken out of the model, or parts of the scenery."""
+    (tmp_path / "world.xml").write_text(SLIDE.format(declared), encoding="utf-8")
+    origin = Origin(str(tmp_path / "cell.scenex"), 3, 7)
+    instance = SceneInstance("x:cell", (ModelSource("x:w", "mjcf", "file", "world.xml", origin=origin),))
+    scene = replace(SCENE, objects=(*SCENE.objects, *elements))
+    simulation = Simulation(build_world(scene, 1, None, instance))
+    simulation.settle()
+    start = float(simulation.pose("env:block")[0][0])
+    body = simulation.model.body("env:block")
+    simulation.data.qvel[int(simulation.model.jnt_dofadr[body.jntadr[0]])] = 1.0
+    seconds = 0.4
+    for _ in range(round(seconds / TICK)):
+        simulation.tick()
+    stops = min(seconds, 1.0 / (friction * GRAVITY))
+    way = stops - friction * GRAVITY * stops**2 / 2
+    assert float(simulation.pose("env:block")[0][0]) - start == pytest.approx(way, rel=0.05)

@@ -17,12 +17,12 @@ from robbdd_tools.catalog.objects.table import HEIGHT
 from robbdd_tools.world.belts import add_belt
 from robbdd_tools.world.engine import TIMESTEP, mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.friction import pair_pads, rank_by_friction
+from robbdd_tools.world.friction import pair_declared, pair_pads, rank_by_friction
 from robbdd_tools.world.placement import TABLE_TOP, Pose, arrange, mounts
 from robbdd_tools.world.robot_files import prepared_robot
 from robbdd_tools.world.scene import Cast, cast_scene
 from robbdd_tools.world.self_collision import name_bodies, pairs_apart
-from robbdd_tools.world.staging import Staging
+from robbdd_tools.world.staging import Staging, scenery_name, shape_name
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import SceneInstance
@@ -111,16 +111,18 @@ def _compile(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -
     _set_options(spec)
     _add_room(spec)
     for number, scenery in enumerate(() if cast.staging is None else cast.staging.scenery):
-        _add_scenery(spec, scenery, f"scenery{number}/", len(bases))
+        _add_scenery(spec, scenery, f"{scenery_name(number)}/", len(bases))
     for name, model in cast.objects.items():
         _add_object(spec, name, model, poses[name], len(bases))
     for index, (name, robot) in enumerate(cast.agents.items()):
         _add_robot(spec, name, robot, bases[name], index, len(bases))
     pads = [f"{name}/{pad}" for name, robot in cast.agents.items() for pad in robot.pads]
     loose = [
-        _geom_name(name, i) for name, model in cast.objects.items() if model.free for i in range(len(model.shapes))
+        shape_name(name, i) for name, model in cast.objects.items() if model.free for i in range(len(model.shapes))
     ]
     pair_pads(spec, pads, loose)
+    if cast.staging is not None:
+        pair_declared(spec, cast.staging.pairs_of_elements())
     rank_by_friction(spec, pads)
     try:
         with warnings.catch_warnings():
@@ -161,7 +163,7 @@ def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: in
     volumes = [_volume(shape) for shape in model.shapes]
     for index, (shape, volume) in enumerate(zip(model.shapes, volumes, strict=True)):
         carrier = body if shape.surface is None else add_belt(spec, body, f"{name}/belt{index}", shape.surface)
-        geom = carrier.add_geom(name=_geom_name(name, index), type=_geom_type(shape.kind), size=list(shape.size))
+        geom = carrier.add_geom(name=shape_name(name, index), type=_geom_type(shape.kind), size=list(shape.size))
         geom.pos = list(shape.position)
         geom.mass = model.mass * volume / sum(volumes)
         geom.friction = [model.friction, TORSION, ROLLING]
@@ -213,10 +215,6 @@ def _pairs_apart(robot: RobotModel) -> tuple[list[tuple[str, str]], list[str]]:
     child = load_robot(robot)
     name_bodies(child)
     return pairs_apart(child, robot)
-
-
-def _geom_name(thing: str, index: int) -> str:
-    return f"{thing}/shape{index}"
 
 
 def _geom_type(kind: ShapeKind) -> Any:

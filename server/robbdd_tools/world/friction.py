@@ -9,7 +9,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from robbdd_tools.world.staging import DeclaredPair
 
 
 def rank_by_friction(spec: Any, pads: Iterable[str]) -> None:
@@ -55,3 +58,11 @@ def pair_pads(spec: Any, pads: Iterable[str], parts: Iterable[str]) -> None:
         pair.condim = max(int(pad.condim), int(part.condim))
         pair.friction = [sliding, sliding, sliding * patch, rolling, rolling]
         pair.solref, pair.solimp = pad.solref, pad.solimp
+
+
+def pair_declared(spec: Any, pairs: Iterable[tuple[str, str, DeclaredPair]]) -> None:
+    """Declare contacts between two geoms, by name, as a model of the whole scene does."""
+    for first, second, declared in pairs:
+        pair = spec.add_pair(geomname1=first, geomname2=second)
+        for name, value in declared.parameters.items():
+            setattr(pair, name, value)

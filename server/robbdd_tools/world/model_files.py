@@ -108,11 +108,15 @@ def _from_code(source: ModelSource) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class FromFile:
-    """An object as its file has it; ``position`` (m) and ``rotation`` (quaternion) are its pose in the file."""
+    """An object as its file has it; ``position`` (m) and ``rotation`` (quaternion) are its pose in the file.
+
+    ``geoms`` are the names in the file of the model's shapes, in their order.
+    """
 
     model: ObjectModel
     position: FloatArray
     rotation: FloatArray
+    geoms: tuple[str, ...]
 
 
 def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -> FromFile:
@@ -154,7 +158,8 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
         doc=f"from {source.name}",
         region=region,
     )
-    return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy())
+    names = tuple(str(model.geom(geom).name) for geom in geoms)
+    return FromFile(chosen, data.xpos[body].copy(), data.xquat[body].copy(), names)
 
 
 def compiled(spec: Any, source: ModelSource) -> Any:

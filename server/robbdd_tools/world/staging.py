@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from math import atan2
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +22,33 @@ if TYPE_CHECKING:
     from robbdd_tools.world.frames import Transform
 
 UPRIGHT = 1e-6
+PAIR = ("condim", "friction", "solref", "solreffriction", "solimp", "margin", "gap")
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredPair:
+    """A contact that model number ``number`` of the whole scene declares between two geoms, with its parameters."""
+
+    number: int
+    geoms: tuple[str, str]
+    parameters: Mapping[str, Any]
+
+    @staticmethod
+    def of(number: int, pair: Any) -> DeclaredPair:
+        """Return what the engine's editable description of a pair says."""
+        values = ((name, getattr(pair, name)) for name in PAIR)
+        kept = {name: value if isinstance(value, int | float) else list(value) for name, value in values}
+        return DeclaredPair(number, (str(pair.geomname1), str(pair.geomname2)), kept)
+
+
+def scenery_name(number: int) -> str:
+    """Return the name of the scenery that a model of the whole scene is, before those of its bodies and geoms."""
+    return f"scenery{number}"
+
+
+def shape_name(owner: str, shape: str | int) -> str:
+    """Return the name of a geom in the world: of an element by the number of its shape, of scenery by its name."""
+    return f"{owner}/shape{shape}" if isinstance(shape, int) else f"{owner}/{shape}"
 
 
 class Staging:
@@ -31,6 +60,11 @@ class Staging:
         self._frames = Frames(instance, seed)
         self._found: dict[str, FromFile] = {}
         self._worlds = [(source, load(source)) for source in self._usable_worlds(instance)]
+        # The engine drops the pairs of a body that is taken out of its model.
+        self._pairs = [
+            DeclaredPair.of(number, pair) for number, (_, spec) in enumerate(self._worlds) for pair in spec.pairs
+        ]
+        self._world_of: dict[str, int] = {}
 
     @staticmethod
     def _usable_worlds(instance: SceneInstance) -> list[ModelSource]:
@@ -100,6 +134,20 @@ class Staging:
         said = self._elements.get(element)
         return None if said is None else said.origin
 
+    def pairs_of_elements(self) -> Iterator[tuple[str, str, DeclaredPair]]:
+        """Yield the pairs that the models of the whole scene declare for elements, with their geoms in the world."""
+        for pair in self._pairs:
+            first, second = (self._geom(pair.number, geom) for geom in pair.geoms)
+            if any(name in (first[0], second[0]) for name in self._found):
+                yield shape_name(*first), shape_name(*second), pair
+
+    def _geom(self, number: int, geom: str) -> tuple[str, str | int]:
+        """Return the element that a geom of a model belongs to and the number of its shape, else scenery and geom."""
+        for element, found in self._found.items():
+            if self._world_of[element] == number and geom in found.geoms:
+                return element, found.geoms.index(geom)
+        return scenery_name(number), geom
+
     def _source(self, element: str) -> ModelSource | None:
         said: Realisation | None = self._elements.get(element)
         return None if said is None else usable(said.models, element)
@@ -108,9 +156,10 @@ class Staging:
         name = element.rpartition(":")[2]
         if element in self._found:
             return self._found[element].model
-        for source, spec in self._worlds:
+        for number, (source, spec) in enumerate(self._worlds):
             if spec.body(name) is not None:
                 self._found[element] = object_from(spec, source, name, carries)
+                self._world_of[element] = number
                 spec.delete(spec.body(name))
                 return self._found[element].model
         return None
