@@ -12,6 +12,7 @@ import numpy as np
 
 from robbdd_tools.catalog.coordination import emitter
 from robbdd_tools.monitor.trace import EventStamp
+from robbdd_tools.monitor.verdict import Cause, Verdict, unknown
 from robbdd_tools.world.composition import build_world
 from robbdd_tools.world.configured_values import read_back
 from robbdd_tools.world.engine import TICK
@@ -91,7 +92,7 @@ class Course:
     ``stamps`` are what emitters have emitted so far; ``completed`` counts the behaviours that went through, of those
     that are executed one after the other; ``tree`` is the behaviour tree, if one is executed. ``remark`` is the last
     word on what went wrong; ``broken`` says what is wrong with the user's code or model, if anything is, so that
-    nothing can be concluded, and ``fault`` describes an error in that code. ``cut_short`` says why the execution ended
+    nothing can be concluded, and ``fault`` describes an error in that code. ``cut_short`` is the verdict on behaviours where the execution ended
     before its script did; ``failed`` that one of the behaviours failed. ``wall`` is the time spent, s. Raises
     ``SceneError`` when the scene cannot be set up.
     """
@@ -119,7 +120,7 @@ class Course:
         self._draw = np.random.default_rng((world.seed, PLACES))
         self.completed = 0
         self.broken = ""
-        self.cut_short = ""
+        self.cut_short: Verdict | None = None
         self.failed = False
         self.fault: Fault | None = None
         self.regions: Regions = world.cast.regions
@@ -157,12 +158,14 @@ class Course:
             return
         except SimulationError as error:
             self.finished = True
-            self.remark = self.cut_short = str(error)
+            self.remark = str(error)
+            self.cut_short = unknown(self.remark, Cause.SIMULATION)
             return
         if self.simulation.ticks >= self._last:
             self.finished = True
-            self.cut_short = f"the execution was stopped after {self._timing.timeout:g} s of simulated time"
-            self._note(self.cut_short)
+            reason = f"the execution was stopped after {self._timing.timeout:g} s of simulated time"
+            self.cut_short = unknown(reason, Cause.TIME_LIMIT)
+            self._note(reason)
 
     def _scenario(self) -> Iterator[None]:
         self._emit(START)

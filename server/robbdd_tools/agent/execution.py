@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
     from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.monitor.judge import Regions
+    from robbdd_tools.monitor.verdict import Verdict
     from robbdd_tools.protocol.clauses import Clause
     from robbdd_tools.protocol.specs import ScenarioSpec
     from robbdd_tools.world.simulation import Simulation
@@ -163,11 +164,11 @@ class Execution:
         return (tree.failure(self._node) if tree is not None and self._node else "") or self.course.remark
 
     @property
-    def cut_short(self) -> str:
-        """Why the execution ended while the behaviour was still going on; empty where it did not."""
+    def cut_short(self) -> Verdict | None:
+        """The verdict on the behaviour where the execution ended while it was still going on."""
         tree = self.course.tree
         over = self.course.failed if tree is None or not self._node else tree.is_over(self._node)
-        return "" if over else self.course.cut_short
+        return None if over else self.course.cut_short
 
     @property
     def _begun(self) -> bool:

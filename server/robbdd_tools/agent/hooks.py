@@ -11,7 +11,7 @@ from typing import Any
 
 from robbdd_tools.agent.channel import current_channel
 from robbdd_tools.agent.session import Session
-from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.protocol.manifest_file import MANIFEST, read_manifest
 from robbdd_tools.user_code.calls import fault_of, original
 
@@ -69,7 +69,8 @@ def _verdict(step: Any, sources: Mapping[str, str]) -> Verdict:
         case "failed":
             return Verdict(Outcome.VIOLATED, reason=said)
         case status if error is None:
-            return unknown(f"behave calls the step {status}")
+            return unknown(f"behave calls the step {status}", Cause.NO_STEP if status == "undefined" else Cause.SKIPPED)
         case _:
             fault = original(fault_of(error.with_traceback(step.exc_traceback), str(step.name)), sources)
-            return unknown(f"the step failed: {type(error).__name__}" + (f": {said}" if said else ""), fault=fault)
+            words = f"the step failed: {type(error).__name__}" + (f": {said}" if said else "")
+            return unknown(words, Cause.USER_CODE, fault=fault)

@@ -23,7 +23,7 @@ from robbdd_tools.judging.scenario_clauses import behaviour_calls, clause_of, it
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.time import never_occurred, occurrences
-from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.protocol.clauses import EventOccurrence, fluents_of
 from robbdd_tools.protocol.manifest_file import STORED_RESULTS, read_manifest
 from robbdd_tools.protocol.messages import (
@@ -58,18 +58,24 @@ class StoredTraces:
     def judged(self, spec: ScenarioSpec) -> Iterator[tuple[ClauseSpec, Verdict]]:
         """Yield the verdicts on the clauses of a scenario."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
-        try:
-            evidence = None if stored is None else read_trace(trace_file(self._folder, index))
-            reason = STRANGER if stored is None else _change(spec, stored)
-        except UnreadableTrace as error:
-            evidence, reason = None, str(error)
+        found = unknown(STRANGER, Cause.CHANGED) if stored is None else self._evidence(index, spec, stored)
         for clause in spec.clauses:
-            if stored is None or evidence is None or reason:
-                yield clause, unknown(reason)
+            if isinstance(found, Verdict):
+                yield clause, found
             elif clause.role == "when":
-                yield clause, self._done(clause, evidence, index, spec, stored)
+                yield clause, self._done(clause, found, index, spec, stored)
             else:
-                yield clause, _decided(clause, evidence, spec, stored)
+                yield clause, _decided(clause, found, spec, stored)
+
+    def _evidence(self, index: int, spec: ScenarioSpec, stored: ScenarioSpec) -> Evidence | Verdict:
+        """Return the trace of an execution, or the verdict on all of its clauses where there is none."""
+        reason = _change(spec, stored)
+        if reason:
+            return unknown(reason, Cause.CHANGED)
+        try:
+            return read_trace(trace_file(self._folder, index))
+        except UnreadableTrace as error:
+            return unknown(str(error), Cause.NO_RECORD)
 
     def duration(self, spec: ScenarioSpec) -> float:
         """Return the simulated time (s) of the stored execution of a scenario, 0 when there is none."""
@@ -112,11 +118,13 @@ class StoredTraces:
             event, trace, iteration = statement.event, evidence.trace, iteration_of(clause)
             time = trace.event_time(event, iteration)
             if time is None:
-                return unknown(trace.unreached or never_occurred(trace, event, iteration))
+                if trace.unreached:
+                    return unknown(trace.unreached, Cause.UNREACHED)
+                return unknown(never_occurred(trace, event, iteration), Cause.NO_EVENT)
             return Verdict(Outcome.HOLDS, at=time)
         entry = _stored_behaviour(clause, spec, stored, self._results[index]["clauses"])
         if entry is None:
-            return unknown(CHANGED.format("the behaviour"))
+            return unknown(CHANGED.format("the behaviour"), Cause.CHANGED)
         return Verdict(Outcome(entry["verdict"]), entry["robustness"], entry["unit"], entry["at"], entry["reason"])
 
 
@@ -149,10 +157,10 @@ def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored:
     for fluent in fluents_of(read):
         for event, iteration in occurrences(fluent.time):
             if event in spec.events and spec.events[event] != stored.events.get(event):
-                return unknown(f"the stored trace has no record of event {event}")
+                return unknown(f"the stored trace has no record of event {event}", Cause.NO_RECORD)
             # The run went no further than its own clauses asked for.
             if event in spec.events and not trace.finished and trace.event_time(event, iteration) is None:
-                return unknown(f"the stored trace ends at {trace.end:.2f} s, before event {event}")
+                return unknown(f"the stored trace ends at {trace.end:.2f} s, before event {event}", Cause.NO_RECORD)
     return decide(read, trace, evidence.regions, spec.events.keys())
 
 

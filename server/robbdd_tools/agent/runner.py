@@ -17,9 +17,9 @@ from robbdd_tools.agent.printed_output import Printed, finish_output
 from robbdd_tools.agent.session import STRANGER
 from robbdd_tools.agent.steps import load_steps
 from robbdd_tools.base.descendants import end_descendants
+from robbdd_tools.monitor.verdict import Cause
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.messages import (
-    ClauseJudged,
     LogLine,
     RunFinished,
     RunStarted,
@@ -27,6 +27,7 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
     UserCodeFailed,
     decode_order,
+    never_judged,
 )
 from robbdd_tools.protocol.run_folder import OWN_STEPS
 from robbdd_tools.user_code.calls import fault_of, original
@@ -169,5 +170,5 @@ def give_up(channel: Channel, manifest: Manifest, index: int, reason: str) -> No
     """Report a scenario that cannot be executed."""
     channel.send(ScenarioStarted(index))
     for clause in manifest.scenarios[index].clauses:
-        channel.send(ClauseJudged(index, clause.line, "unknown", None, "", None, reason))
+        channel.send(never_judged(index, clause.line, reason, Cause.NOT_EXECUTED))
     channel.send(ScenarioFinished(index, 0.0, 0.0, 0.0))

@@ -13,17 +13,16 @@ from robbdd_tools.agent.beginning import Courses, call_of, calls_of, timing_of
 from robbdd_tools.agent.execution import Execution
 from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.printed_output import finish_output
-from robbdd_tools.judging.decisions import decide, is_closed
+from robbdd_tools.judging.decisions import NO_STEP, decide, is_closed
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.judging.scenario_clauses import iteration_of, judged_clause, stated_by_step
 from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.time import never_occurred
-from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, Text
 from robbdd_tools.protocol.messages import (
-    NO_STEP,
     VIEWER,
     ClauseJudged,
     ClauseStarted,
@@ -136,7 +135,7 @@ class ScenarioRun:
             events = self._spec.events.keys()
             trace = execution.advance_until(lambda trace: is_closed(clause, trace, events))
             if execution.broken:
-                return unknown(execution.broken, fault=execution.fault)
+                return _broken(execution)
             return decide(clause, execution.measured(clause, trace), execution.regions, events)
 
         return self._judged(line, text, verdict)
@@ -147,15 +146,18 @@ class ScenarioRun:
 
         def verdict(execution: Execution) -> Verdict:
             if index is None:
-                return unknown(f"{NO_STEP} for '{text}'")
+                return unknown(f"{NO_STEP} for '{text}'", Cause.NO_STEP)
             done, place = execution.run_behaviour(index), execution.chosen(index)
             if done:
                 return Verdict(Outcome.HOLDS, reason=f"placed at {place}" if place else "")
             if execution.broken:
-                return unknown(execution.broken, fault=execution.fault)
-            unreached = execution.trace.unreached or execution.cut_short
+                return _broken(execution)
+            if execution.trace.unreached:
+                return unknown(execution.trace.unreached, Cause.UNREACHED)
+            if execution.cut_short is not None:
+                return execution.cut_short
             chosen = f" (the chosen place was {place})" if place else ""
-            return unknown(unreached) if unreached else Verdict(Outcome.VIOLATED, reason=execution.failure + chosen)
+            return Verdict(Outcome.VIOLATED, reason=execution.failure + chosen)
 
         return self._judged(line, text, verdict)
 
@@ -165,13 +167,13 @@ class ScenarioRun:
 
         def verdict(execution: Execution) -> Verdict:
             if event not in self._spec.events:
-                return unknown(f"nothing in the scenario emits event {event}")
+                return unknown(f"nothing in the scenario emits event {event}", Cause.NO_EMITTER)
             trace = execution.advance_until(lambda trace: trace.event_time(event, iteration) is not None)
             time = trace.event_time(event, iteration)
             if trace.unreached:
-                return unknown(trace.unreached)
+                return unknown(trace.unreached, Cause.UNREACHED)
             if time is None:
-                return unknown(never_occurred(trace, event, iteration))
+                return unknown(never_occurred(trace, event, iteration), Cause.NO_EVENT)
             return Verdict(Outcome.HOLDS, at=time)
 
         return self._judged(line, text, verdict)
@@ -187,7 +189,8 @@ class ScenarioRun:
             if line in self._texts and isinstance(self._clauses[line], Fluent):
                 self.clause(line, sentence)
         for line, sentence in list(self._open.items()):
-            self._report(line, _unknown(self._broken) if self._broken else unknown(f"{NO_STEP} for '{sentence}'"))
+            left = unknown(f"{NO_STEP} for '{sentence}'", Cause.NO_STEP)
+            self._report(line, _unknown(self._broken) if self._broken else left)
         execution = self._execution
         if self._viewer is not None:
             self._viewer.close()
@@ -249,7 +252,7 @@ class ScenarioRun:
                 found = verdict(self._execution)
             except Exception as error:  # user code may be called; what it breaks is this clause's evidence only
                 fault = fault_of(error, text)
-                found = unknown(f"the step failed: {fault.summary}", fault=fault)
+                found = unknown(f"the step failed: {fault.summary}", Cause.USER_CODE, fault=fault)
         self._report(line, found)
         return found
 
@@ -267,7 +270,12 @@ class ScenarioRun:
 
 
 def _unknown(error: SceneError) -> Verdict:
-    return unknown(str(error), fault=error.fault)
+    return unknown(str(error), Cause.SCENE if error.fault is None else Cause.USER_CODE, fault=error.fault)
+
+
+def _broken(execution: Execution) -> Verdict:
+    cause = Cause.SCENE if execution.fault is None else Cause.USER_CODE
+    return unknown(execution.broken, cause, fault=execution.fault)
 
 
 class Session:

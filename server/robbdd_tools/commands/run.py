@@ -17,10 +17,10 @@ from robbdd_tools.commands.execute import follow_run
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.commands.runs import say_unfinished
-from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import VIEWER
 from robbdd_tools.run.pictures import NoPictures, no_display, render_moments, render_videos
-from robbdd_tools.run.scheduler import STOPPED, Policy
+from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.workbench.folder import Keeping, new_folder
 from robbdd_tools.workbench.model import ModelErrors, load
 from robbdd_tools.workbench.plan import Plan, Selection
@@ -99,7 +99,7 @@ def conclude(run: Run, outputs: Outputs, ended_by: int) -> int:
     _report(results, outputs)
     if run.place.kept:
         print_note(f"kept as {f'run {run.number}' if run.number else run.folder}")
-        if not results.complete and results.ending != STOPPED:
+        if not results.complete and results.cause is not Cause.STOPPED:
             print_note(f"resume it with: robbdd run --resume {run.number or run.folder}")
     if run.problem:
         return fail(run.problem)

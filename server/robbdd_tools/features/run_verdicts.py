@@ -44,6 +44,7 @@ class Judgement:
     digest: str
     line: int = 0
     vacuous: str = ""
+    operand: int | None = None
     fault: str = ""
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
-from itertools import product
+from dataclasses import replace
+from itertools import count, product
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.api import Kind
@@ -12,9 +13,8 @@ from robbdd_tools.judging.observation_streams import Unobserved
 from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import NoWindow, occurrences, window
 from robbdd_tools.monitor.vacuity import Range, joined
-from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation, unknown
+from robbdd_tools.monitor.verdict import Cause, Verdict, conjunction, disjunction, negation, unknown
 from robbdd_tools.protocol.clauses import AnyOf, Clause, Filler, Fluent, Junction, Text, fluents_of
-from robbdd_tools.protocol.messages import NO_STEP
 from robbdd_tools.user_code.calls import UserCodeError, fault_of
 
 if TYPE_CHECKING:
@@ -22,23 +22,30 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.judge import Regions
     from robbdd_tools.monitor.trace import Trace
 
+NO_STEP = "no step definition"
+"""How the reason begins why a clause is unknown that nothing can judge."""
 SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
 
 
 def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[str]) -> Verdict:
     """Judge a clause on what has happened; ``events`` are those that something in the scenario emits."""
     if trace.unreached:
-        return unknown(trace.unreached)
-    match clause:
-        case Fluent():
-            return _fluent(clause, trace, regions, events)
-        case Junction("not", (operand,)):
-            return negation(decide(operand, trace, regions, events))
-        case Junction(operator, operands):
-            verdicts = [decide(operand, trace, regions, events) for operand in operands]
-            return conjunction(verdicts) if operator == "and" else disjunction(verdicts)
-        case Text(words):
-            return unknown(f"{NO_STEP} for '{words}'")
+        return unknown(trace.unreached, Cause.UNREACHED)
+    numbers = count()
+
+    def decided(clause: Clause) -> Verdict:
+        match clause:
+            case Fluent():
+                return replace(_fluent(clause, trace, regions, events), operand=next(numbers))
+            case Junction("not", (operand,)):
+                return negation(decided(operand))
+            case Junction(operator, operands):
+                verdicts = [decided(operand) for operand in operands]
+                return conjunction(verdicts) if operator == "and" else disjunction(verdicts)
+            case Text(words):
+                return unknown(f"{NO_STEP} for '{words}'", Cause.NO_STEP)
+
+    return decided(clause)
 
 
 def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:
@@ -78,7 +85,7 @@ def _closed(fluent: Fluent, trace: Trace, events: AbstractSet[str]) -> bool:
 def _fluent(fluent: Fluent, trace: Trace, regions: Regions, events: AbstractSet[str]) -> Verdict:
     silent = [event for event, _ in occurrences(fluent.time) if event not in events]
     if silent and fluent.predicate.evaluate is not None:
-        return unknown(f"nothing in the scenario emits event {silent[0]}")
+        return unknown(f"nothing in the scenario emits event {silent[0]}", Cause.NO_EMITTER)
     return disjunction(
         conjunction(_judged(fluent, arguments, trace, regions) for arguments in group) for group in ways(fluent)
     )
@@ -88,12 +95,12 @@ def _judged(fluent: Fluent, arguments: Arguments, trace: Trace, regions: Regions
     try:
         return judge(fluent.predicate, arguments, fluent.time, trace, regions)
     except Unobserved as error:
-        return unknown(str(error))
+        return unknown(str(error), Cause.UNOBSERVED)
     except UserCodeError as error:
-        return unknown(str(error), fault=error.fault)
+        return unknown(str(error), Cause.USER_CODE, fault=error.fault)
     except Exception as error:  # an evaluator may come from any package; its failure is missing evidence
         fault = fault_of(error, fluent.predicate.name, fluent.predicate.evaluate)
-        return unknown(f"the evaluator of '{fluent.predicate.name}' failed: {fault.summary}", fault=fault)
+        return unknown(f"the evaluator of '{fluent.predicate.name}' failed: {fault.summary}", Cause.USER_CODE, fault=fault)
 
 
 def _choices(arguments: Mapping[str, Filler], some: list[Slot]) -> Iterator[Mapping[str, Filler]]:

@@ -43,7 +43,7 @@ def pictures_of(stores: Stores, judged: Judged) -> str:
         return ""
     if kept.get("scenario") != [scenario.variant, scenario.variation]:
         return ""
-    return " ".join(_shown(run, scenario.index, judgement.line, plot(kept, judgement.line)))
+    return " ".join(_shown(run, scenario.index, judgement.line, plot(kept, judgement.line, judgement.operand)))
 
 
 def replay_link(judged: Judged) -> str:

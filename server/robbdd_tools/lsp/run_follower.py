@@ -11,9 +11,8 @@ from robbdd_tools.lsp.kept_results import save_results
 from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_progress import RunProgress
-from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import (
-    NO_STEP,
     ClauseJudged,
     LogLine,
     RunFinished,
@@ -158,7 +157,7 @@ class RunFollower:
         if clause is None:
             return
         outcome = Outcome(message.verdict)
-        undefined = outcome is Outcome.UNKNOWN and message.reason.startswith(NO_STEP)
+        undefined = outcome is Outcome.UNKNOWN and message.cause == Cause.NO_STEP
         judgement = Judgement(
             clause.name,
             "undefined" if undefined else str(outcome),
@@ -167,6 +166,7 @@ class RunFollower:
             verdict_words(message),
             self._text.digests.clauses.get(clause.iri, ""),
             message.line,
+            operand=message.operand,
             fault=message.fault or (self._shared_fault if outcome is Outcome.UNKNOWN else ""),
         )
         self._scenario(message.index).judge(clause.iri, judgement)

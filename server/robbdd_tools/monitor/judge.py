@@ -10,7 +10,7 @@ import numpy as np
 
 from robbdd_tools.monitor.time import TOLERANCE, NoWindow, TimeConstraint, Window, window
 from robbdd_tools.monitor.vacuity import Range
-from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Outcome, Verdict, unknown
+from robbdd_tools.monitor.verdict import Cause, EMPTY_WINDOW, Outcome, Verdict, unknown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -129,16 +129,18 @@ def judge(
     window, no evaluator or no record of an argument.
     """
     if predicate.evaluate is None:
-        return unknown(f"there is no evaluator for '{predicate.name}'")
+        return unknown(f"there is no evaluator for '{predicate.name}'", Cause.NO_STEP)
     selected = window(constraint, trace)
     if isinstance(selected, NoWindow):
-        return unknown(selected.reason, EMPTY_WINDOW if selected.empty else "")
+        if selected.empty:
+            return unknown(selected.reason, Cause.EMPTY, EMPTY_WINDOW)
+        return unknown(selected.reason, Cause.NO_EVENT)
     evidence = WindowEvidence(trace, selected, regions)
     try:
         margins = predicate.evaluate(evidence, arguments)
         unit = predicate.unit if predicate.unit_for is None else predicate.unit_for(evidence, arguments)
     except KeyError as missing:
-        return unknown(f"the trace has no record of '{missing.args[0]}'")
+        return unknown(f"the trace has no record of '{missing.args[0]}'", Cause.NO_RECORD)
     return _verdict(margins, evidence.times, unit)
 
 
@@ -160,7 +162,7 @@ def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regio
 
 def _verdict(margins: FloatArray, times: FloatArray, unit: str) -> Verdict:
     if not np.all(np.isfinite(margins)):
-        return unknown("the margin is not a number at some sample")
+        return unknown("the margin is not a number at some sample", Cause.NO_RECORD)
     worst = int(np.argmin(margins))
     robustness, worst_at = float(margins[worst]), float(times[worst])
     if robustness >= 0:

@@ -21,6 +21,47 @@ class Outcome(StrEnum):
     UNKNOWN = "unknown"
 
 
+class Cause(StrEnum):
+    """Why a clause is unknown; the reason beside it is for people."""
+
+    CANCELLED = "cancelled"
+    """The run was cancelled before the clause was judged."""
+    STOPPED = "stopped"
+    """The run ended at its first failure before the clause was judged."""
+    NOT_EXECUTED = "not-executed"
+    """The run ended, or could not begin, before the clause was judged."""
+    TIMED_OUT = "timed-out"
+    """The execution took more wall time than it may."""
+    PROCESS_ENDED = "process-ended"
+    """The process that executed the scenario ended by itself."""
+    TIME_LIMIT = "time-limit"
+    """The execution took more simulated time than it may."""
+    SIMULATION = "simulation"
+    """The simulation broke down."""
+    SCENE = "scene"
+    """The scene cannot be set up."""
+    USER_CODE = "user-code"
+    """Code of the user failed."""
+    NO_STEP = "no-step"
+    """Nothing judges the words of the clause."""
+    SKIPPED = "skipped"
+    """behave did not execute the step."""
+    UNREACHED = "unreached"
+    """What the clause speaks of was never reached."""
+    NO_EMITTER = "no-emitter"
+    """Nothing in the scenario emits an event that the clause names."""
+    NO_EVENT = "no-event"
+    """An event that the clause names did not occur."""
+    NO_RECORD = "no-record"
+    """The trace lacks what the clause is judged by."""
+    UNOBSERVED = "unobserved"
+    """What the clause observes is not observed in a simulation."""
+    EMPTY = "empty"
+    """The clause quantifies over an empty set, or its window holds no sample."""
+    CHANGED = "changed"
+    """The model has changed since the trace was recorded."""
+
+
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """The judgement of one clause on one trace.
@@ -28,8 +69,9 @@ class Verdict:
     ``robustness`` is the signed margin in ``unit`` (positive: holds), ``None`` when unknown. ``at`` (s) is the
     instant of violation (the first sample with a negative margin), of the worst margin when it holds, ``None``
     when unknown; ``worst_at`` (s) is that of the worst margin in any case. ``reason`` says in words why it is
-    violated or unknown; ``vacuous`` why it could not have been violated, nothing where it could. ``fault`` is the error
-    in users' code that kept the evidence away.
+    violated or unknown, ``cause`` tells an unknown one from others without words; ``vacuous`` why it could not have
+    been violated, nothing where it could. ``fault`` is the error in users' code that kept the evidence away.
+    ``operand`` is the number (from 0, in the order of the sentence) of the fluent that decides the clause.
     """
 
     outcome: Outcome
@@ -40,11 +82,13 @@ class Verdict:
     worst_at: float | None = None
     vacuous: str = ""
     fault: Fault | None = None
+    cause: Cause | None = None
+    operand: int | None = None
 
 
-def unknown(reason: str, vacuous: str = "", fault: Fault | None = None) -> Verdict:
+def unknown(reason: str, cause: Cause, vacuous: str = "", fault: Fault | None = None) -> Verdict:
     """Return the verdict for missing evidence; it never passes."""
-    return Verdict(Outcome.UNKNOWN, reason=reason, vacuous=vacuous, fault=fault)
+    return Verdict(Outcome.UNKNOWN, reason=reason, vacuous=vacuous, fault=fault, cause=cause)
 
 
 def negation(verdict: Verdict) -> Verdict:
@@ -67,7 +111,7 @@ def disjunction(verdicts: Iterable[Verdict]) -> Verdict:
 
 def _combine(verdicts: list[Verdict], decisive: Outcome, sign: float) -> Verdict:
     if not verdicts:
-        return unknown("there is nothing to judge: the set is empty", EMPTY_SET)
+        return unknown("there is nothing to judge: the set is empty", Cause.EMPTY, EMPTY_SET)
     deciding = [verdict for verdict in verdicts if verdict.outcome is decisive]
     if not deciding:
         open_ones = [verdict for verdict in verdicts if verdict.outcome is Outcome.UNKNOWN]

@@ -12,12 +12,10 @@ from dataclasses import asdict, dataclass
 from robbdd_tools.base.plain import finite, from_plain
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.fault import Fault
-from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 
 VIEWER = "ROBBDD_VIEWER"
 """Environment variable of the agent: when it is set, a window shows each scenario in real time."""
-NO_STEP = "no step definition"
-"""How the reason begins why a clause is unknown that nothing can judge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +52,8 @@ class ClauseStarted:
 class ClauseJudged:
     """A clause has its verdict (``holds``, ``violated``, ``unknown``); see ``monitor.verdict.Verdict``.
 
-    ``fault`` is the ``id`` of the error in users' code that it is unknown for, as a ``UserCodeFailed`` has it.
+    ``fault`` is the ``id`` of the error in users' code that it is unknown for, as a ``UserCodeFailed`` has it; ``cause``
+    is a ``monitor.verdict.Cause``, empty where the verdict is known.
     """
 
     index: int
@@ -67,6 +66,8 @@ class ClauseJudged:
     worst_at: float | None = None
     vacuous: str = ""
     fault: str = ""
+    cause: str = ""
+    operand: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +176,14 @@ def judged(index: int, line: int, verdict: Verdict) -> ClauseJudged:
         verdict.worst_at,
         verdict.vacuous,
         "" if verdict.fault is None else verdict.fault.id,
+        verdict.cause or "",
+        verdict.operand,
     )
+
+
+def never_judged(index: int, line: int, reason: str, cause: Cause) -> ClauseJudged:
+    """Return the message that a clause is unknown because nothing judged it."""
+    return judged(index, line, unknown(reason, cause))
 
 
 def encode(message: RunMessage | Execute) -> str:
@@ -190,6 +198,8 @@ def decode(line: str) -> RunMessage:
         message = from_plain(_TYPES[fields.pop("type")], fields)
         if isinstance(message, ClauseJudged):
             Outcome(message.verdict)
+            if message.cause:
+                Cause(message.cause)
         if isinstance(message, LogLine) and message.level not in ("info", "warning", "error"):
             raise ValueError(message.level)
         return message

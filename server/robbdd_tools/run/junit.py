@@ -7,8 +7,8 @@ from itertools import groupby
 from xml.etree import ElementTree
 
 from robbdd_tools.base.printable import printable
-from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.protocol.messages import ClauseJudged
+from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.protocol.messages import never_judged
 from robbdd_tools.run.report import plain_sentence, values_words, verdict_words
 from robbdd_tools.run.results import RunResults, ScenarioResult
 
@@ -59,9 +59,7 @@ def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
 def _clauses(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
     """Yield each clause's outcome and its words: sentence, margin, instant, reason."""
     for clause in scenario.spec.clauses:
-        judged = scenario.judged.get(clause.line) or ClauseJudged(
-            0, clause.line, Outcome.UNKNOWN, None, "", None, "the clause was never judged"
-        )
+        judged = scenario.judged.get(clause.line) or never_judged(0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED)
         role = clause.role.capitalize()
         yield Outcome(judged.verdict), f"{verdict_words(judged)}  [{role} {plain_sentence(clause.sentence)}]"
 

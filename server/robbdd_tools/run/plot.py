@@ -35,15 +35,16 @@ class _Frame:
         return round(TOP + (HEIGHT - TOP - BOTTOM) * (self.high - value) / (self.high - self.low), 1)
 
 
-def plot(kept: Mapping[str, Any], line: int) -> str | None:
+def plot(kept: Mapping[str, Any], line: int, operand: int | None = None) -> str | None:
     """Return the plot of the clause on a feature line as SVG, ``None`` where there is nothing to plot.
 
-    ``kept`` is what is kept beside a trace; of several fluents that with the least margin is shown.
+    ``kept`` is what is kept beside a trace; of several fluents, number ``operand`` is shown, which decides the clause.
     """
-    parts = [part for part in kept["clauses"].get(str(line), ()) if part["times"]]
-    if not parts:
+    parts: Sequence[Mapping[str, Any]] = kept["clauses"].get(str(line), ())
+    number = operand or 0
+    if number >= len(parts) or not parts[number]["times"]:
         return None
-    part = min(parts, key=lambda part: min(part["margins"]))
+    part = parts[number]
     low, high = min(0.0, *part["margins"]), max(0.0, *part["margins"])
     room = 0.08 * ((high - low) or 1.0)
     frame = _Frame(max(kept["duration"], part["times"][-1]) or 1.0, low - room, high + room)

@@ -14,7 +14,7 @@ from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
     MarginRanges,
@@ -26,7 +26,7 @@ from robbdd_tools.protocol.messages import (
 from robbdd_tools.protocol.specs import scenario_key
 from robbdd_tools.run.database import DatabaseProblem, explained, open_database, transaction
 from robbdd_tools.run.results import RunResults, ScenarioResult
-from robbdd_tools.run.stored_results import FAILED, FINISHED, INTERRUPTED, RUNNING, STOPPED, restored
+from robbdd_tools.run.stored_results import CAUSES, FAILED, FINISHED, INTERRUPTED, RUNNING, STOPPED, restored
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -153,7 +153,7 @@ class Recording:
         if state == FINISHED:
             results.apply(RunFinished(True))
         else:
-            results.close(ending)
+            results.close(ending, CAUSES.get(state, Cause.NOT_EXECUTED))
         self._place.write_record(replace(self._place.record(), simulator=simulator))
         self._place.write_results(results.as_json())
         return results
@@ -210,6 +210,8 @@ class Recording:
                     "reason": one.reason,
                     "vacuous": one.vacuous,
                     "fault": one.fault,
+                    "cause": one.cause,
+                    "operand": one.operand,
                     "ranges": None if line not in varied else json.dumps(varied[line].ranges),
                     "held_before": None if line not in varied else varied[line].held_before,
                 }

@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from robbdd_tools.catalog.coordination import TreeSpec
-from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, RunMessage
+from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, RunMessage, never_judged
 from robbdd_tools.protocol.messages import ScenarioFinished as Finished
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
 from robbdd_tools.run.vacuous_clauses import Vacuity
@@ -35,13 +35,14 @@ class ScenarioResult:
 class RunResults:
     """Everything known of a run; ``apply`` takes the messages in the order in which they come.
 
-    ``ending`` says why scenarios were left open.
+    ``ending`` says why scenarios were left open, ``cause`` tells the reasons apart.
     """
 
     manifest: Manifest
     scenarios: list[ScenarioResult] = field(init=False)
     complete: bool = False
     ending: str = ""
+    cause: Cause | None = None
     _vacuity: Vacuity = field(default_factory=Vacuity)
 
     def __post_init__(self) -> None:
@@ -63,11 +64,11 @@ class RunResults:
             case _:
                 pass
 
-    def close(self, reason: str) -> list[ClauseJudged]:
+    def close(self, reason: str, cause: Cause = Cause.NOT_EXECUTED) -> list[ClauseJudged]:
         """Judge every clause that is still open *unknown* for ``reason``; returns these judgements."""
-        self.ending = reason
+        self.ending, self.cause = reason, cause
         closing = [
-            ClauseJudged(index, clause.line, Outcome.UNKNOWN, None, "", None, reason)
+            never_judged(index, clause.line, reason, cause)
             for index, scenario in enumerate(self.scenarios)
             for clause in scenario.spec.clauses
             if clause.line not in scenario.judged
@@ -153,4 +154,6 @@ def _clause(clause: ClauseSpec, judged: ClauseJudged | None, vacuous: str) -> di
         "reason": "the clause was never judged" if judged is None else judged.reason,
         "worst_at": None if judged is None else judged.worst_at,
         "vacuous": vacuous,
+        "cause": str(Cause.NOT_EXECUTED) if judged is None else judged.cause,
+        "operand": None if judged is None else judged.operand,
     }

@@ -18,7 +18,7 @@ from queue import Empty, SimpleQueue
 from time import monotonic
 from typing import Self
 
-from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
     ClauseStarted,
@@ -31,6 +31,7 @@ from robbdd_tools.protocol.messages import (
     ScenarioFinished,
     ScenarioStarted,
     UserCodeFailed,
+    never_judged,
 )
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.agent_log import LIMIT
@@ -120,6 +121,7 @@ class Scheduler:
         self._wasted = 0
         self._greeted = False
         self._cancelled = False
+        self._stopped = False
         self._shared_faults: set[str] = set()
         self._shared_outputs = 0
         self.ending = ""
@@ -178,7 +180,7 @@ class Scheduler:
 
     @property
     def _gave_up(self) -> bool:
-        return bool(self.ending) and self.ending != STOPPED
+        return bool(self.ending) and not self._stopped
 
     @property
     def _open(self) -> bool:
@@ -287,7 +289,7 @@ class Scheduler:
     def _stop_after(self, index: int) -> None:
         """Leave scenarios after one undone; those before it go on, so that the outcome does not depend on timing."""
         if index != self._indices[-1]:
-            self.ending = STOPPED
+            self.ending, self._stopped = STOPPED, True
         self._waiting = deque(earlier for task in self._waiting if (earlier := _before(index, task)))
         self._order.forget(index + 1)
         beyond = [worker for worker in self._workers if worker.index is not None and worker.index > index]
@@ -306,11 +308,13 @@ class Scheduler:
                 self._waiting.appendleft(tuple(worker.following))
                 worker.following.clear()
             limit = self._limit(worker.index)
-            reason = f"timed out after {limit:g} s" if worker.timed_out else worker.agent.ending()
+            late = f"timed out after {limit:g} s"
+            reason = late if worker.timed_out else worker.agent.ending()
+            cause = Cause.TIMED_OUT if worker.timed_out else Cause.PROCESS_ENDED
             for clause in spec.clauses:
                 if clause.line not in worker.judged:
                     worker.failed = True
-                    judged = ClauseJudged(worker.index, clause.line, Outcome.UNKNOWN, None, "", None, reason)
+                    judged = never_judged(worker.index, clause.line, reason, cause)
                     yield from self._pass_on(worker, judged)
             yield from self._finish(worker, ScenarioFinished(worker.index, 0.0, 0.0, 0.0))
             return

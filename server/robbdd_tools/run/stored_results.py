@@ -11,12 +11,15 @@ from pathlib import Path
 
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.monitor.contact import Contact
+from robbdd_tools.monitor.verdict import Cause
 from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, ScenarioFinished
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.database import explained, read_database
 from robbdd_tools.run.results import RunResults
 
 RUNNING, FINISHED, STOPPED, INTERRUPTED, FAILED = "running", "finished", "stopped", "interrupted", "failed"
+CAUSES = {STOPPED: Cause.STOPPED, INTERRUPTED: Cause.CANCELLED}
+"""Why executions are missing from a run that is in a state."""
 """States of a run in the database."""
 DIED = "died"
 """State of a run that is ``RUNNING`` by the database but not by its lock."""
@@ -120,7 +123,7 @@ def read_results(database: Path, number: int, manifest: Manifest, *, live: bool 
     if status.state == FINISHED:
         results.apply(RunFinished(True))
     else:
-        results.close(status.ending)
+        results.close(status.ending, CAUSES.get(status.state, Cause.NOT_EXECUTED))
     return results
 
 
@@ -133,7 +136,8 @@ def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) ->
         if index >= len(manifest.scenarios):
             continue
         spec = manifest.scenarios[index]
-        query = """SELECT line, verdict, robustness, unit, at, reason, worst_at, vacuous, fault, ranges, held_before
+        query = """SELECT line, verdict, robustness, unit, at, reason, worst_at, vacuous, fault, cause, operand,
+            ranges, held_before
             FROM clause WHERE execution = ? ORDER BY position"""
         known = {clause.line for clause in spec.clauses}
         touched = tuple(from_plain(Contact, one) for one in json.loads(contacts))

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, cast
 
-from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.monitor.verdict import Cause, Outcome
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +16,8 @@ class ClauseResult:
     ``role`` is ``given``, ``when`` or ``then``. ``margin`` is the robustness in ``unit`` (SI; positive: holds),
     ``None`` without a measurable margin or when unknown. ``at`` (s, simulated) is the instant of the violation,
     ``worst_at`` that of the smallest margin. ``reason`` says why it is violated or unknown, ``vacuous`` why it could
-    not have been violated.
+    not have been violated. ``cause`` tells unknown verdicts apart without words. ``operand`` is the number (from 0, in
+    the order of the sentence) of the fluent that decides it.
     """
 
     name: str
@@ -30,6 +31,8 @@ class ClauseResult:
     worst_at: float | None
     reason: str
     vacuous: str
+    cause: Cause | None = None
+    operand: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +129,8 @@ def _clause(entry: Mapping[str, Any]) -> ClauseResult:
         entry.get("worst_at"),
         entry["reason"],
         entry.get("vacuous", ""),
+        Cause(entry["cause"]) if entry.get("cause") else None,
+        entry.get("operand"),
     )
 
 
