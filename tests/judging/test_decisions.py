@@ -9,7 +9,7 @@ from robbdd_tools.catalog.api import Region
 from robbdd_tools.judging.decisions import decide, is_closed
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.trace import Trace
-from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.monitor.verdict import Cause, Outcome
 
 BOX = Region((0.0, 0.0, 0.0), (0.1, 0.1, 0.1))
 REGIONS = {"left": (("bin1", BOX),), "right": (("bin2", BOX),)}
@@ -49,6 +49,40 @@ def test_decides(sentence: str, outcome: Outcome, robustness: float | None) -> N
     found = decide(read_clause(sentence), a_trace(), REGIONS, EVENTS.keys())
     assert found.outcome is outcome
     assert found.robustness == (None if robustness is None else pytest.approx(robustness))
+
+
+LEFT, HELD = '"ball" is located at "left" after event "t:e"', '"ball" is held by "arm" after event "t:e"'
+RIGHT = '"ball" is located at "right" after event "t:e"'
+
+
+@pytest.mark.parametrize(
+    ("sentence", "operand", "unit"),
+    [
+        (LEFT, 0, "m"),
+        (f"( {RIGHT} or {LEFT} )", 1, "m"),
+        (f"( {HELD} and {LEFT} )", 1, "m"),
+        (f"( {RIGHT} or not ( {LEFT} ) )", 1, "m"),
+        (f"( the lamp is green or ( {RIGHT} or {HELD} ) )", 1, ""),
+    ],
+)
+def test_the_fluent_that_decides_is_named(sentence: str, operand: int, unit: str) -> None:
+    found = decide(read_clause(sentence), a_trace(), REGIONS, EVENTS.keys())
+    assert (found.operand, found.unit) == (operand, unit)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "cause"),
+    [
+        ("the lamp is green", Cause.NO_STEP),
+        ('"ball" is located at "left" after event "t:other"', Cause.NO_EMITTER),
+        ('"ball" is located at "left" after event "t:later"', Cause.NO_EVENT),
+        ('"ball" has config "mass" = "1" before event "t:e"', Cause.NO_RECORD),
+        ('"ball" is located at "any of []" after event "t:e"', Cause.EMPTY),
+        (LEFT, None),
+    ],
+)
+def test_causes_of_unknown_verdicts_are_told_apart_without_words(sentence: str, cause: Cause | None) -> None:
+    assert decide(read_clause(sentence), a_trace(), REGIONS, EVENTS.keys()).cause is cause
 
 
 @pytest.mark.parametrize(

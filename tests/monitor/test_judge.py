@@ -13,7 +13,7 @@ from monitor.traces import heights, still, trace_of
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import After, Before, During
-from robbdd_tools.monitor.verdict import Outcome, Verdict, unknown
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
@@ -55,13 +55,13 @@ def test_only_the_window_counts() -> None:
 
 
 def test_what_the_trace_does_not_hold_is_unknown() -> None:
-    assert judged([1.0], "cube") == unknown("the trace has no record of 'cube'")
+    assert judged([1.0], "cube") == unknown("the trace has no record of 'cube'", Cause.NO_RECORD)
 
 
 def test_a_predicate_without_evaluator_is_unknown() -> None:
     mute = replace(ABOVE, evaluate=None)
     found = judge(mute, {"thing": "ball"}, ALL, trace_of({"ball": still(1)}), {})
-    assert found == unknown("there is no evaluator for 'above'")
+    assert found == unknown("there is no evaluator for 'above'", Cause.NO_STEP)
 
 
 def test_a_missing_event_is_unknown() -> None:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robbdd_tools.monitor.verdict import Outcome, Verdict, conjunction, disjunction, negation, unknown
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, conjunction, disjunction, negation, unknown
 
 ORDER = [Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.HOLDS]
 
 
 def of(margin: float | None) -> Verdict:
     if margin is None:
-        return unknown("no evidence")
+        return unknown("no evidence", Cause.NO_RECORD)
     return Verdict(Outcome.HOLDS if margin >= 0 else Outcome.VIOLATED, margin, "m", 1.0)
 
 
@@ -51,17 +51,17 @@ def test_negation_twice_changes_nothing(margin: float | None) -> None:
 
 
 def test_negation_of_unknown_keeps_its_reason() -> None:
-    assert negation(unknown("no evidence")) == unknown("no evidence")
+    assert negation(unknown("no evidence", Cause.NO_RECORD)) == unknown("no evidence", Cause.NO_RECORD)
 
 
 def test_unknown_never_passes_through_and() -> None:
-    assert conjunction([of(1.0), unknown("no evidence")]).outcome is Outcome.UNKNOWN
-    assert conjunction([of(-1.0), unknown("no evidence")]).outcome is Outcome.VIOLATED
+    assert conjunction([of(1.0), unknown("no evidence", Cause.NO_RECORD)]).outcome is Outcome.UNKNOWN
+    assert conjunction([of(-1.0), unknown("no evidence", Cause.NO_RECORD)]).outcome is Outcome.VIOLATED
 
 
 def test_unknown_does_not_hide_a_fulfilled_alternative() -> None:
-    assert disjunction([of(1.0), unknown("no evidence")]) == of(1.0)
-    assert disjunction([of(-1.0), unknown("no evidence")]).outcome is Outcome.UNKNOWN
+    assert disjunction([of(1.0), unknown("no evidence", Cause.NO_RECORD)]) == of(1.0)
+    assert disjunction([of(-1.0), unknown("no evidence", Cause.NO_RECORD)]).outcome is Outcome.UNKNOWN
 
 
 def test_nothing_to_judge_is_unknown() -> None:

@@ -43,6 +43,15 @@ def test_the_least_margin_within_the_window_is_marked() -> None:
     assert {"pick-start", "<&>", "−500 mm", "+300 mm", "5.00 s"} <= set(texts)
 
 
+def test_the_fluent_that_decides_is_plotted() -> None:
+    clause = kept()
+    (part,) = clause["clauses"]["7"]
+    clause["clauses"]["7"] = [{**part, "margins": [-1.0] * 6, "unit": ""}, part]
+    chosen, other = plot(clause, 7, 1), plot(clause, 7, 0)
+    assert chosen == plot(kept(), 7)
+    assert chosen != other
+
+
 def test_a_negated_clause_wants_the_opposite() -> None:
     assert [mark.get("fill") for mark in drawn(negated=True).iter(f"{SVG}circle")] == [GOOD]
 

@@ -11,9 +11,15 @@ export interface PlotPlace {
   readonly width: number;
 }
 
-/** Draw the margins of a clause's fluents; without any, say why there are none. */
+/** The fluent that decides a clause; all of them where none does. */
+function deciding({ parts, operand }: Clause): readonly Part[] {
+  const part = parts[operand ?? -1];
+  return part === undefined ? parts : [part];
+}
+
+/** Draw the margin of the fluent that decides a clause; without any, say why there is none. */
 export function marginPlot(clause: Clause | undefined, along: Scale, { top, height, width }: PlotPlace): SVGElement[] {
-  const parts = clause?.parts.filter(({ times }) => times.length > 0) ?? [];
+  const parts = clause === undefined ? [] : deciding(clause).filter(({ times }) => times.length > 0);
   if (clause === undefined || parts.length === 0) {
     const reason = clause?.role === "when" ? "A behaviour has no margin." : "No margin was recorded for this clause.";
     return [drawn("text", { class: "empty", x: along(0), y: top + height / 2 }, clause === undefined ? "" : reason)];

@@ -92,9 +92,9 @@ class Course:
     ``stamps`` are what emitters have emitted so far; ``completed`` counts the behaviours that went through, of those
     that are executed one after the other; ``tree`` is the behaviour tree, if one is executed. ``remark`` is the last
     word on what went wrong; ``broken`` says what is wrong with the user's code or model, if anything is, so that
-    nothing can be concluded, and ``fault`` describes an error in that code. ``cut_short`` is the verdict on behaviours where the execution ended
-    before its script did; ``failed`` that one of the behaviours failed. ``wall`` is the time spent, s. Raises
-    ``SceneError`` when the scene cannot be set up.
+    nothing can be concluded, and ``fault`` describes an error in that code. ``cut_short`` is the verdict on
+    behaviours where the execution ended before its script did; ``failed`` that one of the behaviours failed. ``wall``
+    is the time spent, s. Raises ``SceneError`` when the scene cannot be set up.
     """
 
     def __init__(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing | None = None) -> None:

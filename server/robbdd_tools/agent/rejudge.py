@@ -58,7 +58,10 @@ class StoredTraces:
     def judged(self, spec: ScenarioSpec) -> Iterator[tuple[ClauseSpec, Verdict]]:
         """Yield the verdicts on the clauses of a scenario."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
-        found = unknown(STRANGER, Cause.CHANGED) if stored is None else self._evidence(index, spec, stored)
+        if stored is None:
+            yield from ((clause, unknown(STRANGER, Cause.CHANGED)) for clause in spec.clauses)
+            return
+        found = self._evidence(index, spec, stored)
         for clause in spec.clauses:
             if isinstance(found, Verdict):
                 yield clause, found

@@ -31,7 +31,7 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
     UserCodeFailed,
 )
-from robbdd_tools.run.report import SIGNS, contact_words, margin, plain_sentence, values_words
+from robbdd_tools.run.report import SIGNS, contact_words, deciding_words, margin, plain_sentence, values_words
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -188,17 +188,19 @@ class Display:
         self._console.print(plain(f"{spec.name}  {values_words(spec)}", STYLES[outcome]))
         self._output(self._printed.pop(index, []))
         rows = [
-            (judged, printable(plain_sentence(clause.sentence)))
+            (judged, printable(plain_sentence(clause.sentence)), printable(deciding_words(clause, judged)))
             for clause in spec.clauses
             if (judged := scenario.judged.get(clause.line)) is not None
         ]
-        width = max((len(sentence) for _, sentence in rows), default=0)
-        for number, (judged, sentence) in enumerate(rows):
+        width = max((len(sentence) for _, sentence, _ in rows), default=0)
+        for number, (judged, sentence, decided) in enumerate(rows):
             if self._drawn:
                 fitting = max(self._console.width - BESIDE, NARROWEST)
                 self._console.print(_clause_cells(judged, sentence, min(width, fitting)))
             else:
                 self._console.print(_clause_line(judged, sentence, width))
+            if decided:
+                self._console.print(Padding(Text(decided), INDENT) if self._drawn else Text(f"      {decided}"))
             below = rows[number + 1][0].reason if number + 1 < len(rows) else ""
             if judged.reason not in ("", below):
                 number = self._faults.get(judged.fault)

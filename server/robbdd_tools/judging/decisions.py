@@ -100,7 +100,9 @@ def _judged(fluent: Fluent, arguments: Arguments, trace: Trace, regions: Regions
         return unknown(str(error), Cause.USER_CODE, fault=error.fault)
     except Exception as error:  # an evaluator may come from any package; its failure is missing evidence
         fault = fault_of(error, fluent.predicate.name, fluent.predicate.evaluate)
-        return unknown(f"the evaluator of '{fluent.predicate.name}' failed: {fault.summary}", Cause.USER_CODE, fault=fault)
+        return unknown(
+            f"the evaluator of '{fluent.predicate.name}' failed: {fault.summary}", Cause.USER_CODE, fault=fault
+        )
 
 
 def _choices(arguments: Mapping[str, Filler], some: list[Slot]) -> Iterator[Mapping[str, Filler]]:

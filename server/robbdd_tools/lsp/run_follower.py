@@ -163,7 +163,7 @@ class RunFollower:
             "undefined" if undefined else str(outcome),
             margin(message.robustness, message.unit),
             _BADNESS[outcome] + (message.robustness or 0.0),
-            verdict_words(message),
+            verdict_words(message, clause),
             self._text.digests.clauses.get(clause.iri, ""),
             message.line,
             operand=message.operand,

@@ -10,7 +10,7 @@ import numpy as np
 
 from robbdd_tools.monitor.time import TOLERANCE, NoWindow, TimeConstraint, Window, window
 from robbdd_tools.monitor.vacuity import Range
-from robbdd_tools.monitor.verdict import Cause, EMPTY_WINDOW, Outcome, Verdict, unknown
+from robbdd_tools.monitor.verdict import EMPTY_WINDOW, Cause, Outcome, Verdict, unknown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -52,8 +52,8 @@ class ClauseStarted:
 class ClauseJudged:
     """A clause has its verdict (``holds``, ``violated``, ``unknown``); see ``monitor.verdict.Verdict``.
 
-    ``fault`` is the ``id`` of the error in users' code that it is unknown for, as a ``UserCodeFailed`` has it; ``cause``
-    is a ``monitor.verdict.Cause``, empty where the verdict is known.
+    ``fault`` is the ``id`` of the error in users' code that it is unknown for, as a ``UserCodeFailed`` has it.
+    ``cause`` is a ``monitor.verdict.Cause``, empty where the verdict is known.
     """
 
     index: int

@@ -59,9 +59,11 @@ def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
 def _clauses(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
     """Yield each clause's outcome and its words: sentence, margin, instant, reason."""
     for clause in scenario.spec.clauses:
-        judged = scenario.judged.get(clause.line) or never_judged(0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED)
+        judged = scenario.judged.get(clause.line) or never_judged(
+            0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED
+        )
         role = clause.role.capitalize()
-        yield Outcome(judged.verdict), f"{verdict_words(judged)}  [{role} {plain_sentence(clause.sentence)}]"
+        yield Outcome(judged.verdict), f"{verdict_words(judged, clause)}  [{role} {plain_sentence(clause.sentence)}]"
 
 
 def _wall(scenario: ScenarioResult) -> float:

@@ -5,18 +5,20 @@ from __future__ import annotations
 import re
 from typing import cast
 
+from robbdd_tools.gherkin.steps import sentence
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.protocol.clauses import Junction, fluents_of
 from robbdd_tools.protocol.messages import ClauseJudged
-from robbdd_tools.protocol.specs import ScenarioSpec
+from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
 SIGNS = {Outcome.HOLDS: "✔", Outcome.VIOLATED: "✗", Outcome.UNKNOWN: "?"}
 MINUS = "−"
 
 
-def plain_sentence(sentence: str) -> str:
+def plain_sentence(text: str) -> str:
     """Return a step's sentence for reading: names without prefix and quotes, ``event`` left out."""
-    without_event = sentence.replace('event "', '"')
+    without_event = text.replace('event "', '"')
     return re.sub(r'"([^"]*)"', lambda match: re.sub(r"'?[\w.-]+:([^,'\]]*)'?", r"\1", match[1]), without_event)
 
 
@@ -38,8 +40,17 @@ def margin(robustness: float | None, unit: str) -> str:
     return f"{MINUS if value < 0 else '+'}{digits} {shown}"
 
 
-def verdict_words(judged: ClauseJudged) -> str:
-    """Return sign and margin of a judged clause; when it was violated, and the reason if there is one."""
+def deciding_words(clause: ClauseSpec, judged: ClauseJudged) -> str:
+    """Return which of several fluents decides a clause; nothing for a clause of one fluent."""
+    statement = clause.statement
+    if judged.operand is None or not isinstance(statement, Junction):
+        return ""
+    fluents = list(fluents_of(statement))
+    return f"decided by: {plain_sentence(sentence(fluents[judged.operand]))}" if len(fluents) > 1 else ""
+
+
+def verdict_words(judged: ClauseJudged, clause: ClauseSpec | None = None) -> str:
+    """Return sign and margin of a judged clause; when it was violated, the fluent that decides it, and the reason."""
     outcome = Outcome(judged.verdict)
     parts = [SIGNS[outcome]]
     shown = margin(judged.robustness, judged.unit)
@@ -49,7 +60,8 @@ def verdict_words(judged: ClauseJudged) -> str:
         parts.append(f"at {judged.at:.2f} s")
     if outcome is Outcome.UNKNOWN:
         parts.append("unknown")
-    return " ".join(parts) + (f": {judged.reason}" if judged.reason else "")
+    decided = "" if clause is None else deciding_words(clause, judged)
+    return ": ".join(filter(None, (" ".join(parts), judged.reason))) + (f" ({decided})" if decided else "")
 
 
 def values_words(spec: ScenarioSpec) -> str:

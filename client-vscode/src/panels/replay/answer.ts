@@ -62,6 +62,8 @@ export interface Clause {
   /** Whether the model states it no more; null (or nothing, from older servers) where that cannot be told. */
   readonly stale?: boolean | null;
   readonly parts: readonly Part[];
+  /** Index of the part that decides the clause. */
+  readonly operand?: number | null;
 }
 
 export interface Scenario {
