@@ -26,7 +26,7 @@ def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
     for stamp in trace.events:
         yield stamp.time, "/events", {"name": stamp.name, "time": stamp.time}
     model = simulation.model
-    bodies = [body for body in range(model.nbody) if any(shown_geoms(model, body))]
+    bodies = [body for body in range(model.nbody) if next(shown_geoms(model, body), None) is not None]
     names = {body: str(model.body(body).name) or WORLD for body in bodies}
     names = {body: f"{WORLD}/solid" if name == WORLD else name for body, name in names.items()}
     yield 0.0, "/geometry", geometry(model, names, simulation.world.cast.regions)
