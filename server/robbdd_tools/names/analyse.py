@@ -16,7 +16,7 @@ from robbdd_tools.names.resolve import Resolution, Target, Targets, resolve_file
 if TYPE_CHECKING:
     from robbdd_tools.names.index import FileIndex
     from robbdd_tools.names.scope import Scope
-    from robbdd_tools.syntax.declaration import SyntaxFault
+    from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
 
 
 class Definitions(Mapping[str, Definition]):
@@ -85,6 +85,12 @@ def _syntax_error(uri: str, fault: SyntaxFault, offset: int) -> Diagnostic:
     fixes: tuple[Fix, ...] = ()
     if fault.fix is not None:
         span = fault.fix.span.shifted(offset)
-        verb = "Insert" if span.start == span.end else "Change to"
-        fixes = (Fix(f"{verb} '{fault.fix.text}'", (Edit(uri, span, fault.fix.text),)),)
+        fixes = (Fix(_title(fault.fix), (Edit(uri, span, fault.fix.text),)),)
     return Diagnostic(uri, fault.span.shifted(offset), Severity.ERROR, "syntax", fault.message, fixes=fixes)
+
+
+def _title(fix: SyntaxFix) -> str:
+    written = fix.text.strip()
+    if not written:
+        return "Remove it"
+    return f"{'Insert' if fix.span.start == fix.span.end else 'Change to'} '{written}'"

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
+from robbdd_tools.syntax.near_misses import near_miss
 from robbdd_tools.syntax.parsed import Expectation, Rejected
 from robbdd_tools.syntax.recover import Fault
 
@@ -48,7 +49,7 @@ _AS_NAMES = {
 def fault_in(text: str, fault: Fault) -> SyntaxFault:
     """Return an error that was found in a text as users see it."""
     found = _rejected(text, fault.rejected)
-    if fault.repair is None or fault.repair.text is None:
+    if found.fix is not None or fault.repair is None or fault.repair.text is None:
         return found
     return replace(found, fix=SyntaxFix(fault.repair.span, fault.repair.text))
 
@@ -72,6 +73,9 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
     misplaced = _misplaced(text, rejected)
     if misplaced is not None:
         return misplaced
+    near = near_miss(text, rejected)
+    if near is not None:
+        return near
     if rejected.offset == 0 and rejected.expected.literals >= _STARTS:
         return SyntaxFault(span, f"'{found}' does not begin a declaration")
     words = expected_words(rejected.expected)

@@ -25,6 +25,7 @@ ALIKE = 0.6
 """Share of common letters from which a word counts as a misspelt keyword."""
 HOLE = "\u02ad"
 """Stands for a missing name: a letter to the grammar, but of no alphabet, so that no user means it."""
+_SET_OF_VALUES = re.compile(r"\b(?P<set>set)\s+var\s*<[^<>]*>\s*:\s*\{\s*\Z")
 _COMMENTS = re.compile(r"(?P<comment>//[^\n]*)|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
 _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(?P<open>[{(])|(?P<close>[})])")
 
@@ -123,6 +124,7 @@ def _repairs(text: str, stopped: Rejected) -> Iterator[Repair]:
     offset = stopped.offset
     found = _word(text, offset)
     literals = sorted(stopped.expected.literals)
+    yield from _single_values(text, offset)
     yield from (repair for sign in literals if not sign[0].isalpha() for repair in _insertion(text, offset, sign))
     if any(rule == "NameText" or rule.endswith("Path") for rule in stopped.expected.rules):
         yield from _hole(text, offset)
@@ -134,6 +136,13 @@ def _repairs(text: str, stopped: Rejected) -> Iterator[Repair]:
         yield from _rest_of_brackets(text, offset)
     yield from _lines(text, offset, ((1, 0), (0, 1), (1, 1), (2, 0)))
     yield from _blocks(text, offset)
+
+
+def _single_values(text: str, offset: int) -> Iterator[Repair]:
+    """Read 'set var <v>: { … }', which has single values, as 'var <v>: { … }'."""
+    found = _SET_OF_VALUES.search(text, max(0, offset - 200), offset)
+    if found:
+        yield _blanked(text, Span(*found.span("set")))
 
 
 def _insertion(text: str, offset: int, sign: str) -> Iterator[Repair]:

@@ -1,0 +1,106 @@
+"""Mistakes that newcomers make, each with the text that is meant: what a list of expected words does not say."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.document import Span
+from robbdd_tools.syntax.declaration import SyntaxFault, SyntaxFix
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from robbdd_tools.syntax.parsed import Rejected
+
+_NAME = r"[^\W\d][\w\-]*"
+
+
+@dataclass(frozen=True, slots=True)
+class NearMiss:
+    """What stands before (``before``) and at (``at``) the place where the parser stopped, and what to write.
+
+    ``expected`` is a keyword or sign that the parser misses there. ``fix`` makes the text that replaces what stands
+    there; ``""`` removes it. ``rewrite`` gives another place and the text there.
+    """
+
+    before: str
+    at: str
+    message: str
+    expected: str = ""
+    fix: Callable[[str], str] | None = None
+    rewrite: Callable[[re.Match[str]], SyntaxFix] | None = None
+
+
+def _as_set(before: re.Match[str]) -> SyntaxFix:
+    return SyntaxFix(Span(before.start("var"), before.start("var")), "set ")
+
+
+_NEAR_MISSES = (
+    NearMiss(
+        rf"\bset\s+var\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
+        r"[<\d\"'+\-.]",
+        "'set var' takes sets of values: write '{ { … } }', or 'var' for one value in each scenario",
+        "{",
+    ),
+    NearMiss(
+        rf"(?<!set)\s(?P<var>var)\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
+        r"\{",
+        "'var' takes one value in each scenario: use 'set var' for a variable whose value is a set",
+        rewrite=_as_set,
+    ),
+    NearMiss(
+        r"[\s)](?:and|or)\s+\Z",
+        _NAME,
+        "clauses that are joined by 'and' or 'or' stand in parentheses: '( … and … )'",
+        ":",
+    ),
+    NearMiss(r"\bnot\s+\Z", _NAME, "'not' stands in parentheses with its clause: '( not name: holds(…) )'", ":"),
+    NearMiss(r"\bholds\s*\(\s*\Z", r"not\b", "'not' stands before the whole clause: '( not name: holds(…) )'"),
+    NearMiss(r"\b(?:before|after|from|until)\s+\Z", r"event\s+(?=<)", "leave out 'event' here", "<", lambda _: ""),
+    NearMiss(r"", rf"(?!not\b|pred\b){_NAME}(?:\.{_NAME})*", "names stand in angle brackets", "<", "<{}>".format),
+    NearMiss(r"\d\s*\Z", r"(?:s|sec|secs|second|ms)\b", "write the unit as 'seconds'", "seconds", lambda _: "seconds"),
+    NearMiss(
+        r"", r"within\s+(?=\d)", "leave out 'within': '0.5 seconds after <event>' means the same", "after", lambda _: ""
+    ),
+    NearMiss(r"", r";", "nothing ends with ';': remove it", fix=lambda _: ""),
+    NearMiss(r"", r"=", "write ':' instead of '='", ":", lambda _: ":"),
+    NearMiss(rf"\bvar\s+{_NAME}\s*\Z", r":\s*[\w\-]+", "variables have no written type: remove it", fix=lambda _: ""),
+    NearMiss(rf"\bvar\s+{_NAME}\s*\Z", r",\s*", "each variable has a 'var' of its own", fix=lambda _: "\n    var "),
+    NearMiss(r"", r"#|/\*", "a comment begins with '//'"),
+    NearMiss(r"\b(?:Scenario|Template|Story)\s*\Z", r":\s*", "no ':' stands before the name", fix=lambda _: " "),
+)
+"""The first that fits counts."""
+
+
+def near_miss(text: str, rejected: Rejected) -> SyntaxFault | None:
+    """Return the mistake that an error is, ``None`` for any other error."""
+    head = text[max(0, rejected.offset - 200) : rejected.offset]
+    for miss in _NEAR_MISSES:
+        if miss.expected and miss.expected not in rejected.expected.literals:
+            continue
+        if miss.expected in ("<", ":") and miss.fix is not None and _may_be_anything(rejected):
+            continue
+        at = re.compile(miss.at).match(text, rejected.offset)
+        before = re.search(miss.before, head)
+        if at is None or before is None or not at[0]:
+            continue
+        return SyntaxFault(
+            Span(at.start(), at.start() + len(at[0].rstrip())), miss.message, _fix(miss, before, at, head)
+        )
+    return None
+
+
+def _fix(miss: NearMiss, before: re.Match[str], at: re.Match[str], head: str) -> SyntaxFix | None:
+    if miss.fix is not None:
+        return SyntaxFix(Span(at.start(), at.end()), miss.fix(at[0]))
+    if miss.rewrite is not None:
+        found = miss.rewrite(before)
+        return SyntaxFix(found.span.shifted(at.start() - len(head)), found.text)
+    return None
+
+
+def _may_be_anything(rejected: Rejected) -> bool:
+    """Tell whether so much may stand at a place that what was meant is not certain."""
+    return len(rejected.expected.literals - {"pred"}) > 2

@@ -1,0 +1,84 @@
+"""Mistakes that newcomers make have a message that says what to write, and a fix where that is certain."""
+
+from __future__ import annotations
+
+import pytest
+
+from checks.models import LINES, SETS, fixed, found, story
+from kit import MODEL
+from robbdd_tools.base.diagnostic import Diagnostic, Severity
+
+IN_TRAY = "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)"
+SINGLE = story(f"{LINES}                set var <fetch.goals>: {{ <places.bench_ws>, <places.tray_ws> }}\n", SETS)
+DOUBLE = MODEL.replace("var <fetch.part>: obj set <parts>", "var <fetch.part>: { { <parts.bolt> }, { <parts.nut> } }")
+
+
+def errors(text: str) -> list[Diagnostic]:
+    return [one for one in found(text) if one.severity is Severity.ERROR]
+
+
+def changed(old: str, new: str) -> str:
+    assert MODEL.count(old) >= 1
+    return MODEL.replace(old, new, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "blamed", "words"),
+    [
+        (SINGLE, "<", "'set var' takes sets of values: write '{ { … } }', or 'var' for one value in each scenario"),
+        (DOUBLE, "{", "'var' takes one value in each scenario: use 'set var'"),
+        (
+            changed(IN_TRAY, f"{IN_TRAY}\n        and held: holds(<part> is held by <robot>, after <place-end>)"),
+            "held",
+            "clauses that are joined by 'and' or 'or' stand in parentheses",
+        ),
+        (changed("in-tray: holds", "not in-tray: holds"), "in-tray", "'not' stands in parentheses with its clause"),
+        (
+            changed("on-bench: holds(<part>", "on-bench: holds(not <part>"),
+            "not",
+            "'not' stands before the whole clause",
+        ),
+        (changed("<robot> picks <part>", "robot picks <part>"), "robot", "names stand in angle brackets"),
+        (changed("after <place-end>", "after place-end"), "place-end", "names stand in angle brackets"),
+        (changed("after <place-end>", "after event <place-end>"), "event", "leave out 'event' here"),
+        (changed("0.5 seconds after", "0.5 s after"), "s", "write the unit as 'seconds'"),
+        (changed("0.5 seconds after", "within 0.5 seconds after"), "within", "leave out 'within'"),
+        (changed("task: <task>", "task: <task>;"), ";", "nothing ends with ';'"),
+        (changed("task: <task>", "task = <task>"), "=", "write ':' instead of '='"),
+        (changed("    var part\n", "    var part: object\n"), ": object", "variables have no written type"),
+        (changed("    var part\n", "    # the part\n    var part\n"), "#", "a comment begins with '//'"),
+        (changed("    var part\n", "    /* the part */\n    var part\n"), "/*", "a comment begins with '//'"),
+        (changed("Scenario bench-to-tray", "Scenario: bench-to-tray"), ":", "no ':' stands before the name"),
+    ],
+)
+def test_a_near_miss_is_one_error_that_says_what_to_write(text: str, blamed: str, words: str) -> None:
+    (error,) = errors(text)
+    assert error.code == "syntax"
+    assert error.message.startswith(words)
+    assert text[error.span.start : error.span.end] == blamed
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        changed("<robot> picks <part>", "robot picks <part>"),
+        changed("after <place-end>", "after place-end"),
+        changed("after <place-end>", "after event <place-end>"),
+        changed("0.5 seconds after", "0.5 s after"),
+        changed("0.5 seconds after", "within 0.5 seconds after"),
+        changed("task: <task>", "task: <task>;"),
+        changed("    var part\n    var robot\n", "    var part, robot\n"),
+        changed("    var part\n", "    var part: object\n"),
+        changed("Scenario bench-to-tray", "Scenario: bench-to-tray"),
+    ],
+)
+def test_a_near_miss_with_a_certain_fix_is_fixed(text: str) -> None:
+    assert fixed(text, "syntax") == MODEL
+
+
+def test_a_set_given_to_a_var_is_fixed_by_set_var() -> None:
+    (fix,) = errors(DOUBLE)[0].fixes
+    (edit,) = fix.edits
+    assert fix.title == "Insert 'set'"
+    written = DOUBLE[: edit.span.start] + edit.text + DOUBLE[edit.span.end :]
+    assert written == DOUBLE.replace("var <fetch.part>", "set var <fetch.part>")
