@@ -84,3 +84,4 @@ def test_a_result_that_cannot_be_recorded_is_not_a_result(
         monkeypatch.undo()
         with pytest.raises(CannotRecord, match="the disk is full"):
             on_demand.execute(1)
+    assert place.status().finished == 0, "nothing is executed after that"

@@ -91,7 +91,8 @@ class Hooks:
         else:
             shared = Path(self._worker["robbdd_shared"])
             first = AGENTS_OF_A_WORKER * int("".join(filter(str.isdecimal, self._worker["workerid"]))) + 1
-            executor = Executor(self._options, specs, files, lambda: _read_pointer(shared), shared / LOCK, first)
+            count = int(self._worker["workercount"])
+            executor = Executor(self._options, specs, files, lambda: _read_pointer(shared), shared / LOCK, first, count)
         self._config.stash[EXECUTOR] = executor
 
     @pytest.hookimpl(optionalhook=True)

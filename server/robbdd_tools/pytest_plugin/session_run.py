@@ -80,7 +80,7 @@ class Executor:
     """Executes the scenarios of a session, ``specs`` of the models ``files``, in this process.
 
     ``open_place`` returns the run's folder. ``lock`` is a file that keeps others from preparing it at the same time,
-    where there are others; ``first_agent`` is the number of this process's first agent.
+    where there are others; ``processes`` is how many there are, ``first_agent`` the number of this one's first agent.
     """
 
     def __init__(
@@ -91,6 +91,7 @@ class Executor:
         open_place: Callable[[], StoredRun],
         lock: Path | None = None,
         first_agent: int = 1,
+        processes: int = 1,
     ) -> None:
         self._options = options
         self._wanted = {key_of(spec) for spec in specs}
@@ -98,6 +99,7 @@ class Executor:
         self._open_place = open_place
         self._lock = lock
         self._first_agent = first_agent
+        self._processes = processes
         self._on_demand: OnDemand | None = None
         self._problem: Exception | None = None
 
@@ -149,6 +151,7 @@ class Executor:
             timeout=self._options.timeout,
             models=[Path(file.name) for file in plan.files] if len(plan.files) > 1 else (),
             first_agent=self._first_agent,
+            processes=self._processes,
         )
 
 

@@ -71,9 +71,14 @@ class OnDemand:
         timeout: float | None = None,
         models: Sequence[Path] = (),
         first_agent: int = 1,
+        processes: int = 1,
     ) -> Self:
-        """Begin the run of a plan in a run folder that the caller made; raises as ``begin_recording``."""
-        recording = begin_recording(plan, place, Policy.of(jobs=1, timeout=timeout), repeat=repeat, models=models)
+        """Begin the run of a plan in a run folder that the caller made; raises as ``begin_recording``.
+
+        ``processes`` is how many processes will execute scenarios of the run.
+        """
+        policy = Policy.of(jobs=processes, timeout=timeout)
+        recording = begin_recording(plan, place, policy, repeat=repeat, models=models)
         return cls(place, recording, timeout, first_agent)
 
     @classmethod
