@@ -304,5 +304,19 @@ BROKEN: dict[str, list[str]] = {
             _SPARE,
         ),
     ],
+    "emission": [
+        MODEL.replace("places at <goal>\n", "places at <goal>\n            emits pick-ends as <pick-start>\n"),
+    ],
+    "number-range": [
+        "//- main.bddx\nns x = 'https://example.org/x/'\n"
+        "obs provider (ns=x) p { simulation ground truth update-rate: 9 Hz\n    noise: -2 mm }\n",
+    ],
+    "not-simulated": [
+        "//- main.bddx\nns x = 'https://example.org/x/'\nbhv impl (ns=x) b {\n    bhv action: \"/a\" }\n",
+        '//- main.bddx\nns x = \'https://example.org/x/\'\nobs provider (ns=x) p { ros topic: "/p"\n    type: "m" }\n',
+    ],
+    "execution-fit": [
+        _EXECUTED.replace('"pick-place"', '"pick"').replace("//- lab.scenex", f"//- main.bdd\n{MODEL}//- lab.scenex"),
+    ],
 }
 """Diagnostic code → fixtures (see ``kit.fixture``) that have at least one such finding with a fix."""
