@@ -92,6 +92,20 @@ def test_what_an_agent_grips_strikes_for_it_and_its_weight_does_not_count() -> N
     assert ("arm", "part") not in peaks
 
 
+@pytest.mark.parametrize(("press", "listed"), [(100.0, 0), (500.0, 1)])
+def test_a_part_that_is_rammed_into_what_it_stands_on_is_listed(press: float, listed: int) -> None:
+    standing = Falling(height=3.0, part=0.05)
+    standing.run(10)
+    standing.forces.clear()
+    standing.run(2)
+    standing.run(2, held=("part",))
+    standing.data.xfrc_applied[standing.model.body("part").id, 2] = -press
+    standing.run(10, held=("part",))
+    assert standing.forces.peaks(14)["arm", "floor"].max() == pytest.approx(press, rel=0.2)
+    found = standing.forces.contacts(np.arange(14.0))
+    assert [(one.part, one.other) for one in found] == [("part", "floor")] * listed
+
+
 def test_what_fingers_press_on_what_they_grip_is_measured() -> None:
     run = execution([pick_place()])
     trace = run.complete(run.advance_until(lambda trace: trace.event_time("t:pick-end") is not None))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from robbdd_tools.catalog.predicates.does_not_collide import FORCE_LIMIT
 from robbdd_tools.monitor.contact import Contact
 from robbdd_tools.world.engine import TICK, mujoco
 from robbdd_tools.world.owners import geom_owners
@@ -98,14 +99,15 @@ class ContactForces:
     def contacts(self, times: FloatArray) -> tuple[Contact, ...]:
         """Return the contacts so far, the earliest first; ``times`` (n,) are those of the samples, s.
 
-        What an agent grips at some time is left out, and what this stands on where it is taken up or put down.
+        What an agent grips at some time is left out, and what this stands on where it is taken up or put down, unless
+        the force is above the limit of *does not collide*: that is no resting contact.
         """
         found = [
             Contact(*key, float(times[total.first]), total.peak, float(times[total.highest]), total.impulse)
             for key, total in self._contacts.items()
             if total.highest < len(times)
             and (key[0], key[2]) not in self._ever_gripped
-            and (key[1], key[2]) not in self._supports
+            and ((key[1], key[2]) not in self._supports or total.peak > FORCE_LIMIT)
         ]
         return tuple(sorted(found, key=lambda one: (one.time, one.agent, one.part, one.other)))
 
