@@ -1,7 +1,7 @@
 """``python -m tests.bench.placing_study [SEEDS [AGENT THING]]``: how often each arm brings each thing to each place.
 
-A success: the thing is located at the goal, the goal was not collided with, the thing was not dropped, and the behaviour
-went through. Bins alternate with the seed. The figures are for ``docs/simulation.md``.
+A success: the thing is located at the goal, the goal was not collided with, the thing was not dropped, and the
+behaviour went through. Bins alternate with the seed. The figures are for ``docs/simulation.md``.
 """
 
 from __future__ import annotations
