@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -24,7 +25,8 @@ ALL = [
 
 @pytest.fixture(scope="module", autouse=True)
 def loaded() -> None:
-    """Load all libraries: pytester unloads what a session has loaded, and importlib_metadata cannot be unloaded."""
+    """Load all that a session loads: pytester unloads it afterwards, and importlib_metadata cannot be unloaded."""
+    import_module("robbdd_tools.pytest_plugin.session_hooks")
     load(EXAMPLES / "pickplace" / "pickplace.bdd").scenarios()
 
 

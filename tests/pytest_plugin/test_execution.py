@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
+from time import monotonic
 from xml.etree import ElementTree
 
 import pytest
@@ -13,7 +15,6 @@ import pytest
 import robbdd_tools as robbdd
 from kit import DOCS, EXAMPLES
 
-pytest_plugins = ["pytester"]
 pytestmark = pytest.mark.physics
 AFTER = "at-goal: holds(<thing> is located at <goal>, after <evt-place-end>)"
 BEFORE = "at-goal: holds(<thing> is located at <goal>, before <evt-pick-start>)"
@@ -33,19 +34,31 @@ def fail(context, agent, workspace):
     ACTION
 """
 
+CONFTEST = """import pytest
+
+
+def pytest_collection_modifyitems(items):
+    items[0].add_marker(pytest.mark.skip(reason="no cube"))
+    items[1].add_marker(pytest.mark.xfail(reason="known"))
+"""
+
 
 @pytest.fixture
-def cell(pytester: pytest.Pytester) -> Path:
+def cell(tmp_path: Path) -> Path:
     """A project with the pick-and-place example without its executions."""
     for name in ("pickplace.bdd", "bench.scene"):
-        shutil.copy(EXAMPLES / "pickplace" / name, pytester.path)
-    return pytester.path
+        shutil.copy(EXAMPLES / "pickplace" / name, tmp_path)
+    (tmp_path / "pytest.ini").write_text("[pytest]\n", encoding="utf-8")
+    return tmp_path
 
 
-def run(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
-    done = pytester.runpytest_subprocess("--robbdd", "-p", "no:asyncio", *arguments)
-    assert "/_pytest/" not in done.stdout.str()
-    return done
+def run(cell: Path, *arguments: str) -> pytest.RunResult:
+    """Run pytest in a process of its own."""
+    began = monotonic()
+    command = [sys.executable, "-m", "pytest", "--robbdd", "-p", "no:asyncio", *arguments]
+    done = subprocess.run(command, cwd=cell, capture_output=True, encoding="utf-8")
+    assert "/_pytest/" not in done.stdout
+    return pytest.RunResult(done.returncode, done.stdout.splitlines(), done.stderr.splitlines(), monotonic() - began)
 
 
 def violated(cell: Path) -> None:
@@ -67,8 +80,8 @@ def line_of(cell: Path, text: str) -> int:
     return next(number for number, line in enumerate(lines, start=1) if text in line)
 
 
-def test_scenarios_that_hold_pass_and_are_kept_as_one_run(pytester: pytest.Pytester, cell: Path) -> None:
-    done = run(pytester, "-v")
+def test_scenarios_that_hold_pass_and_are_kept_as_one_run(cell: Path) -> None:
+    done = run(cell, "-v")
     done.assert_outcomes(passed=4)
     done.stdout.fnmatch_lines([f"{glob(name)} PASSED*" for name in ALL])
     done.stdout.fnmatch_lines(["4 scenarios: 4 hold, 0 violated, 0 unknown (seed 1); kept as run 1 in *"])
@@ -82,9 +95,9 @@ def glob(name: str) -> str:
     return name.replace("[", "[[]")
 
 
-def test_a_violated_clause_fails_with_its_place_margin_and_trace(pytester: pytest.Pytester, cell: Path) -> None:
+def test_a_violated_clause_fails_with_its_place_margin_and_trace(cell: Path) -> None:
     violated(cell)
-    done = run(pytester, "-v", "-k", "cube0 and left_ws")
+    done = run(cell, "-v", "-k", "cube0 and left_ws")
     done.assert_outcomes(failed=1, deselected=3)
     text = done.stdout.str()
     assert f"{CUBE_LEFT} VIOLATED" in text
@@ -98,9 +111,9 @@ def test_a_violated_clause_fails_with_its_place_margin_and_trace(pytester: pytes
     assert (cell / trace).read_bytes()[1:5] == b"MCAP"
 
 
-def test_missing_evidence_is_an_error_and_not_a_failure(pytester: pytest.Pytester, cell: Path) -> None:
+def test_missing_evidence_is_an_error_and_not_a_failure(cell: Path) -> None:
     with_steps(cell, 'raise ValueError("no gripper")')
-    done = run(pytester, "-v", "--junitxml=out.xml")
+    done = run(cell, "-v", "--junitxml=out.xml")
     done.assert_outcomes(passed=2, errors=2)
     text = done.stdout.str()
     assert f"{CUBE_LEFT} UNKNOWN" in text
@@ -112,9 +125,9 @@ def test_missing_evidence_is_an_error_and_not_a_failure(pytester: pytest.Pyteste
     assert (suite.get("errors"), suite.get("failures")) == ("2", "0")
 
 
-def test_junit_has_failures_margins_and_seeds(pytester: pytest.Pytester, cell: Path) -> None:
+def test_junit_has_failures_margins_and_seeds(cell: Path) -> None:
     violated(cell)
-    run(pytester, "--junitxml=out.xml", "--robbdd-first=1")
+    run(cell, "--junitxml=out.xml", "--robbdd-first=1")
     (case,) = ElementTree.parse(cell / "out.xml").getroot().iter("testcase")
     (stored,) = robbdd.runs(cell)
     (result,) = stored.results
@@ -127,31 +140,32 @@ def test_junit_has_failures_margins_and_seeds(pytester: pytest.Pytester, cell: P
     assert (failed.get("message") or "").startswith("at-goal violated by −")
 
 
-def test_the_first_failure_ends_the_session_and_the_run_can_be_resumed(pytester: pytest.Pytester, cell: Path) -> None:
+def test_the_first_failure_ends_the_session_and_the_run_can_be_resumed(cell: Path) -> None:
     violated(cell)
-    done = run(pytester, "-x")
+    done = run(cell, "-x")
     done.assert_outcomes(failed=1)
     (stored,) = robbdd.runs(cell)
     assert (stored.status.state, stored.status.finished, stored.status.total) == ("interrupted", 1, 4)
     assert stored.results[3].clauses[0].reason == "pytest ended before it was executed"
     done.stdout.fnmatch_lines(["resume the run with: robbdd run --resume 1"])
-    pytester.run(sys.executable, "-m", "robbdd_tools.cli", "run", "--resume", "1")
+    command = [sys.executable, "-m", "robbdd_tools.cli", "run", "--resume", "1"]
+    assert subprocess.run(command, cwd=cell, capture_output=True).returncode == 1
     assert robbdd.find_run("1", cell).status.state == "finished"
 
 
-def test_only_what_failed_is_executed_again(pytester: pytest.Pytester, cell: Path) -> None:
+def test_only_what_failed_is_executed_again(cell: Path) -> None:
     with_steps(cell, 'raise ValueError("no gripper")')
-    run(pytester).assert_outcomes(passed=2, errors=2)
+    run(cell).assert_outcomes(passed=2, errors=2)
     (cell / "steps" / "pickplace_steps.py").unlink()
-    run(pytester, "--lf").assert_outcomes(passed=2)
+    run(cell, "--lf").assert_outcomes(passed=2)
     _, again = robbdd.runs(cell)
     assert [result.values["crit:var-thing"] for result in again.results] == ["env:cube0"] * 2
 
 
-def test_workers_of_xdist_record_one_run(pytester: pytest.Pytester, cell: Path) -> None:
+def test_workers_of_xdist_record_one_run(cell: Path) -> None:
     violated(cell)
-    run(pytester, "-n", "2", "-v").assert_outcomes(failed=4)
-    run(pytester).assert_outcomes(failed=4)
+    run(cell, "-n", "2", "-v").assert_outcomes(failed=4)
+    run(cell).assert_outcomes(failed=4)
     by_workers, alone = robbdd.runs(cell)
     assert by_workers.status.state == "finished"
     assert by_workers.record.simulator == alone.record.simulator != ""
@@ -160,53 +174,43 @@ def test_workers_of_xdist_record_one_run(pytester: pytest.Pytester, cell: Path) 
     assert robbdd.replay(by_workers, jobs=1).is_identical
 
 
-def test_a_worker_that_dies_loses_no_result_of_others(pytester: pytest.Pytester, cell: Path) -> None:
-    pytester.makepyfile(test_crash="import os\n\n\ndef test_crash():\n    os._exit(3)")
-    done = run(pytester, "-n", "2", "pickplace.bdd", "test_crash.py")
+def test_a_worker_that_dies_loses_no_result_of_others(cell: Path) -> None:
+    (cell / "test_crash.py").write_text("import os\n\n\ndef test_crash():\n    os._exit(3)\n", encoding="utf-8")
+    done = run(cell, "-n", "2", "pickplace.bdd", "test_crash.py")
     done.assert_outcomes(passed=4, failed=1)
     (stored,) = robbdd.runs(cell)
     assert stored.status.counts == {"holds": 4}
 
 
-def test_an_agent_that_dies_leaves_its_scenario_unknown_and_is_replaced(pytester: pytest.Pytester, cell: Path) -> None:
+def test_an_agent_that_dies_leaves_its_scenario_unknown_and_is_replaced(cell: Path) -> None:
     with_steps(cell, "os._exit(7)")
-    done = run(pytester)
+    done = run(cell)
     done.assert_outcomes(passed=2, errors=2)
     done.stdout.fnmatch_lines(["*unknown: the agent process ended unexpectedly with code 7: about to fail"])
     (stored,) = robbdd.runs(cell)
     assert len(list((stored.folder / "logs").iterdir())) == 3
 
 
-def test_marks_of_a_conftest_skip_and_expect_failures(pytester: pytest.Pytester, cell: Path) -> None:
+def test_marks_of_a_conftest_skip_and_expect_failures(cell: Path) -> None:
     violated(cell)
-    pytester.makeconftest(
-        """
-        import pytest
-
-        def pytest_collection_modifyitems(items):
-            items[0].add_marker(pytest.mark.skip(reason="no cube"))
-            items[1].add_marker(pytest.mark.xfail(reason="known"))
-        """
-    )
-    run(pytester, "--robbdd-first=2").assert_outcomes(skipped=1, xfailed=1)
+    (cell / "conftest.py").write_text(CONFTEST, encoding="utf-8")
+    run(cell, "--robbdd-first=2").assert_outcomes(skipped=1, xfailed=1)
     (stored,) = robbdd.runs(cell)
     assert [result.duration is None for result in stored.results] == [True, False]
 
 
-def test_nothing_is_kept_when_it_is_not_wanted(pytester: pytest.Pytester, cell: Path) -> None:
+def test_nothing_is_kept_when_it_is_not_wanted(cell: Path) -> None:
     violated(cell)
-    done = run(pytester, "--robbdd-no-store", "--robbdd-first=1")
+    done = run(cell, "--robbdd-no-store", "--robbdd-first=1")
     done.assert_outcomes(failed=1)
     done.stdout.fnmatch_lines(["trace: not kept, because the run is not kept", "1 scenario: *; not kept"])
     assert not (cell / ".robbdd").exists()
 
 
-def test_a_run_that_cannot_begin_is_an_error_of_each_test(
-    pytester: pytest.Pytester, cell: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_that_cannot_begin_is_an_error_of_each_test(cell: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with_steps(cell, "pass")
     monkeypatch.setenv("ROBBDD_NO_USER_CODE", "1")
-    done = run(pytester, "--robbdd-first=2")
+    done = run(cell, "--robbdd-first=2")
     done.assert_outcomes(errors=2)
     done.stdout.fnmatch_lines(["*pickplace_steps.py holds steps of users: *"])
     assert robbdd.runs(cell) == ()
@@ -217,10 +221,10 @@ def unnumbered(text: str) -> str:
     return re.sub(r"\d+(?:\.\d+)?", "N", text)
 
 
-def test_the_page_shows_what_pytest_prints(pytester: pytest.Pytester, cell: Path) -> None:
+def test_the_page_shows_what_pytest_prints(cell: Path) -> None:
     page = unnumbered((DOCS / "pytest.md").read_text(encoding="utf-8"))
     passing, failing = re.findall(r"```text\n(.*?)```", page, flags=re.DOTALL)
-    printed = unnumbered(run(pytester, "-v").stdout.str())
+    printed = unnumbered(run(cell, "-v").stdout.str())
     assert [line for line in passing.splitlines() if line not in printed] == []
     violated(cell)
-    assert failing in unnumbered(run(pytester, "-k", "cube0 and left_ws").stdout.str())
+    assert failing in unnumbered(run(cell, "-k", "cube0 and left_ws").stdout.str())
