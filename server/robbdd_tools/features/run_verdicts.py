@@ -131,13 +131,25 @@ class Results:
 
         Results of executions other than ``execution`` stay, and with a ``repetition`` those of the other repetitions.
         """
-
-        def stays(one: JudgedScenario) -> bool:
-            by_other = execution != "" and one.execution not in ("", execution)
-            return by_other or (repetition is not None and one.repetition != repetition)
-
         known = self._scenarios.pop((variant, variation), [])
-        self.add(one for one in known if stays(one))
+        self.add(one for one in known if not _is_replaced(one, execution, repetition))
+
+    def merge(self, scenarios: Iterable[JudgedScenario], newest: int, *, some_repetitions: bool = False) -> None:
+        """Take the results of one stored run, except of scenarios with results of the same or a later run.
+
+        ``newest`` is the number of the newest run in its store, ``some_repetitions`` says that it executed only some
+        repetitions: the others keep their results.
+        """
+        groups: dict[tuple[str, int, str, int | None], list[JudgedScenario]] = {}
+        for one in scenarios:
+            repetition = one.repetition if some_repetitions else None
+            groups.setdefault((one.variant, one.variation, one.execution, repetition), []).append(one)
+        for (variant, variation, execution, repetition), group in groups.items():
+            known = self._scenarios.get((variant, variation), ())
+            replaced = [one for one in known if _is_replaced(one, execution, repetition)]
+            if not any(newest >= one.run >= group[0].run for one in replaced):
+                self.drop(variant, variation, execution, repetition)
+                self.add(group)
 
     def discard(self, scenario: JudgedScenario) -> None:
         """Forget one result."""
@@ -170,6 +182,12 @@ class Results:
             {iri: tuple(judged) for iri, judged in clauses.items()},
             {iri: tuple(scenarios) for iri, scenarios in variants.items()},
         )
+
+
+def _is_replaced(known: JudgedScenario, execution: str, repetition: int | None) -> bool:
+    """Whether a new result by an execution, of one repetition or (``None``) of all, replaces a known one."""
+    by_other = execution != "" and known.execution not in ("", execution)
+    return not by_other and repetition in (None, known.repetition)
 
 
 @dataclass(frozen=True, slots=True)

@@ -79,7 +79,7 @@ def _register_documents(server: RobbddServer) -> None:
         ls.spawn(watch_files(ls))
         ls.spawn(follow_settings(ls))
         ls.survey.look()
-        await ls.load_results()
+        await ls.stored_verdicts.load()
 
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     async def did_open(ls: RobbddServer, params: types.DidOpenTextDocumentParams) -> None:

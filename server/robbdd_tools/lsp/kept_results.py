@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from robbdd_tools.base.files import load_text, uri_to_path
@@ -18,16 +19,29 @@ VERSION = 1
 _LOG = logging.getLogger(__name__)
 
 
-def load_results(folders: Iterable[Path]) -> list[JudgedScenario]:
-    """Return what is kept in some workspace folders; what cannot be read is as if it were not there."""
-    return [scenario for folder in folders for scenario in _read(folder / FOLDER / FILE)]
+@dataclass(frozen=True, slots=True)
+class KeptResults:
+    """What is kept of earlier sessions; ``seen`` is the last run that was read of each store (by its folder)."""
+
+    scenarios: tuple[JudgedScenario, ...] = ()
+    seen: Mapping[str, int] = field(default_factory=dict[str, int])
 
 
-def save_results(folders: Iterable[Path], scenarios: Iterable[JudgedScenario]) -> None:
-    """Keep each scenario in the innermost workspace folder that holds its model; where that fails, nowhere."""
+def load_results(folders: Iterable[Path]) -> KeptResults:
+    """Return what is kept in some workspace folders; files that cannot be read are skipped."""
+    found = [_read(folder / FOLDER / FILE) for folder in folders]
+    scenarios = tuple(scenario for kept in found for scenario in kept.scenarios)
+    return KeptResults(scenarios, {store: number for kept in found for store, number in kept.seen.items()})
+
+
+def save_results(folders: Iterable[Path], scenarios: Iterable[JudgedScenario], seen: Mapping[str, int]) -> None:
+    """Keep each scenario in the innermost workspace folder that holds its model; folders that cannot be written are
+    skipped.
+    """
     every = list(scenarios)
     for folder, own in _by_folder(sorted(folders, key=lambda path: -len(path.parts)), every):
-        text = json.dumps({"version": VERSION, "scenarios": [as_json(entry) for entry in own]}, ensure_ascii=False)
+        document = {"version": VERSION, "seen": dict(seen), "scenarios": [as_json(entry) for entry in own]}
+        text = json.dumps(document, ensure_ascii=False)
         try:
             _write(folder / FOLDER, text)
         except OSError as error:
@@ -46,13 +60,16 @@ def _lies_in(uri: str, folder: Path) -> bool:
     return path is not None and path.is_relative_to(folder)
 
 
-def _read(path: Path) -> list[JudgedScenario]:
+def _read(path: Path) -> KeptResults:
     try:
         data = json.loads(load_text(path, RESULT_SIZE))
-        return [from_json(entry) for entry in data["scenarios"]] if data["version"] == VERSION else []
+        if data["version"] != VERSION:
+            return KeptResults()
+        seen = {str(store): int(number) for store, number in data.get("seen", {}).items()}
+        return KeptResults(tuple(from_json(entry) for entry in data["scenarios"]), seen)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         _LOG.info("results in %s cannot be read: %s", path, error)
-        return []
+        return KeptResults()
 
 
 def _write(folder: Path, text: str) -> None:

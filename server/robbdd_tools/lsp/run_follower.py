@@ -6,12 +6,11 @@ import asyncio
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
-from robbdd_tools.lsp.kept_results import save_results
+from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement
 from robbdd_tools.lsp.refresh import LENSES
 from robbdd_tools.lsp.run_messages import RUN_MESSAGE, clause_at, for_client
 from robbdd_tools.lsp.run_progress import RunProgress
-from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
     LogLine,
@@ -22,17 +21,15 @@ from robbdd_tools.protocol.messages import (
     ScenarioStarted,
     UserCodeFailed,
 )
-from robbdd_tools.run.report import margin, values_words, verdict_words
 from robbdd_tools.run.results import RunResults
 
 if TYPE_CHECKING:
+    from robbdd_tools.features.run_verdicts import JudgedScenario
     from robbdd_tools.lsp.active_run import ActiveRun
     from robbdd_tools.lsp.run_request import RunText
     from robbdd_tools.lsp.server import RobbddServer
     from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.workbench.run import Run
-
-_BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 
 
 class RunFollower:
@@ -63,7 +60,7 @@ class RunFollower:
             self._ls.tell(self._run.problem)
         self._ls.show_results(uris)
         await self._ls.show_changed()
-        await asyncio.to_thread(save_results, self._ls.folders(), list(self._ls.results))
+        await self._ls.stored_verdicts.save()
         # A finished run can be replayed.
         self._ls.refreshes.want(LENSES)
 
@@ -118,28 +115,15 @@ class RunFollower:
         known = self._active.judged.get(index)
         if known is not None:
             return known
-        spec, digests = self._results.scenarios[index].spec, self._text.digests
-        execution = "" if spec.execution is None else spec.execution.iri
-        scenario = self._active.judged[index] = JudgedScenario(
-            self._text.uri,
-            spec.variant,
-            spec.variation,
-            values_words(spec),
-            digests.variants.get(spec.variant, ""),
-            digests.rows.get((spec.variant, spec.variation), ""),
-            run=self._run.number,
-            index=index,
-            execution=execution,
-            execution_digest=digests.executions.get(execution, ""),
-            repetition=spec.repetition,
-            seed=self._text.seed,
-        )
+        spec, text = self._results.scenarios[index].spec, self._text
+        scenario = judged_scenario(spec, text.uri, text.digests, run=self._run.number, index=index, seed=text.seed)
+        self._active.judged[index] = scenario
         # A scenario keeps its older results until it is executed again; repetitions that held are not executed again.
         repetition = spec.repetition if self._active.options.failed else None
         begun = self._begun.setdefault(spec.variant, set())
-        if (spec.variation, execution, repetition) not in begun:
-            begun.add((spec.variation, execution, repetition))
-            self._ls.results.drop(spec.variant, spec.variation, execution, repetition)
+        if (spec.variation, scenario.execution, repetition) not in begun:
+            begun.add((spec.variation, scenario.execution, repetition))
+            self._ls.results.drop(spec.variant, spec.variation, scenario.execution, repetition)
         self._ls.results.add([scenario])
         return scenario
 
@@ -154,23 +138,10 @@ class RunFollower:
 
     def _judge(self, message: ClauseJudged) -> None:
         clause = clause_at(self._results, message.index, message.line)
-        if clause is None:
-            return
-        outcome = Outcome(message.verdict)
-        undefined = outcome is Outcome.UNKNOWN and message.cause == Cause.NO_STEP
-        judgement = Judgement(
-            clause.name,
-            "undefined" if undefined else str(outcome),
-            margin(message.robustness, message.unit),
-            _BADNESS[outcome] + (message.robustness or 0.0),
-            verdict_words(message, clause),
-            self._text.digests.clauses.get(clause.iri, ""),
-            message.line,
-            operand=message.operand,
-            fault=message.fault or (self._shared_fault if outcome is Outcome.UNKNOWN else ""),
-        )
-        self._scenario(message.index).judge(clause.iri, judgement)
-        self._ls.show_results(self._text.places.uris)
+        if clause is not None:
+            found = judgement(clause, message, self._text.digests, self._shared_fault)
+            self._scenario(message.index).judge(clause.iri, found)
+            self._ls.show_results(self._text.places.uris)
 
     def _report_progress(self) -> None:
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
-from robbdd_tools.features.run_verdicts import Digests, digests_of
+from robbdd_tools.features.run_verdicts import Digests
 from robbdd_tools.lsp.document_models import runnable_model
 from robbdd_tools.lsp.locations import Places, places_of
 from robbdd_tools.lsp.run_options import NO_SCENARIO_FAILED, select
@@ -67,7 +67,7 @@ def plan_run(
     text = RunText(
         uri,
         places_of(snapshot, convert, uri),
-        digests_of(snapshot, uri),
+        plan.texts.texts[0].digests,
         frozenset(str(variant.iri) for story in model.stories for variant in story.variants),
         frozenset(str(execution.iri) for execution in model.executions),
         selection.seed,

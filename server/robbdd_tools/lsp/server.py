@@ -26,13 +26,13 @@ from robbdd_tools.lsp.client_settings import Settings
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.importers import Importers
-from robbdd_tools.lsp.kept_results import load_results
 from robbdd_tools.lsp.newest import Newest
 from robbdd_tools.lsp.protocol import Protocol
 from robbdd_tools.lsp.refresh import COLOURS, DIAGNOSTICS, GATHERING, HINTS, LENSES, SETTLING, Refreshes
 from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
 from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.shapes import ShapeValidator
+from robbdd_tools.lsp.stored_verdicts import StoredVerdicts
 from robbdd_tools.lsp.stores import Stores
 from robbdd_tools.lsp.survey import Survey
 from robbdd_tools.lsp.user_errors import UserErrors, model_errors
@@ -69,6 +69,7 @@ class RobbddServer(LanguageServer):
         self.run: ActiveRun | None = None
         self.run_numbers = count(1)
         self.stores = Stores()
+        self.stored_verdicts = StoredVerdicts(self)
         self.shows_pictures = False
         """Whether the client shows pictures in Markdown."""
         self.shows_replays = False
@@ -128,6 +129,7 @@ class RobbddServer(LanguageServer):
         self._opened.setdefault(uri)
         if is_new:
             self.importers.begin_looking()
+            self.spawn(self.stored_verdicts.look_beside(uri))
         self.requests.text_changed(uri)
         try:
             await self._analysis.do(lambda: self.project.open(uri, version, text), replacing=uri)
@@ -211,17 +213,6 @@ class RobbddServer(LanguageServer):
         """Return the request to validate a file, with the texts that its answer will be about."""
         texts = {index.document.uri: index.document.text for index in snapshot.scope(uri).files}
         return Request(next(self._orders), uri, self.project.texts(), self.settings.shapes(uri)), texts
-
-    async def load_results(self) -> None:
-        """Show what earlier runs have found in the workspace."""
-        kept = Results(await asyncio.to_thread(load_results, self.folders()))
-        # What a run has found by now is newer than what is kept.
-        going_on = list(self.run.judged.values()) if self.run is not None else []
-        for scenario in going_on:
-            kept.drop(scenario.variant, scenario.variation, scenario.execution)
-        kept.add(going_on)
-        self.results = kept
-        self.show_results(list(self._opened))
 
     def show_results(self, uris: Sequence[str]) -> None:
         """Show new results of clauses in some files soon; many at a time are shown at once."""

@@ -31,6 +31,9 @@ def register_test_results(server: RobbddServer) -> None:
 
     @server.feature(KEPT)
     async def kept(ls: RobbddServer, _: Any) -> dict[str, Any]:
+        folders = list(ls.workspace.folders)
+        files = await ls.in_background(lambda snapshot: story_files(snapshot, folders))
+        await ls.stored_verdicts.look_beside(*files)
         scenarios = list(ls.results)
         models = sorted({scenario.model for scenario in scenarios})
         return await ls.in_background(lambda snapshot: _kept(snapshot, scenarios, models), *models)

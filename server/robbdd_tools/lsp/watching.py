@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
+from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.lsp.client_settings import read_settings
 from robbdd_tools.lsp.refresh import LENSES
-from robbdd_tools.run.store import FOLDER, RESULTS
+from robbdd_tools.run.store import FOLDER, RESULTS, RunStore
 from robbdd_tools.syntax.parse import LANGUAGES
 
 if TYPE_CHECKING:
@@ -29,11 +30,12 @@ def register_watching(server: RobbddServer) -> None:
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     async def files(ls: RobbddServer, params: types.DidChangeWatchedFilesParams) -> None:
-        # Runs are looked up when a lens is asked for; nothing that is analysed depends on them.
+        # Nothing that is analysed depends on runs.
         every = [change.uri for change in params.changes]
         changed = [uri for uri in every if not uri.endswith((f"/{RESULTS}", ".py"))]
-        if any(uri.endswith(f"/{RESULTS}") for uri in every):
+        if ended := [path for uri in every if uri.endswith(f"/{RESULTS}") and (path := uri_to_path(uri)) is not None]:
             ls.refreshes.want(LENSES)
+            ls.spawn(ls.stored_verdicts.look(RunStore(path.parent.parent) for path in ended))
         if any(uri.endswith(".py") for uri in every):
             await ls.user_errors.code_changed()
         if changed:
@@ -44,7 +46,7 @@ def register_watching(server: RobbddServer) -> None:
         await read_settings(ls)
         ls.survey.look()
         await ls.importers.look_around()
-        await ls.load_results()
+        await ls.stored_verdicts.load()
 
 
 async def watch_files(ls: RobbddServer) -> None:

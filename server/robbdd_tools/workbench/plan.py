@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
 from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare_all
 from robbdd_tools.run.scheduler import Policy
+from robbdd_tools.workbench.judged_text import judged_texts
 
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.covering import Cover
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Iri, Variant
     from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
     from robbdd_tools.workbench.folder import Keeping
+    from robbdd_tools.workbench.judged_text import JudgedTexts
     from robbdd_tools.workbench.model import Model, ModelFile
     from robbdd_tools.workbench.run import Run
 
@@ -68,6 +70,11 @@ class Choice:
     def entries(self, variant: str) -> Sequence[Listed]:
         """Return the entries of a variant."""
         return self._entries.get(variant, ())
+
+    def every(self) -> Iterable[Listed]:
+        """Yield all entries."""
+        for entries in self._entries.values():
+            yield from entries
 
     def admits(self, variant: str, number: int) -> bool:
         """Whether a scenario is listed, by whatever execution."""
@@ -157,6 +164,13 @@ class Plan:
         from robbdd_tools.graph.write.digest import joint_digest
 
         return joint_digest(file.digest for file in self.files)
+
+    @cached_property
+    def texts(self) -> JudgedTexts:
+        """The texts of the models, as they are when this is read for the first time."""
+        listed = (entry for choice in self.selection.choices for entry in choice.every())
+        files = ((file.name, file.snapshot, file.uri) for file in self.files)
+        return judged_texts(files, some_repetitions=any(entry.repetitions is not None for entry in listed))
 
     @cached_property
     def scenarios(self) -> tuple[ScenarioSpec, ...]:

@@ -20,6 +20,7 @@ from robbdd_tools.run.store import RunRecord, origin, shown_path
 from robbdd_tools.run.used_files import digests, prepared_digest
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_result, execution_results
+from robbdd_tools.workbench.judged_text import write_texts
 from robbdd_tools.workbench.stored import Recorded
 
 if TYPE_CHECKING:
@@ -241,6 +242,7 @@ def begin_recording(
         record = replace(record, models=tuple(origin(model, place.folder) for model in models))
         recording.begin(record, policy, prepared_digest(place.folder))
         place.write_record(record)
+        write_texts(plan.texts, place.folder)
     except BaseException:
         recording.close()
         raise

@@ -1,0 +1,54 @@
+"""Verdicts of a run as the editor keeps and shows them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
+from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.run.report import margin, values_words, verdict_words
+
+if TYPE_CHECKING:
+    from robbdd_tools.features.run_verdicts import Digests
+    from robbdd_tools.protocol.messages import ClauseJudged
+    from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
+
+_BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
+
+
+def judged_scenario(
+    spec: ScenarioSpec, uri: str, digests: Digests, *, run: int, index: int, seed: int | None
+) -> JudgedScenario:
+    """Return scenario number ``index`` (from 0) of a run, without verdicts; ``seed`` is the one that the user gave."""
+    execution = "" if spec.execution is None else spec.execution.iri
+    return JudgedScenario(
+        uri,
+        spec.variant,
+        spec.variation,
+        values_words(spec),
+        digests.variants.get(spec.variant, ""),
+        digests.rows.get((spec.variant, spec.variation), ""),
+        run=run,
+        index=index,
+        execution=execution,
+        execution_digest=digests.executions.get(execution, ""),
+        repetition=spec.repetition,
+        seed=seed,
+    )
+
+
+def judgement(clause: ClauseSpec, message: ClauseJudged, digests: Digests, shared_fault: str = "") -> Judgement:
+    """Return a verdict; ``shared_fault`` is the error in users' code that leaves all clauses unknown, if any."""
+    outcome = Outcome(message.verdict)
+    undefined = outcome is Outcome.UNKNOWN and message.cause == Cause.NO_STEP
+    return Judgement(
+        clause.name,
+        "undefined" if undefined else str(outcome),
+        margin(message.robustness, message.unit),
+        _BADNESS[outcome] + (message.robustness or 0.0),
+        verdict_words(message, clause),
+        digests.clauses.get(clause.iri, ""),
+        message.line,
+        operand=message.operand,
+        fault=message.fault or (shared_fault if outcome is Outcome.UNKNOWN else ""),
+    )

@@ -1,0 +1,144 @@
+"""Shows the verdicts of stored runs, whoever executed them: the command line, or a server that ended during its run."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.exceptions import RobbddError
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.features.run_verdicts import JudgedScenario, Results
+from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement
+from robbdd_tools.lsp.kept_results import load_results, save_results
+from robbdd_tools.run.store import RunStore, store_beside
+from robbdd_tools.run.stored_results import RUNNING
+from robbdd_tools.workbench.judged_text import read_texts
+
+if TYPE_CHECKING:
+    from robbdd_tools.lsp.server import RobbddServer
+    from robbdd_tools.run.store import StoredRun
+
+_LOG = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class FoundRun:
+    """The finished scenarios of a stored run; ``some_repetitions`` when it executed only some of their repetitions."""
+
+    scenarios: tuple[JudgedScenario, ...]
+    some_repetitions: bool
+
+
+class StoredVerdicts:
+    """Keeps the server's results up to date with the stores of its projects."""
+
+    def __init__(self, server: RobbddServer) -> None:
+        self._server = server
+        self._seen: dict[str, int] = {}
+        self._known: set[Path] = set()
+        self._reading = asyncio.Lock()
+        self._loaded = asyncio.Event()
+
+    async def load(self) -> None:
+        """Show what earlier runs have found in the workspace."""
+        try:
+            await self._load()
+        finally:
+            self._loaded.set()
+
+    async def _load(self) -> None:
+        ls = self._server
+        kept = await asyncio.to_thread(load_results, ls.folders())
+        self._seen = dict(kept.seen)
+        results = Results(kept.scenarios)
+        # A run in progress is newer than what is kept.
+        in_progress = list(ls.run.judged.values()) if ls.run is not None else []
+        for scenario in in_progress:
+            results.drop(scenario.variant, scenario.variation, scenario.execution)
+        results.add(in_progress)
+        ls.results = results
+        ls.show_results(ls.opened())
+        models = dict.fromkeys(scenario.model for scenario in kept.scenarios)
+        paths = [*ls.folders(), *filter(None, map(uri_to_path, models))]
+        await self.look([*map(store_beside, paths), *(RunStore(Path(store)) for store in kept.seen)])
+
+    async def loaded(self) -> None:
+        """Wait until the results of earlier runs are known."""
+        await self._loaded.wait()
+
+    async def look_beside(self, *uris: str) -> None:
+        """Read the stores of documents' projects, unless that was done before."""
+        await self.loaded()
+        paths = filter(None, map(uri_to_path, uris))
+        stores = {store.folder: store for store in map(store_beside, paths)}
+        await self.look([store for folder, store in stores.items() if folder not in self._known])
+
+    async def look(self, stores: Iterable[RunStore]) -> None:
+        """Show the verdicts of the runs that ended since the stores were read the last time."""
+        ls = self._server
+        async with self._reading:
+            changed = False
+            for store in {store.folder: store for store in stores}.values():
+                self._known.add(store.folder)
+                key = str(store.folder)
+                found, seen, newest = await asyncio.to_thread(_read, store, self._seen.get(key, 0))
+                changed = changed or self._seen.get(key, 0) != seen
+                self._seen[key] = seen
+                for run in found:
+                    ls.results.merge(run.scenarios, newest, some_repetitions=run.some_repetitions)
+            if changed:
+                ls.show_results(ls.opened())
+                await self.save()
+
+    async def save(self) -> None:
+        """Keep what is shown for the next session; nothing is written in an untrusted workspace."""
+        ls = self._server
+        if ls.trusted:
+            seen = {store: number for store, number in self._seen.items() if number}
+            await asyncio.to_thread(save_results, ls.folders(), list(ls.results), seen)
+
+
+def _read(store: RunStore, seen: int) -> tuple[list[FoundRun], int, int]:
+    """Return what runs after number ``seen`` found, the last run that was read, and the newest run of the store.
+
+    Runs from one in progress on are read when that has ended.
+    """
+    runs = store.runs()
+    newest = runs[-1].number if runs else 0
+    # Numbers begin again in a store that was deleted.
+    seen = seen if seen <= newest else 0
+    found: list[FoundRun] = []
+    for run in runs:
+        if run.number > seen:
+            try:
+                if run.status().state == RUNNING:
+                    break
+                found.append(_found(run))
+            except (RobbddError, OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+                _LOG.info("verdicts of %s are not shown: %s", run.folder, error)
+            seen = run.number
+    return found, seen, newest
+
+
+def _found(run: StoredRun) -> FoundRun:
+    texts = read_texts(run.folder)
+    named, seed, results = texts.named(), run.record().user_seed, run.read_results()
+    scenarios: list[JudgedScenario] = []
+    if results is None:
+        return FoundRun((), texts.some_repetitions)
+    vacuous = results.vacuous()
+    for index, result in enumerate(results.scenarios):
+        if result.finished is not None:
+            text = named[result.spec.model]
+            scenario = judged_scenario(result.spec, text.uri, text.digests, run=run.number, index=index, seed=seed)
+            for clause in result.spec.clauses:
+                if clause.line in result.judged:
+                    scenario.judge(clause.iri, judgement(clause, result.judged[clause.line], text.digests))
+            scenario.mark_vacuous(vacuous)
+            scenario.finished = True
+            scenarios.append(scenario)
+    return FoundRun(tuple(scenarios), texts.some_repetitions)
