@@ -88,7 +88,7 @@ def planned(run: robbdd.PastRun) -> list[robbdd.ScenarioSpec]:
     ],
 )
 async def test_every_way_of_running_a_request_gives_the_same_results(
-    editor: Editor, model: str, request_: Request
+    editor: Editor, run_messages: list[Any], model: str, request_: Request
 ) -> None:
     path = editor.path.with_name(model)
     # Nothing is held when the part is in the bin: some clauses are violated, with margins and instants.
@@ -96,6 +96,8 @@ async def test_every_way_of_running_a_request_gives_the_same_results(
     editor.path.write_text(text.replace("after <evt-pick-end>", "after <evt-place-end>", 1), encoding="utf-8")
     params = types.ExecuteCommandParams(command="robbdd.run", arguments=[{"uri": path_to_uri(path), **request_}])
     answer = plain(await editor.client.workspace_execute_command_async(params))
+    log = [entry.message.text for entry in run_messages if entry.message.type == "LogLine"]
+    assert sum(line.endswith("combinations") for line in log) == ("pairwise" in request_)
     for door in DOORS:
         door(path, request_)
     runs = robbdd.runs(path)
