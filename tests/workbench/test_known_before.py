@@ -1,0 +1,121 @@
+"""What leaves clauses unknown, and can be known without a simulation, is a finding on the model before it is run."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import robbdd_tools as robbdd
+from kit import EXAMPLES, corpus
+from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.workbench.folder import Keeping
+
+pytestmark = pytest.mark.physics
+
+KNOWN_BEFORE = {
+    "no-model": r"there is no model for (object|agent) ",
+    "no-evaluator": r"no step definition for ",
+    "no-emitter": r"nothing in the scenario emits ",
+    "not-simulated": r"the ROS action '|its verdicts come from the ROS topic |no ROS",
+    "setting": r"there is no configuration '|cannot be configured: | has no \w+: that is of ",
+    "single-element": r"needs one \w+, not a set of them",
+    "no-room": r"there is room for ",
+    "execution-fit": r"does not execute '|a distance is between two things",
+    "model-file": r"there is no model file ",
+    "python-source": r"No module named |has no attribute ",
+    "catalog-entry": r"the catalog has no ",
+}
+"""Codes of findings → what a run gives as the reason of unknown clauses."""
+PHYSICAL = (
+    r"event \S+ never occurred",
+    r"the execution was stopped after",
+    r"there is no room left for '.*' among",
+    r"overlap by",
+)
+"""Reasons that only a simulation can find."""
+
+
+def unknown(path: Path) -> dict[str, list[robbdd.Finding]]:
+    """Run the first scenario of each variant; return the reasons of unknown clauses with the model's findings."""
+    model = robbdd.load(path)
+    found: dict[str, list[robbdd.Finding]] = {}
+    with model.scenarios(first=1).run(seed=1, keeping=Keeping(keep=False)) as run:
+        for result in run:
+            for clause in result.clauses:
+                if clause.verdict == "unknown":
+                    found[clause.reason] = list(model.diagnostics)
+    return found
+
+
+def assert_known(reasons: dict[str, list[robbdd.Finding]]) -> None:
+    for reason, findings in reasons.items():
+        codes = {code for code, pattern in KNOWN_BEFORE.items() if re.search(pattern, reason)}
+        if codes:
+            assert codes & {finding.code for finding in findings}, (reason, findings)
+        else:
+            assert any(re.search(pattern, reason) for pattern in PHYSICAL), reason
+
+
+def models(folder: Path) -> Iterator[Path]:
+    yield from sorted(path for path in folder.rglob("*") if path.suffix in (".bdd", ".bddx"))
+
+
+@pytest.mark.parametrize("model", models(EXAMPLES), ids=lambda path: path.name)
+def test_examples(model: Path) -> None:
+    assert_known(unknown(model))
+
+
+def test_models_by_others() -> None:
+    for path in corpus(".bdd", ".bddx"):
+        assert_known(unknown(path))
+
+
+PICKPLACE = {
+    "no-model": ("bench.scene", "object bin_left", "object vessel_left", ("bin_left", "vessel_left")),
+    "no-emitter": ("pickplace.bdd", "after <evt-pick-end>", "after <parked>", ("Task", "Event (ns=crit) parked\nTask")),
+    "single-element": (
+        "pickplace.bdd",
+        "var thing",
+        "set var thing",
+        ("var <pick-place.thing>:", "set var <pick-place.thing>: {"),
+    ),
+    "no-evaluator": (
+        "pickplace.bdd",
+        "<thing> is held by <robot>, after",
+        "pred('{o} is safe', o=<thing>), after",
+        ("", ""),
+    ),
+    "not-simulated": ("pickplace.bddx", 'catalog "pick-place"', 'bhv action: "/a"', ("", "")),
+    "execution-fit": ("pickplace.bddx", 'catalog "pick-place"', 'catalog "pick"', ("", "")),
+    "python-source": ("pickplace.bddx", "module: policies", "module: policy", ("", "")),
+    "catalog-entry": ("bench.scenex", 'catalog "bin"', 'catalog "bucket"', ("", "")),
+}
+"""Code → file of the example, a text in it and what takes its place; a second pair makes the rest fit."""
+
+
+@pytest.mark.parametrize("code", PICKPLACE)
+def test_a_planted_fault_is_found_before_the_run_that_it_spoils(code: str, tmp_path: Path) -> None:
+    folder = tmp_path / "pickplace"
+    shutil.copytree(EXAMPLES / "pickplace", folder, ignore=shutil.ignore_patterns(".*"))
+    name, old, new, (also, instead) = PICKPLACE[code]
+    for path in folder.iterdir():
+        text = path.read_text(encoding="utf-8")
+        if path.name == name:
+            assert old in text
+            text = text.replace(old, new, 1)
+        text = text.replace(also, instead) if also and path.suffix != ".bddx" else text
+        if code == "single-element" and path.suffix == ".bdd":
+            text = text.replace("<balls.ball0> }", "<balls.ball0> } }").replace("{ { <cubes", "{ { <cubes")
+        path.write_text(text, encoding="utf-8")
+    main = folder / ("pickplace.bddx" if name.endswith("x") else "pickplace.bdd")
+    findings = robbdd.load(main).diagnostics
+    assert code in {finding.code for finding in findings}
+    if any(finding.severity is Severity.ERROR for finding in findings):
+        return
+    reasons = unknown(main)
+    assert any(re.search(KNOWN_BEFORE[code], reason) for reason in reasons), reasons
+    assert_known(reasons)
