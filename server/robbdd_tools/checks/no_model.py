@@ -147,7 +147,8 @@ def _findings(gaps: list[Gap], keys: set[Key], severity: Severity) -> Iterator[D
         if others:
             message += f" (nor {', '.join(others)})"
         if severity is Severity.WARNING:
-            message += f": it has none of the words {_words(gap)}; give it a model in a .scenex, or another name"
+            message += f": it has none of the words {_words(gap)}; give it another name, or a model in a .scenex"
+            message += " that an execution of a .bddx uses"
         else:
             message += ": no scenario uses it, so runs leave it out"
         uri = gap.scene.uri

@@ -41,7 +41,7 @@ def _choices(gap: Gap, kind: str) -> Iterator[Fix]:
             new = _new_file(gap.scene, entries)
             if new is not None:
                 name = new.uri.rpartition("/")[2]
-                yield Fix(f"Simulate {names} as '{model}': create '{name}'", (), new)
+                yield Fix(f"Simulate {names} as '{model}': create '{name}' for executions of a .bddx", (), new)
         elif isinstance(instance.tree, tree.SceneInstance) and instance.whole(instance.tree):
             name = instance.uri.rpartition("/")[2]
             yield Fix(f"Simulate {names} as '{model}' in '{name}'", (_added(instance, entries),))
