@@ -7,6 +7,7 @@ import sys
 import tarfile
 import venv
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 
@@ -67,3 +68,11 @@ def test_the_source_distribution_holds_what_a_build_needs(built: Path) -> None:
     assert {"grammar/bdd.tx", "pyproject.toml", "LICENSE", "examples/pickplace/pickplace.bdd"} <= names
     assert any(name.startswith("metamodels/") and name.endswith(".ttl") for name in names)
     assert not any("node_modules" in name for name in names)
+
+
+def test_the_wheel_offers_its_plugin_to_pytest(built: Path) -> None:
+    (wheel,) = built.glob("*.whl")
+    with ZipFile(wheel) as archive:
+        (name,) = [name for name in archive.namelist() if name.endswith(".dist-info/entry_points.txt")]
+        offered = archive.read(name).decode()
+    assert "[pytest11]\nrobbdd = robbdd_tools.pytest_plugin\n" in offered

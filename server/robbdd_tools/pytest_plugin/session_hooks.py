@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.printable import printable
 from robbdd_tools.base.writing import replace_file
@@ -134,7 +135,7 @@ class Hooks:
         remark = self._owner.remark
         try:
             ended = self._owner.end()
-        except OSError as error:
+        except (OSError, RobbddError) as error:
             self._summary = [f"the run cannot be ended: {error}"]
         else:
             self._summary = [] if ended is None else [remark, *_summary(*ended)]
