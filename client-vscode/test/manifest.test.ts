@@ -70,3 +70,9 @@ test("each look of a verdict has a colour, which every kind of theme gives it", 
 function text(path: string): string {
   return readFileSync(join(process.cwd(), path), "utf8");
 }
+
+test("the pages in the package have no links to files that are not in it", () => {
+  for (const page of ["README.md", "CHANGELOG.md"]) {
+    assert.deepEqual([...text(page).matchAll(/\]\(\.\.[^)]*\)/g)].map(String), [], page);
+  }
+});
