@@ -57,7 +57,7 @@ HOMES = {
     "rich": {"commands"},
     "pytest": {"pytest_plugin"},
 }
-# Layers that may sit beside one another and see each other; all others of one rank are strangers.
+# Layers that may sit beside one another and see each other; all others of one rank may not import each other.
 NEIGHBOURS = {("features", "checks"), ("cli", "commands"), ("commands", "cli")}
 
 

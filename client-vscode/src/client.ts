@@ -195,7 +195,7 @@ export class Server implements vscode.Disposable {
     }
   }
 
-  /** Ask the server something that a user waits for: they are told why there is no answer. */
+  /** Ask the server something that a user waits for, and show why there is no answer. */
   async ask(method: string, params: object): Promise<unknown> {
     if (!(await this.ready())) {
       return undefined;

@@ -38,7 +38,7 @@ export function createClient(
 ): LanguageClient {
   const budget = new RestartBudget();
   let answered = false;
-  /** There while the server runs: what it has told goes with it. */
+  /** There while the server runs: what it has sent goes with it. */
   let verdicts: VerdictPainter | undefined;
   const client = new DiscreetClient(
     "robbdd",

@@ -3,7 +3,7 @@
 /** Milliseconds that another extension has to answer. */
 export const ANSWER_LIMIT = 5000;
 
-/** What `ask` answers; undefined when it fails or takes longer than the limit, which `warn` is told in words. */
+/** What `ask` answers; undefined when it fails or takes longer than the limit, which `warn` gets in words. */
 export async function answerOf<Answer>(
   what: string,
   ask: () => PromiseLike<Answer> | Answer,

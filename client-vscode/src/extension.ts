@@ -67,7 +67,7 @@ export function activate(context: vscode.ExtensionContext): void {
       }
     }),
     vscode.workspace.onDidGrantWorkspaceTrust(() => {
-      // The server is told when it starts; and there may be another one now.
+      // The server gets it when it starts; and there may be another one now.
       void started.restart();
     }),
     vscode.workspace.onDidChangeWorkspaceFolders(() => {

@@ -41,7 +41,7 @@ export async function openModel(): Promise<vscode.Uri | undefined> {
 /** Show a file; where the walkthrough is in front, beside it, so that both can be seen. */
 export async function show(uri: vscode.Uri): Promise<void> {
   const tab = vscode.window.tabGroups.activeTabGroup.activeTab;
-  // A tab of the walkthrough is one that extensions are told nothing about.
+  // A tab of the walkthrough is one that extensions cannot see.
   const beside = tab !== undefined && tab.input === undefined;
   await vscode.window.showTextDocument(uri, { viewColumn: beside ? vscode.ViewColumn.Beside : vscode.ViewColumn.Active });
 }

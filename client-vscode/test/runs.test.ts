@@ -62,7 +62,7 @@ test("a run reads from its start to its summary", () => {
   ]);
 });
 
-test("scenarios that are executed side by side are told one after the other", () => {
+test("scenarios that are executed side by side are reported one after the other", () => {
   const { lines } = report(runStarted(3), started(0), started(1), judged(1, "holds"), judged(0, "holds"), finished(1));
   const rest = report(runStarted(2), started(0), judged(0, "holds")).run.interrupt("Gone.");
   assert.deepEqual(

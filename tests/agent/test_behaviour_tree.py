@@ -132,7 +132,7 @@ def create(leaf):
         ("def make(leaf): return None", "has no function 'create'"),
     ],
 )
-def test_code_that_makes_no_tree_is_told(code: str, words: str, tmp_path: Path) -> None:
+def test_code_that_makes_no_tree_is_reported(code: str, words: str, tmp_path: Path) -> None:
     with pytest.raises(SceneError) as failure:
         executed(made(tmp_path, code, pick("first"), pick("second")))
     assert str(failure.value).startswith("m.bdd:3:5: ")

@@ -47,7 +47,7 @@ def stamped(self, satisfied):
     trace = advance(self, satisfied)
     Execution.stamp = time.monotonic()
     return trace
-def told(self, line, verdict):
+def take_verdict(self, line, verdict):
     if Execution.stamp:
         with Path({path!r}).open("a") as file:
             file.write(f"{{self._index}} {{line}} {{Execution.stamp}}\\n")

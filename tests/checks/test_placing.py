@@ -54,7 +54,7 @@ def test_a_sound_instance_has_no_findings() -> None:
         ("((2, 1), (1, 1))", "«(2, 1)»", "'jitter' needs a covariance of 2 × 2 numbers"),
     ],
 )
-def test_a_distribution_that_cannot_be_drawn_from_is_told(sound: str, broken: str, words: str) -> None:
+def test_a_distribution_that_cannot_be_drawn_from_is_reported(sound: str, broken: str, words: str) -> None:
     check(changed(sound, broken, f"distribution {words}"))
 
 
@@ -72,7 +72,7 @@ def test_a_distribution_that_cannot_be_drawn_from_is_told(sound: str, broken: st
         ("x: (1, 0, 0) y: (0, 1, 0) z: (0, 0, 1)", "«x: (1, 0, 0) y: (0, 1, 0) z: (0, 0, -1)»", "right-handed"),
     ],
 )
-def test_a_pose_that_places_nothing_is_told(sound: str, broken: str, words: str) -> None:
+def test_a_pose_that_places_nothing_is_reported(sound: str, broken: str, words: str) -> None:
     check(changed(sound, broken, f"pose {words}"))
 
 

@@ -53,7 +53,7 @@ def test_an_address_in_use_ends_with_a_sentence() -> None:
     assert ended.stderr.endswith(f"no client can connect to 127.0.0.1:{port}: Address already in use\n")
 
 
-def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_version_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--version"])
     assert capsys.readouterr().out == f"robbdd-lsp {__version__}\n"

@@ -78,7 +78,7 @@ def test_a_broken_file_is_told_with_its_place(text: str, line: int, words: str) 
     assert found.value.line == line
 
 
-def test_a_verdict_that_is_none_is_told() -> None:
+def test_a_verdict_that_is_none_is_reported() -> None:
     data = run().as_json()
     data["scenarios"][1]["clauses"][0]["verdict"] = "maybe"
     with pytest.raises(BrokenResults, match=r"scenarios\[1\].clauses\[0\].verdict: expected one of holds, violated"):

@@ -73,7 +73,7 @@ export class PreviewView implements vscode.TextDocumentContentProvider, vscode.D
   }
 
   private async refresh(): Promise<void> {
-    // A change of a document's language closes it for a moment: what is closed is told when it is needed.
+    // A change of a document's language closes it for a moment: what is closed is sent when it is needed.
     const open = new Set(vscode.workspace.textDocuments.map(({ uri }) => uri.toString()));
     for (const [model, { text }] of [...this.shown]) {
       if (!open.has(previewOf(vscode.Uri.parse(model)).toString())) {

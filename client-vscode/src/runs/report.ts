@@ -20,9 +20,9 @@ export class RunReport {
   private total = 0;
   private ended = false;
   private readonly verdicts = new Map<number, ClauseJudged["verdict"][]>();
-  /** Scenarios that are executed side by side are told one after the other, each when it has ended. */
-  private readonly told = new Map<number, string[]>();
-  /** The errors in code of the user that have been told, with their numbers. */
+  /** Scenarios that are executed side by side are reported one after the other, each when it has ended. */
+  private readonly reported = new Map<number, string[]>();
+  /** The errors in code of the user that have been reported, with their numbers. */
   private readonly faults = new Map<string, number>();
   private readonly outcomes = new Map<number, Outcome>();
 
@@ -46,7 +46,7 @@ export class RunReport {
         return [`▶ ${this.name}: ${scenarios(message.total)}, ${message.simulator}`];
       case "ScenarioStarted":
         this.verdicts.set(message.index, []);
-        this.told.set(message.index, [
+        this.reported.set(message.index, [
           `  Scenario ${message.index + 1} of ${this.total}: ${message.name}  ${message.values}`.trimEnd(),
         ]);
         return [];
@@ -55,7 +55,7 @@ export class RunReport {
         return [];
       case "ClauseJudged":
         this.verdicts.get(message.index)?.push(message.verdict);
-        this.told.get(message.index)?.push(`    ${describeClause(message, this.faults.get(message.fault ?? ""))}`);
+        this.reported.get(message.index)?.push(`    ${describeClause(message, this.faults.get(message.fault ?? ""))}`);
         return [];
       case "ScenarioFinished":
         return [...this.open(message.index), this.finishScenario(message.index, message.simulated, message.wall)];
@@ -63,9 +63,9 @@ export class RunReport {
         return this.traceback(message);
       case "Output": {
         const lines = message.text.split("\n").map((line) => `    │ ${line}`);
-        const told = message.index === null ? undefined : this.told.get(message.index);
-        told?.push(...lines);
-        return told === undefined ? lines : [];
+        const waiting = message.index === null ? undefined : this.reported.get(message.index);
+        waiting?.push(...lines);
+        return waiting === undefined ? lines : [];
       }
       case "LogLine":
         return message.text.split(/\r?\n/).map((line) => `    ${message.level}: ${line}`);
@@ -101,7 +101,7 @@ export class RunReport {
     return `${this.name}: ${parts.join(", ")}.`;
   }
 
-  /** An error is told once, however many scenarios have no result because of it. */
+  /** An error is reported once, however many scenarios have no result because of it. */
   private traceback({ id, lines: [failed = "", ...calls] }: UserCodeFailed): string[] {
     if (this.faults.has(id)) {
       return [];
@@ -111,15 +111,15 @@ export class RunReport {
     return [`    error ${number}: ${failed}`, ...calls.map((line) => `    ${line}`)];
   }
 
-  /** What is to be told of a scenario and was not yet. */
+  /** What is to be reported of a scenario and was not yet. */
   private open(index: number): string[] {
-    const lines = this.told.get(index) ?? [];
-    this.told.delete(index);
+    const lines = this.reported.get(index) ?? [];
+    this.reported.delete(index);
     return lines;
   }
 
   private openAll(): string[] {
-    return [...this.told.keys()].flatMap((index) => this.open(index));
+    return [...this.reported.keys()].flatMap((index) => this.open(index));
   }
 
   private finishScenario(index: number, simulated: number, wall: number): string {

@@ -41,7 +41,7 @@ function ownedBy(owner: Facts | undefined): Source {
   return { variant: owner?.variant ?? "", execution: owner?.execution };
 }
 
-/** Whether what is told of is a variant, or an execution of one. */
+/** Whether the facts are about a variant, or an execution of one. */
 export function makesScenarios({ kind }: Facts): boolean {
   return kind === "variant" || kind === "execution";
 }

@@ -42,7 +42,7 @@ export interface Facts extends Partial<Source> {
   /** Of a variant or an execution: how many scenarios it makes, where known. */
   readonly count?: number | undefined;
   readonly digest?: string | undefined;
-  /** Of these: its values can be told without asking long, and are shown beside the text. */
+  /** Of these: its values are known without a long wait, and are shown beside the text. */
   readonly small?: boolean;
   readonly variation?: Place | null;
   /** Of a scenario and its clauses. */

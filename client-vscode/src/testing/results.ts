@@ -8,7 +8,7 @@ import type { TestTree } from "./tree";
 import { Worst } from "./worst";
 
 export interface FoundClause {
-  /** IRI, or the number of the clause in its scenario from 0; one of both is told. */
+  /** IRI, or the number of the clause in its scenario from 0; one of both is known. */
   readonly clause: string | null;
   readonly position: number | null;
   readonly sentence: string;

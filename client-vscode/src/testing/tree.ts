@@ -18,7 +18,7 @@ export class TestTree<I extends Item<I>> {
   /** What is being read, so that nothing is read twice at a time. */
   private readonly loading = new Map<string, Promise<void>>();
 
-  /** `outdated` is told of items whose text has changed since it was listed. */
+  /** `outdated` is called with items whose text has changed since it was listed. */
   constructor(
     private readonly roots: Items<I>,
     private readonly factory: Factory<I>,

@@ -18,7 +18,7 @@ export class Worst<I> {
     return this.seen.has(item);
   }
 
-  /** Take a verdict, with its margin where that is told, and return what is known of the item now. */
+  /** Take a verdict, with its margin where that is known, and return what is known of the item now. */
   add(item: I, outcome: Outcome, margin: number | null = null): Outcome {
     const held = outcome.state === "passed" ? 1 : 0;
     const here = margin ?? Infinity;
@@ -34,11 +34,11 @@ export class Worst<I> {
       known.worst = outcome;
       known.margin = here;
     }
-    return told(known);
+    return outcomeOf(known);
   }
 }
 
-function told({ held, count, worst }: Seen): Outcome {
+function outcomeOf({ held, count, worst }: Seen): Outcome {
   const note = [`${held}/${count} hold`, worst.note].filter((part) => part !== "").join(" · ");
   const { failure } = worst;
   return failure === undefined

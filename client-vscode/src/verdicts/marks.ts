@@ -9,7 +9,7 @@ export interface Appearance {
   readonly stale: boolean;
 }
 
-/** Words at a place of a text, before it or behind it, with what is told to who points at them. */
+/** Words at a place of a text, before it or behind it, with their tooltip. */
 export interface Mark extends Appearance {
   readonly words: string;
   readonly line: number;

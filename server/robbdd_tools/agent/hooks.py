@@ -39,9 +39,9 @@ def before_scenario(context: Any, scenario: Any) -> None:
 
 
 def after_step(context: Any, step: Any) -> None:
-    """Tell the outcome of a step that a user's own function carried out; ours have told their verdict already."""
+    """Tell the outcome of a step that a user's own function carried out; ours have reported their verdict already."""
     sources = context.session.sources
-    context.session.told(int(step.line), _verdict(step, sources))
+    context.session.take_verdict(int(step.line), _verdict(step, sources))
 
 
 def after_scenario(context: Any, _scenario: Any) -> None:

@@ -42,7 +42,7 @@ from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, scen
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.traces.mcap_file import UnreadableTrace, read_trace
 
-STRANGER = "the stored run has no scenario with these values"
+UNKNOWN_SCENARIO = "the stored run has no scenario with these values"
 CHANGED = "{} changed since the run: only a new run can tell"
 
 
@@ -59,7 +59,7 @@ class StoredTraces:
         """Yield the verdicts on the clauses of a scenario."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
         if stored is None:
-            yield from ((clause, unknown(STRANGER, Cause.CHANGED)) for clause in spec.clauses)
+            yield from ((clause, unknown(UNKNOWN_SCENARIO, Cause.CHANGED)) for clause in spec.clauses)
             return
         found = self._evidence(index, spec, stored)
         for clause in spec.clauses:

@@ -14,7 +14,7 @@ from robbdd_tools.agent import hooks
 from robbdd_tools.agent.channel import Channel, Reports, use_channel
 from robbdd_tools.agent.hooks import EXECUTION
 from robbdd_tools.agent.printed_output import Printed, finish_output
-from robbdd_tools.agent.session import STRANGER
+from robbdd_tools.agent.session import UNKNOWN_SCENARIO
 from robbdd_tools.agent.steps import load_steps
 from robbdd_tools.base.descendants import end_descendants
 from robbdd_tools.monitor.verdict import Cause
@@ -148,7 +148,7 @@ class Features:
         feature, scenarios = found
         scenario = scenarios.get(spec.line)
         if scenario is None:
-            raise ValueError(f"{Path(spec.feature).name}:{spec.line}: {STRANGER}")
+            raise ValueError(f"{Path(spec.feature).name}:{spec.line}: {UNKNOWN_SCENARIO}")
         # A repetition executes the same scenario once more.
         scenario.reset()
         alone = copy(feature)

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
     from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
 
-STRANGER = "the manifest of this run knows no such scenario; was the feature changed?"
+UNKNOWN_SCENARIO = "the manifest of this run knows no such scenario; was the feature changed?"
 
 
 class ScenarioRun:
@@ -178,7 +178,7 @@ class ScenarioRun:
 
         return self._judged(line, text, verdict)
 
-    def told(self, line: int, verdict: Verdict) -> None:
+    def take_verdict(self, line: int, verdict: Verdict) -> None:
         """Take the verdict of a user's step on a clause that has none yet."""
         self._report(line, verdict)
 
@@ -308,7 +308,7 @@ class Session:
         self._present = None
         index = self._indices.get((feature.resolve(), line))
         if index is None:
-            self._channel.send(LogLine("error", f"{feature.name}:{line}: {STRANGER}"))
+            self._channel.send(LogLine("error", f"{feature.name}:{line}: {UNKNOWN_SCENARIO}"))
             return
         index = index if handed_out is None else handed_out
         self._moments.clear(index)
@@ -320,13 +320,13 @@ class Session:
     def scenario(self) -> ScenarioRun:
         """The scenario at hand; raises ``SceneError`` when the manifest does not know it."""
         if self._present is None:
-            raise SceneError(STRANGER)
+            raise SceneError(UNKNOWN_SCENARIO)
         return self._present
 
-    def told(self, line: int, verdict: Verdict) -> None:
+    def take_verdict(self, line: int, verdict: Verdict) -> None:
         """Take the verdict of a user's step on the clause of a line."""
         if self._present is not None:
-            self._present.told(line, verdict)
+            self._present.take_verdict(line, verdict)
 
     def finish(self) -> None:
         """End the scenario at hand."""

@@ -27,8 +27,8 @@ NOT_REACHED = "precondition not reached"
 class TreeRun:
     """A behaviour tree in execution.
 
-    ``stamp`` is told ``<node> start`` and ``<node> end`` (the node has succeeded) when they happen; ``active`` are the
-    nodes, by IRI, whose behaviour is at work, innermost first. Raises ``SceneError`` when the tree cannot be made.
+    ``stamp`` is called with ``<node> start`` and ``<node> end`` (the node has succeeded) when they happen; ``active``
+    are the nodes, by IRI, whose behaviour is at work, innermost first. Raises ``SceneError`` when the tree cannot be made.
     """
 
     def __init__(self, spec: TreeSpec, attempt: Attempt, stamp: Callable[[str], None]) -> None:

@@ -45,7 +45,7 @@ class NewFile:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A change that is known to mend a diagnostic, with the file that it makes, if any."""
+    """A change that is known to fix a diagnostic, with the file that it makes, if any."""
 
     title: str
     edits: tuple[Edit, ...]

@@ -24,7 +24,7 @@ CODE = "behaviour-tree"
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A behaviour that is linked to a node, told by its document and path, and the reference's place."""
+    """A behaviour that is linked to a node, identified by its document and path, and the reference's place."""
 
     node: tuple[str, str]
     behaviour: tree.BehaviourUse

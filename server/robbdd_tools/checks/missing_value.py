@@ -35,13 +35,13 @@ def missing_value(site: Site) -> Iterator[Diagnostic]:
 def _report(scenario: Scenario, missing: list[Definition]) -> Diagnostic:
     first = missing[0]
     if isinstance(scenario.variant.variation, tree.Table):
-        mend = f"add a column '<{first.symbol.path}>' to the table"
+        fix = f"add a column '<{first.symbol.path}>' to the table"
     else:
         words = "set var" if first.kind is SymbolKind.SET_VARIABLE else "var"
-        mend = f"add a line '{words} <{first.symbol.path}>: …'"
+        fix = f"add a line '{words} <{first.symbol.path}>: …'"
     names = listed([variable.symbol.name for variable in missing])
     related = tuple(Related(found.uri, found.span, f"'{found.symbol.name}' is declared here") for found in missing)
-    message = f"the scenario gives no value to {names} of its template: {mend}"
+    message = f"the scenario gives no value to {names} of its template: {fix}"
     fixes = tuple(_filled(scenario, missing))
     return finding(scenario.site, scenario.variant.name, Severity.ERROR, "missing-value", message, related, fixes)
 

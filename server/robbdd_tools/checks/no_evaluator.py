@@ -96,14 +96,14 @@ def _judged_by_policies(snapshot: Snapshot, uri: str) -> Iterator[Span]:
 
 def _sentence(clause: FreeClause) -> str:
     """Return what a step is asked to match: the text as a feature has it, with words for names of events and values."""
-    told = _SLOT.sub('"x"', text_of(clause).value.strip().replace("\\", "\\\\"))
+    stated = _SLOT.sub('"x"', text_of(clause).value.strip().replace("\\", "\\\\"))
     match clause.time:
         case tree.During():
-            return f'{told} from "x" until "x"'
+            return f'{stated} from "x" until "x"'
         case tree.Before(horizon=horizon):
-            return f'{told} {_within(horizon)}before event "x"'
+            return f'{stated} {_within(horizon)}before event "x"'
         case tree.After(horizon=horizon):
-            return f'{told} {_within(horizon)}after event "x"'
+            return f'{stated} {_within(horizon)}after event "x"'
 
 
 def _within(horizon: tree.Number | None) -> str:

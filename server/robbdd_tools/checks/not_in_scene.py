@@ -47,14 +47,14 @@ def not_in_scene(site: Site) -> Iterator[Diagnostic]:
 def _strangers(scenario: Scenario, members: frozenset[Element]) -> Iterator[Diagnostic]:
     site, scene = scenario.site, scenario.variant.scene
     kinds = {element.kind for element in members}
-    told = {element.key for element in members} | {element.key for element in _brought(scenario)}
+    listed = {element.key for element in members} | {element.key for element in _brought(scenario)}
     definition = site.target(scene)
     for column in scenario.columns:
         for written in column.written:
             for node, element in written_elements(site, written):
-                if element.kind not in kinds & ELEMENTS or element.key in told or definition is None:
+                if element.kind not in kinds & ELEMENTS or element.key in listed or definition is None:
                     continue
-                told.add(element.key)
+                listed.add(element.key)
                 message = (
                     f"'{element.name}' is not in '{scene.path}', so it belongs to this scenario only: "
                     "add it to the scene if it is always there"

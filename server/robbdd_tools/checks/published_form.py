@@ -128,8 +128,8 @@ class _Rewriter:
             yield from self._body(root.body)
         elif isinstance(root, tree.Story):
             first = root.variants[0].span.start
-            told = root.name if root.benefit is None else root.benefit
-            if "Scenarios" not in self._code(told.span.end, first):
+            shown = root.name if root.benefit is None else root.benefit
+            if "Scenarios" not in self._code(shown.span.end, first):
                 yield _put(first, "Scenarios: ")
 
     def _body(self, body: tree.Body) -> Iterator[Change]:
@@ -173,14 +173,14 @@ class _Rewriter:
         yield _put(fluent.span.end, ")")
 
     def _behaviour(self, use: tree.BehaviourUse) -> Iterator[Change]:
-        told = use.duration is not None and use.duration.span == use.span
+        shown = use.duration is not None and use.duration.span == use.span
         duration = "" if use.duration is None else _during(use.duration)
         if use.name.span.start == use.name.span.end:
             yield use.span, f"Behaviour {self.namespace}{use.name.text} {{ {duration}{_phrase(use.action)} }}"
             return
         if use.namespace is None and self.namespace:
             yield _put(use.name.span.start, self.namespace)
-        if told:
+        if shown:
             yield _put(use.action.span.start, duration)
         if _words(self.text[use.action.span.start : use.action.span.end]) != _words(_phrase(use.action)):
             yield use.action.span, _phrase(use.action)

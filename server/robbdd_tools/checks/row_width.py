@@ -30,10 +30,10 @@ def _report(scenario: Scenario, table: tree.Table, row: tree.TableRow) -> Diagno
     site = scenario.site
     cells, columns = len(row.cells), len(table.header)
     if cells < columns:
-        mend = "add a value for " + ", ".join(f"'{ref.path}'" for ref in table.header[cells:])
+        fix = "add a value for " + ", ".join(f"'{ref.path}'" for ref in table.header[cells:])
     else:
-        mend = "remove what is too much"
-    message = f"this row has {_counted(cells, 'cell')}, but the table has {_counted(columns, 'column')}: {mend}"
+        fix = "remove what is too much"
+    message = f"this row has {_counted(cells, 'cell')}, but the table has {_counted(columns, 'column')}: {fix}"
     header = related_to(site, table.header[0], "the columns")
     return finding(site, row, Severity.ERROR, "row-width", message, (header,), tuple(_fixes(scenario, table, row)))
 

@@ -1,4 +1,4 @@
-"""Which findings of the shapes tell again what a rule has told already."""
+"""Which findings of the shapes repeat what a rule has reported already."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic])
 
     What no rule found stays, so that nothing is lost where the two see different things.
     """
-    told: dict[tuple[str, str], list[Span]] = {}
+    reported: dict[tuple[str, str], list[Span]] = {}
     for finding in fast:
         for code in SUPERSEDED.get(finding.code, ()):
             for uri, span in ((finding.uri, finding.span), *((place.uri, place.span) for place in finding.related)):
-                told.setdefault((uri, code), []).append(span)
-    return [shape for shape in shapes if not _is_told(shape, told.get((shape.uri, shape.code), []))]
+                reported.setdefault((uri, code), []).append(span)
+    return [shape for shape in shapes if not _is_reported(shape, reported.get((shape.uri, shape.code), []))]
 
 
-def _is_told(shape: Diagnostic, spans: list[Span]) -> bool:
+def _is_reported(shape: Diagnostic, spans: list[Span]) -> bool:
     return any(shape.span.start <= span.end and span.start <= shape.span.end for span in spans)

@@ -92,11 +92,11 @@ def _values(scenario: Scenario, column: Column, uses: list[Placed]) -> Iterator[
     """Report each value that a phrase cannot take, once for each set that is named."""
     values = list(chain.from_iterable(written_elements(scenario.site, written) for written in column.written))
     kinds = narrowed(use for _, use in uses)
-    told: set[tree.Node] = set()
+    reported: set[tree.Node] = set()
     for node, element in values:
-        if element.kind in kinds or not kinds or node in told:
+        if element.kind in kinds or not kinds or node in reported:
             continue
-        told.add(node)
+        reported.add(node)
         other = next(entry for entry in uses if element.kind not in entry[1].kinds)
         wanted = kind_words(kinds)
         message = (
@@ -106,7 +106,7 @@ def _values(scenario: Scenario, column: Column, uses: list[Placed]) -> Iterator[
         related = (related_to(other[0], other[1].ref, f"here it is {article(kind_words(other[1].kinds))}"),)
         fixes = tuple(other_values(scenario, column, node, kinds, {element.name for _, element in values}))
         yield finding(scenario.site, node, Severity.ERROR, CODE, message, related, fixes)
-        if len(told) == 1:
+        if len(reported) == 1:
             words = f"scenario '{scenario.variant.name.text}' gives it {article(element.kind)}"
             yield from _other_place(other, scenario.site, node, words)
 

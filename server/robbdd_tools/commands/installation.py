@@ -86,11 +86,11 @@ def editor() -> str:
         fix = "install the VSIX of this release (docs/editors.md configures other editors)"
         raise Unavailable(f"no VS Code extension is installed for this user; {node}", fix, optional=True)
     others = [folder for folder, number in found if number != __version__]
-    told = "\n".join(f"{EXTENSION} {number} in {folder}" for folder, number in found)
+    listed = "\n".join(f"{EXTENSION} {number} in {folder}" for folder, number in found)
     if others:
         fix = f"install the VSIX of version {__version__}: extension and server are released together"
-        raise Unavailable(f"{told}\n{node}", fix, optional=True)
-    return f"{told}\n{node}"
+        raise Unavailable(f"{listed}\n{node}", fix, optional=True)
+    return f"{listed}\n{node}"
 
 
 def _required(extra: str | None) -> list[str]:

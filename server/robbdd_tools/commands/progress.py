@@ -95,7 +95,7 @@ class Display:
         self._progress.stop()
 
     def watch(self, message: RunMessage) -> None:
-        """Count a message as soon as it comes, whosever turn it is."""
+        """Count a message when it arrives, before its turn to be shown."""
         match message:
             case ScenarioStarted():
                 self._fails.discard(message.index)

@@ -27,7 +27,7 @@ def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> 
             return OK
         new = add_steps(wanted, target, path.name)
     except SyntaxError as error:
-        return fail(f"{target}:{error.lineno or 1}: {error.msg}: mend the file first")
+        return fail(f"{target}:{error.lineno or 1}: {error.msg}: fix the file first")
     except UnicodeDecodeError:
         return fail(f"{target} is not UTF-8 text")
     except OSError as error:

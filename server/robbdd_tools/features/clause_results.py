@@ -24,7 +24,7 @@ _CHANGED = "The text has changed since this was judged: run it again."
 _BADNESS = ("violated", "undefined", "unknown", "holds")
 MOST_LINES = 20
 """Variations that a tooltip lists."""
-MOST_TOLD = 5
+MOST_LINES_OF_FAILURES = 5
 """Variations that a diagnostic lists."""
 
 
@@ -145,12 +145,12 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
         # An error in users' code is reported where it is, not at every clause that it leaves without evidence.
         failing = [judged for judged in hint.failing if not judged[1].fault]
         if failing and not hint.stale:
-            told = list(map(_line, failing))
-            lines = told[:1] if brief else _shortened(told, MOST_TOLD)
+            lines_of_failures = list(map(_line, failing))
+            lines = lines_of_failures[:1] if brief else _shortened(lines_of_failures, MOST_LINES_OF_FAILURES)
             severity = Severity.ERROR if hint.outcome == "violated" else Severity.WARNING
             related = tuple(
                 Related(uri, rows[scenario.variant, scenario.row], _line((scenario, judgement)))
-                for scenario, judgement in failing[:MOST_TOLD]
+                for scenario, judgement in failing[:MOST_LINES_OF_FAILURES]
                 if (scenario.variant, scenario.row) in rows
             )
             message = "\n".join((hint.label, *lines))

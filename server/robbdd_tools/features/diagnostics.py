@@ -53,8 +53,8 @@ def shape_diagnostics(
     else:
         found = validation.run(snapshot, uri, project, is_superseded)
     files = dict.fromkeys(diagnostic.uri for diagnostic in found)
-    told = [diagnostic for name in files for diagnostic in fast_diagnostics(snapshot, name)]
-    return without_superseded(found, told)
+    reported = [diagnostic for name in files for diagnostic in fast_diagnostics(snapshot, name)]
+    return without_superseded(found, reported)
 
 
 def all_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:

@@ -1,4 +1,4 @@
-"""The executions of a ``.bddx``, told from its text, as a tree of tests shows them."""
+"""The executions of a ``.bddx``, read from its text, as a tree of tests shows them."""
 
 from __future__ import annotations
 

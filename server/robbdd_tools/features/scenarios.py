@@ -1,4 +1,4 @@
-"""How many scenarios a variant stands for, told from its text."""
+"""How many scenarios a variant stands for, read from its text."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """What each word of a text is, in the language's own concepts: what editors colour by meaning.
 
-Words are told by tokens of the text, names by the trees and by what they lead to. So broken text keeps the colours
+Words are known by tokens of the text, names by the trees and by what they lead to. So broken text keeps the colours
 of all that is still understood.
 """
 
@@ -214,11 +214,11 @@ def _read_tokens(language: str, declaration: Declaration) -> tuple[Token, ...]:
         span = Span(match.start(group), match.end(group))
         if span.start < end:
             continue
-        told = concepts.get(span.start)
+        kind_of_word = concepts.get(span.start)
         if group == "reference" or span in used:
             found.append(Token(span, NAME))
-        elif told is not None:
-            found.append(told)
+        elif kind_of_word is not None:
+            found.append(kind_of_word)
         elif group != "word":
             found.append(Token(span, group))
         elif match[group] in keywords:
@@ -230,7 +230,7 @@ def _read_tokens(language: str, declaration: Declaration) -> tuple[Token, ...]:
 
 
 def _concepts(declaration: Declaration) -> Iterator[tuple[int, Token]]:
-    """Yield what the tree says of words, by where they start; what is told later wins."""
+    """Yield what the tree says of words, by where they start; what comes later wins."""
     nodes: list[tree.Node] = []
     for node in walk(declaration.tree) if declaration.tree is not None else ():
         checkpoint()

@@ -1,4 +1,4 @@
-"""The user stories of a file with their scenario variants, told from its text, as a tree of tests shows them."""
+"""The user stories of a file with their scenario variants, read from its text, as a tree of tests shows them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
-_TOLD = {".bdd": re.compile(r"\bUser\s+Story\b"), ".bddx": re.compile(r"\bScenario\s+Exec\b")}
+_PATTERNS = {".bdd": re.compile(r"\bUser\s+Story\b"), ".bddx": re.compile(r"\bScenario\s+Exec\b")}
 """What can be run, by the ending of the file that it stands in."""
 
 
@@ -64,8 +64,8 @@ def story_files(snapshot: Snapshot, folders: Iterable[str]) -> list[str]:
     """Return the files with stories or executions, open ones and those on disk below some folders, sorted."""
     known = {uri: source.document.text for uri, source in snapshot.sources.items() if isinstance(source, FileIndex)}
     candidates = sorted({*model_files(folders), *known})
-    told = ((uri, _TOLD.get(f".{uri.rpartition('.')[2]}")) for uri in candidates)
-    return [uri for uri, words in told if words and words.search(known[uri] if uri in known else _text(uri))]
+    patterns = ((uri, _PATTERNS.get(f".{uri.rpartition('.')[2]}")) for uri in candidates)
+    return [uri for uri, words in patterns if words and words.search(known[uri] if uri in known else _text(uri))]
 
 
 def _stands_in(variant: PlacedVariant, story: PlacedDeclaration) -> bool:

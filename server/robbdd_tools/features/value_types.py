@@ -1,4 +1,4 @@
-"""Which kinds of things fit at a cursor, told from half-typed text: a cell, a line of values, a slot of a phrase."""
+"""Which kinds of things fit at a cursor, read from half-typed text: a cell, a line of values, a slot of a phrase."""
 
 from __future__ import annotations
 

@@ -221,10 +221,10 @@ def _located(scenario: ScenarioText, rendered: str, first_line: int, shared: tup
     One that has no steps of its own, a row of an outline, has those of the outline (``shared``).
     """
     heading = 0
-    for number, told in enumerate(rendered.split("\n"), start=first_line):
-        if told.strip() and (not heading or told.rstrip().endswith(scenario.name)):
+    for number, text_line in enumerate(rendered.split("\n"), start=first_line):
+        if text_line.strip() and (not heading or text_line.rstrip().endswith(scenario.name)):
             heading = number
-            if told.rstrip().endswith(scenario.name):
+            if text_line.rstrip().endswith(scenario.name):
                 break
     lines = _places(rendered, scenario.steps, first_line)
     if shared and not any(lines):
@@ -236,7 +236,7 @@ def _places(rendered: str, steps: tuple[Step, ...], first_line: int) -> tuple[in
     """Return the line of each step, 0 for one that is not there; steps stand in their order."""
     found: list[int] = []
     lines = enumerate(rendered.split("\n"), start=first_line)
-    written = [(number, told.strip()) for number, told in lines]
+    written = [(number, text_line.strip()) for number, text_line in lines]
     start = 0
     for step in steps:
         place = next((at for at in range(start, len(written)) if written[at][1].endswith(step.text)), None)

@@ -46,7 +46,7 @@ def outline(
         without = " ".join(step.text for step in writer.steps(clauses, dict.fromkeys(values, "")))
     except UnknownElements:
         return None
-    if any(f"<{name}>" in told for name in columns.values() for told in (without, *words)):
+    if any(f"<{name}>" in step_text for name in columns.values() for step_text in (without, *words)):
         return None
     added: list[str] = []
     for index, name in enumerate(columns.values()):

@@ -162,10 +162,10 @@ def _pattern(role: str, sentence: str) -> Pattern:
         parameters.append((name, "str"))
         return f"{{{name}:Quoted}}" if match[1] else f"{{{name}}}"
 
-    told = _QUOTED_SLOT.sub(slot, sentence)
-    if "{seconds:g}" in told:
+    template = _QUOTED_SLOT.sub(slot, sentence)
+    if "{seconds:g}" in template:
         parameters.append(("seconds", "float"))
-    return Pattern(role, told, tuple(parameters))
+    return Pattern(role, template, tuple(parameters))
 
 
 def _parameter(slot: str, taken: Collection[str]) -> str:

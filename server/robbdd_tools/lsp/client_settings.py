@@ -72,7 +72,7 @@ def register_settings(server: RobbddServer) -> None:
 
 
 async def follow_settings(ls: RobbddServer) -> None:
-    """Read the settings for the first time, and ask to be told of changes."""
+    """Read the settings for the first time, and subscribe to changes."""
     workspace = ls.client_capabilities.workspace
     changes = workspace.did_change_configuration if workspace else None
     if changes is not None and changes.dynamic_registration:

@@ -131,7 +131,7 @@ async def _write_steps(ls: RobbddServer, uri: str) -> list[str]:
         plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
         await asyncio.to_thread(add_steps, free_patterns(plan.model), target, path.name)
     except SyntaxError as error:
-        ls.tell(f"{target}:{error.lineno or 1}: {error.msg}: mend the file first")
+        ls.tell(f"{target}:{error.lineno or 1}: {error.msg}: fix the file first")
         return []
     except (RobbddError, OSError, UnicodeDecodeError) as error:
         ls.tell(f"{target}: {reason(error)}")

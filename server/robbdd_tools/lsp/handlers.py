@@ -66,7 +66,7 @@ def _register_documents(server: RobbddServer) -> None:
         ls.trusted = able.get("trusted") is not False
         if not ls.trusted:
             distrust()
-        # What is registered by now is what the client will be told of.
+        # What is registered by now is announced to the client.
         if can_pull(params.capabilities):
             register_pull(ls)
 

@@ -71,8 +71,8 @@ class Protocol(LanguageServerProtocol):
             return super().structure_message(with_canonical_uris(data))
         except JsonRpcException as error:
             if "id" in data and "method" in data:
-                told = f"the parameters of {data['method']} are not as the protocol has them"
-                refusal = self._late() if self._shutdown else JsonRpcInvalidParams(told)
+                reason = f"the parameters of {data['method']} are not as the protocol has them"
+                refusal = self._late() if self._shutdown else JsonRpcInvalidParams(reason)
                 self._send_response(data["id"], error=refusal.to_response_error())
             _LOG.warning("%s cannot be read: %s", data.get("method", "a response"), error)
             return JsonRPCNotification(method="$/unreadable", jsonrpc=self.VERSION, params=None)

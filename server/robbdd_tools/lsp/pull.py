@@ -1,7 +1,7 @@
 """Diagnostics for clients that ask for them: of a document, and of the whole workspace.
 
-A client is told of these methods only if it can also be told to ask again (``workspace/diagnostic/refresh``), since
-the shapes' findings and results of runs come later than the text. All others get their diagnostics published.
+A client learns of these methods only if the server can also ask it to ask again (``workspace/diagnostic/refresh``),
+since the shapes' findings and results of runs come later than the text. All others get their diagnostics published.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def can_pull(client: types.ClientCapabilities) -> bool:
-    """Tell whether a client asks for diagnostics, and again when it is told to."""
+    """Tell whether a client asks for diagnostics, and again when the server wants it to."""
     asks = client.text_document is not None and client.text_document.diagnostic is not None
     return asks and is_refreshed(client, DIAGNOSTICS)
 
@@ -40,15 +40,15 @@ def register_pull(server: RobbddServer) -> None:
     ) -> types.WorkspaceDiagnosticReport:
         """Tell what the client does not know yet; when that is nothing, once there is something."""
         known = {entry.uri: entry.value for entry in params.previous_result_ids}
-        is_first, told = not known, False
+        is_first, published = not known, False
         while True:
             changes = _changes(ls.survey, known)
             if changes and params.partial_result_token is not None:
                 part = types.WorkspaceDiagnosticReportPartialResult(items=changes)
                 ls.protocol.notify(types.PROGRESS, types.ProgressParams(params.partial_result_token, part))
                 known |= {change.uri: change.result_id or "" for change in changes}
-                changes, told = [], True
-            if ls.survey.is_settled and (changes or told or is_first):
+                changes, published = [], True
+            if ls.survey.is_settled and (changes or published or is_first):
                 return types.WorkspaceDiagnosticReport(items=changes)
             await ls.survey.wait_for_news()
 

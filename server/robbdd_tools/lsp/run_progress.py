@@ -36,14 +36,14 @@ class RunProgress:
     def report(self, done: int, failed: int, total: int) -> None:
         """Tell how many scenarios are finished, and how many of these did not hold."""
         if self._is_shown:
-            told = f"{done}/{total} scenarios" + (f", {failed} not passed" if failed else "")
+            words = f"{done}/{total} scenarios" + (f", {failed} not passed" if failed else "")
             self._progress.report(
-                self._token, types.WorkDoneProgressReport(message=told, percentage=100 * done // total)
+                self._token, types.WorkDoneProgressReport(message=words, percentage=100 * done // total)
             )
 
-    def end(self, told: str) -> None:
+    def end(self, words: str) -> None:
         """Take the progress from the client's window, with a last word."""
         if self._is_shown:
-            self._progress.end(self._token, types.WorkDoneProgressEnd(message=told))
+            self._progress.end(self._token, types.WorkDoneProgressEnd(message=words))
         # pygls keeps the tokens for ever, and leaves the type of what belongs to them open.
         self._progress.tokens.pop(self._token, None)  # pyright: ignore[reportUnknownMemberType]

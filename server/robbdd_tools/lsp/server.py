@@ -104,7 +104,7 @@ class RobbddServer(LanguageServer):
         return lambda handler: register(self.requests.guarded(command_name, handler))
 
     def report_server_error(self, error: Exception, source: Any) -> None:
-        """Keep an error that no request waits for in the log; handlers have told theirs with its context."""
+        """Keep an error that no request waits for in the log; handlers have logged theirs with its context."""
         if not isinstance(error, JsonRpcException):
             _LOG.error("internal error (%s)", source, exc_info=error)
 

@@ -46,8 +46,8 @@ class ShapeFindings:
             return False
         diagnostics = answer.diagnostics
         if answer.error:
-            told = UNCHECKED.format(answer.error)
-            diagnostics = (Diagnostic(answer.uri, Span(0, 0), Severity.WARNING, "shapes-unchecked", told),)
+            message = UNCHECKED.format(answer.error)
+            diagnostics = (Diagnostic(answer.uri, Span(0, 0), Severity.WARNING, "shapes-unchecked", message),)
         self._found[answer.uri] = _Found(answer.revision, diagnostics, requested[answer.revision])
         self._requested[answer.uri] = {
             revision: texts for revision, texts in requested.items() if revision > answer.revision
@@ -78,7 +78,7 @@ def _in_place(found: _Found, uri: str, text: str) -> Iterator[Diagnostic]:
     for one in here:
         span = _moved(one.span, start, end, grown)
         if span is not None:
-            # Other places, and what would mend it, come again with the next answer.
+            # Other places, and what would fix it, come again with the next answer.
             yield replace(one, span=span, related=(), fixes=())
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 PAUSE = 1.0
 """Seconds after the last change until files are looked at."""
 GATHERING = 0.25
-"""Seconds in which findings are gathered before they are told."""
+"""Seconds in which findings are gathered before they are published."""
 AT_ONCE = 2
 """Files that are asked for ahead, so that the process never waits for us."""
 
@@ -42,8 +42,8 @@ class Findings:
     def of(cls, diagnostics: Iterable[types.Diagnostic]) -> Findings:
         """Give diagnostics their name."""
         found = tuple(diagnostics)
-        told = repr(found).encode("utf-8", "surrogatepass")
-        return cls(found, blake2b(told, digest_size=12).hexdigest())
+        text = repr(found).encode("utf-8", "surrogatepass")
+        return cls(found, blake2b(text, digest_size=12).hexdigest())
 
 
 class Survey:
@@ -104,7 +104,7 @@ class Survey:
                     parts.setdefault(uri, []).append(found)
         for uri, found in self._server.user_errors.elsewhere().items():
             parts.setdefault(uri, []).append(Findings.of(found))
-        return {uri: _together(told) for uri, told in sorted(parts.items())}
+        return {uri: _together(text) for uri, text in sorted(parts.items())}
 
     def _begin(self) -> None:
         self._timer = None
@@ -158,7 +158,7 @@ class Survey:
     def _converted(self, answer: Answer) -> dict[str, Findings]:
         convert, documents = self._server.convert, answer.documents
         found: dict[str, list[types.Diagnostic]] = {answer.uri: []}
-        # Remarks and hints are for whoever reads the file: elsewhere they would bury what has to be mended.
+        # Remarks and hints are for whoever reads the file: elsewhere they would bury what has to be fixed.
         for one in (one for one in answer.diagnostics if one.severity <= Severity.WARNING):
             found.setdefault(one.uri, []).append(convert.diagnostic(documents, one))
         return {uri: Findings.of(diagnostics) for uri, diagnostics in found.items()}

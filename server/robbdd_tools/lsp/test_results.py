@@ -85,7 +85,7 @@ def _kept_scenario(scenario: JudgedScenario, now: Digests) -> dict[str, Any]:
 
 
 def _read(uri: str) -> list[ImportedScenario] | str:
-    """Return what a results file holds, or why that cannot be told."""
+    """Return what a results file holds, or why that is not known."""
     path = uri_to_path(uri)
     text = Unreadable("file-missing", f"'{uri}' is no file") if path is None else read_text(path)
     if isinstance(text, Unreadable):

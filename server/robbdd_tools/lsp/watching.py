@@ -50,7 +50,7 @@ def register_watching(server: RobbddServer) -> None:
 
 
 async def watch_files(ls: RobbddServer) -> None:
-    """Ask to be told of changed files, where the client can be asked."""
+    """Subscribe to changes of files, where the client can be asked."""
     workspace = ls.client_capabilities.workspace
     watched = workspace.did_change_watched_files if workspace is not None else None
     if watched is None or not watched.dynamic_registration:

@@ -51,7 +51,7 @@ class Trace:
     ``watched`` everything that they touched is there. ``contacts`` are those contacts one by one. ``immovable`` are
     the elements that are not pushed when they are hit: fixed objects, and agents. ``outlines`` tells how far objects
     reach around their position. ``unreached``
-    says why the scenario, a part of a behaviour tree, was never begun, if so: nothing can be told of it then.
+    says why the scenario, a part of a behaviour tree, was never begun, if so: nothing is known of it then.
     ``contents`` maps a workspace to those that are composed into it, at any depth.
     """
 

@@ -1,4 +1,4 @@
-"""What sets and scenes consist of, told from their trees without building a graph."""
+"""What sets and scenes consist of, read from their trees without building a graph."""
 
 from __future__ import annotations
 

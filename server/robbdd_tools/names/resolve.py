@@ -47,8 +47,8 @@ class Resolution:
     """What the references of one declaration lead to; ``looked_up`` are all paths that the answer depends on.
 
     It stays the same object as long as no edit can have changed it. ``through_others`` when it also depends on what
-    other names stand for, which no path tells. That of a declaration in parts is put together from ``parts``, those of
-    its parts, which alone tell what they depend on.
+    other names stand for, which does not follow from the paths. That of a declaration in parts is put together from
+    ``parts``, those of its parts, which alone have what they depend on.
     """
 
     declaration: Declaration

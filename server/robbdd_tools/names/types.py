@@ -110,7 +110,7 @@ def columns_of(variation: tree.Table | tree.Product) -> Iterator[tuple[tree.Ref,
 
 
 def variable_type(snapshot: Snapshot, definition: Definition, *, from_values: bool = True) -> VariableType:
-    """Return what a variable stands for, told from its template and from the variants that are known of it.
+    """Return what a variable stands for, derived from its template and from the variants that are known of it.
 
     Without ``from_values`` only what the template says counts, which no value in a variant may break.
     """

@@ -1,4 +1,4 @@
-"""The manifest in a run folder: what the agent is told to execute.
+"""The manifest in a run folder: what the agent is to execute.
 
 Scenarios name their execution by its IRI and their behaviour tree by its name; these are beside them, each once.
 """

@@ -40,7 +40,7 @@ class ImportedScenario:
     """An execution: number ``variation`` of a variant; ``variant`` is its IRI, or its name alone from JUnit XML.
 
     ``model`` is the model file as it was named there (empty from JUnit XML), ``story`` the story's name; ``execution``
-    the name of that of a ``.bddx`` (empty without one); ``seconds`` is time on the clock where that is told.
+    the name of that of a ``.bddx`` (empty without one); ``seconds`` is wall time where that is known.
     """
 
     model: str

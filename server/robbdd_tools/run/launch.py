@@ -29,14 +29,14 @@ LONGEST = 1024 * 1024
 MOST_STRANGE = 20
 """Lines that are no messages of which a run shows the text, for each process."""
 PATIENCE = 0.2
-"""Seconds that agents have to end by themselves when they are told to stop."""
+"""Seconds that agents have to end by themselves when they are asked to stop."""
 _numbers = itertools.count(1)
 
 
 class Agent:
     """One agent process working on a run folder; ``number`` names its log.
 
-    ``module`` is what it runs, ``arguments`` what this is told beside the folder. Of what it prints, ``log_limit``
+    ``module`` is what it runs, ``arguments`` are its arguments after the folder. Of what it prints, ``log_limit``
     bytes are kept.
     """
 
@@ -149,7 +149,7 @@ def _lines(stream: BinaryIO) -> Iterator[str]:
 
 
 def stop(agents: Iterable[Agent]) -> None:
-    """Stop processes together, in good order where they heed it, within ``PATIENCE``."""
+    """Stop processes together, letting them end by themselves where they do, within ``PATIENCE``."""
     stopping = list(agents)
     for agent in stopping:
         agent.terminate()

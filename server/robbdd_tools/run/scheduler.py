@@ -92,8 +92,8 @@ class Scheduler:
     """Executes the scenarios of a prepared run folder.
 
     ``messages`` is to be consumed by one thread; ``cancel`` may be called from any thread and from a signal handler.
-    ``watch`` is told every message when it comes; those that ``messages`` yields are in the manifest's order, so that
-    they do not depend on how many processes there are. ``ending`` says why scenarios were left open.
+    ``watch`` is called with every message when it arrives; those that ``messages`` yields are in the manifest's order,
+    so that they do not depend on how many processes there are. ``ending`` says why scenarios were left open.
     ``indices`` are those of the scenarios to be executed, increasing; all when ``None``. Scenarios that share an
     execution go to one process, one after the other. ``execute`` executes single scenarios in any order instead; the
     processes stay until ``close``. ``first_agent`` is the number of the first process, which names its log.
@@ -226,7 +226,7 @@ class Scheduler:
         match message:
             case None:
                 self._workers.remove(worker)
-                yield from self._bury(worker)
+                yield from self._close_ended(worker)
             case RunStarted():
                 if not self._greeted:
                     self._greeted = True
@@ -298,7 +298,7 @@ class Scheduler:
             worker.following = deque(_before(index, worker.following))
         stop(worker.agent for worker in beyond)
 
-    def _bury(self, worker: AgentWorker) -> Iterator[RunMessage]:
+    def _close_ended(self, worker: AgentWorker) -> Iterator[RunMessage]:
         """Judge what a process left open when it ended, or have it done by another when it had not begun."""
         if worker.index is None:
             return

@@ -1,4 +1,4 @@
-"""What is told of stored runs and of one recorded execution: docs/schemas/runs.schema.json and trace.schema.json."""
+"""What is shown of stored runs and of one recorded execution: docs/schemas/runs.schema.json and trace.schema.json."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def summary(run: StoredRun) -> dict[str, Any]:
 
 
 def scenarios(run: StoredRun) -> Iterator[dict[str, Any]]:
-    """Yield what is told of each scenario of a run; raises ``NoSuchRun``."""
+    """Yield what a list of runs shows of each scenario of a run; raises ``NoSuchRun``."""
     results = run.results()
     finished = finished_in(results)
     for index, (spec, entry) in enumerate(zip(run.manifest().scenarios, results["scenarios"], strict=False)):

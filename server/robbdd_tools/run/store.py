@@ -138,7 +138,7 @@ class StoredRun:
         return read_results(self.database, self.number, self.manifest(), live=live)
 
     def manifest(self) -> Manifest:
-        """Return what the agent was told; raises ``NoSuchRun``."""
+        """Return what the agent was to execute; raises ``NoSuchRun``."""
         try:
             return read_manifest(self.folder)
         except (OSError, ValueError, KeyError, TypeError) as error:

@@ -88,7 +88,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True)
 class SyntaxFix:
-    """Text that mends a fault when it is written over ``span`` (empty: put in)."""
+    """Text that repairs a fault when it is written over ``span`` (empty: put in)."""
 
     span: Span
     text: str
@@ -110,7 +110,7 @@ class Declaration:
     Compared by identity: the cache gives the same object for the same text, and a keystroke asks for hundreds.
 
     A long story is read in ``parts``, which follow one another through its text: what stands before its scenarios,
-    each scenario (its tree a variant) and what stands behind them. What is told of a part stays, wherever an edit of
+    each scenario (its tree a variant) and what stands behind them. What is known of a part stays, wherever an edit of
     another one moves it. Any other declaration has none.
     """
 

@@ -96,6 +96,6 @@ def moved_ref(ref: Ref, by: int) -> Ref:
 
 
 def moved_fault(fault: SyntaxFault, by: int) -> SyntaxFault:
-    """Return a fault, with what mends it, at its place in a larger text."""
+    """Return a fault, with what repairs it, at its place in a larger text."""
     fix = None if fault.fix is None else SyntaxFix(fault.fix.span.shifted(by), fault.fix.text)
     return SyntaxFault(fault.span.shifted(by), fault.message, fix)

@@ -1,4 +1,4 @@
-"""Text to tree: parses one piece of text by its grammar, mended where it is broken."""
+"""Text to tree: parses one piece of text by its grammar, repaired where it is broken."""
 
 from __future__ import annotations
 
@@ -31,6 +31,6 @@ def read_piece(language: str, text: str) -> Piece:
     faults = tuple(fault_in(text, fault) for fault in recovered.faults)
     if recovered.parsed is None:
         return Piece(None, faults, None)
-    # What was put behind the end to mend it is no text of the user's.
-    mended = recovered.text[: len(text)]
-    return Piece(convert(recovered.parsed.declaration, mended), faults, recovered.parsed.trailing)
+    # What was put behind the end to repair it is no text of the user's.
+    repaired = recovered.text[: len(text)]
+    return Piece(convert(recovered.parsed.declaration, repaired), faults, recovered.parsed.trailing)

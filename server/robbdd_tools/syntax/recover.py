@@ -1,7 +1,7 @@
-"""Finds all syntax errors of a chunk, and a tree of what is sound in it, by mending its text until it parses.
+"""Finds all syntax errors of a chunk, and a tree of what is sound in it, by repairing its text until it parses.
 
 Each repair keeps the length of the text: a sign is put in the place of white space, a misspelt keyword is overwritten
-into the white space behind it, and what cannot be mended is blanked. So every span of the tree is a span of the
+into the white space behind it, and what cannot be repaired is blanked. So every span of the tree is a span of the
 user's text. A repair counts when the parser then gets beyond the place of the error; the smallest that lets the
 whole chunk pass is taken, else the one with which the parser comes furthest.
 """
@@ -32,19 +32,19 @@ _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """A mended text of the same length; ``span`` is what was changed.
+    """A repaired text of the same length; ``span`` is what was changed.
 
     ``text`` is what the user may write there instead, ``None`` where text was blanked.
     """
 
-    mended: str
+    repaired: str
     span: Span
     text: str | None
 
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """An error: where the parser stopped and what it expected, with the text that mends it where that is plain."""
+    """An error: where the parser stopped and what it expected, with the text that repairs it where that is plain."""
 
     rejected: Rejected
     repair: Repair | None
@@ -52,7 +52,7 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """All errors found, and what remains: the mended text with its parse, ``None`` where nothing helped."""
+    """All errors found, and what remains: the repaired text with its parse, ``None`` where nothing helped."""
 
     faults: tuple[Fault, ...]
     text: str
@@ -60,27 +60,27 @@ class Recovered:
 
 
 def recover(language: str, text: str, first: Rejected) -> Recovered:
-    """Mend a chunk that was rejected; user text never raises."""
+    """Repair a chunk that was rejected; user text never raises."""
     faults: list[Fault] = []
-    mended, result, left, shadow = text, first, MOST_PARSES, -1
+    repaired, result, left, shadow = text, first, MOST_PARSES, -1
     while len(faults) < MOST_FAULTS:
         # An error where an earlier repair already changed the text is that error still, or a consequence of it.
         if result.offset > shadow:
             faults.append(Fault(result, None))
-            shadow = _word(mended, result.offset).end
-        step = _best(language, mended, result, left)
+            shadow = _word(repaired, result.offset).end
+        step = _best(language, repaired, result, left)
         if step is None:
             break
         left -= step.parses
         if step.repair.text is not None and faults[-1].rejected is result:
             faults[-1] = Fault(result, step.repair)
         if isinstance(step.result, Parsed):
-            return Recovered(tuple(faults), step.repair.mended, step.result)
-        mended, result = step.repair.mended, step.result
+            return Recovered(tuple(faults), step.repair.repaired, step.result)
+        repaired, result = step.repair.repaired, step.result
         if step.repair.text is None:
-            behind = len(mended) - len(mended[step.repair.span.end :].lstrip())
+            behind = len(repaired) - len(repaired[step.repair.span.end :].lstrip())
             shadow = max(shadow, behind)
-    return Recovered(tuple(faults), mended, None)
+    return Recovered(tuple(faults), repaired, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +98,8 @@ def _best(language: str, text: str, stopped: Rejected, most: int) -> _Step | Non
     own = _word(text, stopped.offset).end
     next_word = _word(text, own + len(text[own:]) - len(text[own:].lstrip())).end
     for parses, repair in enumerate(islice(_repairs(text, stopped), most), start=1):
-        found = _parse(language, repair.mended)
-        # Mended text beats blanked text, however far the parser runs on from a misreading of what is left. A sign
+        found = _parse(language, repair.repaired)
+        # Repaired text beats blanked text, however far the parser runs on from a misreading of what is left. A sign
         # has to show more than a keyword: it may fit by chance.
         enough = next_word if repair.span.start == repair.span.end else own
         if isinstance(found, Parsed) or (repair.text is not None and found.offset > enough):
@@ -112,7 +112,7 @@ def _best(language: str, text: str, stopped: Rejected, most: int) -> _Step | Non
 
 
 def _parse(language: str, text: str) -> Parsed | Rejected:
-    """Parse a mended chunk; text behind its end is an error like any other, or a bracket too many would mend all."""
+    """Parse a repaired chunk; text behind its end is an error, or a bracket too many would repair all."""
     found = parse_chunk(language, text)
     if isinstance(found, Parsed) and found.trailing is not None:
         return Rejected(found.trailing, Expectation(frozenset(), frozenset()))
@@ -170,7 +170,7 @@ def _hole(text: str, offset: int) -> Iterator[Repair]:
     place = _behind_words(text, offset)
     if not _continues(text, place - 1) and not (text[place:] and _continues(text, place + 1)):
         for repair in _insertion(text, offset, HOLE):
-            yield Repair(repair.mended, repair.span, None)
+            yield Repair(repair.repaired, repair.span, None)
 
 
 def _spelling(text: str, found: Span, keyword: str) -> Iterator[Repair]:

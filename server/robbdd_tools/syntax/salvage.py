@@ -101,7 +101,7 @@ def salvage_scenario(text: str, story: str, namespace: str | None) -> tuple[Symb
 
 
 def with_lost(declared: tuple[Symbol, ...], salvaged: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
-    """Add to the names of a mended text those of its blanked parts: their users are not at fault."""
+    """Add to the names of a repaired text those of its blanked parts: their users are not at fault."""
     paths = {symbol.path for symbol in declared}
     lost = (symbol for symbol in salvaged if symbol.path not in paths)
     known = (symbol for symbol in declared if HOLE not in symbol.path)

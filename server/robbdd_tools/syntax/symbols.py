@@ -156,7 +156,7 @@ def references(root: tree.Node, scopes: tuple[str, ...] = ()) -> tuple[Reference
     """Return every use of a name in a declaration, or in a part of one inside ``scopes``, in the order of the text."""
     found: list[Reference] = []
     _collect(root, scopes, found)
-    # An event from which a duration was told stands in the tree twice, but once in the text.
+    # An event from which a duration was derived stands in the tree twice, but once in the text.
     every = (reference for reference in dict.fromkeys(found) if reference.ref.path != HOLE)
     return tuple(sorted(every, key=lambda reference: reference.ref.span))
 

@@ -20,7 +20,7 @@ _KINDS = {"obj": "object", "ws": "workspace", "agn": "agent"}
 
 
 def convert(raw: RawNode, text: str) -> Any:
-    """Return the tree node of a parser's object made from ``text``, which may have been mended by signs behind it."""
+    """Return the tree node of a parser's object made from ``text``, which may have been repaired by signs behind it."""
     checkpoint()
     rule = type(raw).__name__
     span = Span(min(raw._tx_position, len(text)), min(raw._tx_position_end, len(text)))

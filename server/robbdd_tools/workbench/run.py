@@ -92,7 +92,7 @@ class Run(Recorded):
 
     @property
     def manifest(self) -> Manifest:
-        """What the agents are told."""
+        """What the agents are to execute."""
         return self._manifest
 
     def listen(self, listener: Listener) -> None:

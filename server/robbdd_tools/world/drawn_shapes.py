@@ -25,7 +25,7 @@ GRIDS = (96, 64, 48, 32, 24, 16, 8, 4)
 DIGITS = 5
 """Decimals of lengths and turns: hundredths of a millimetre."""
 UNPAINTED = (0.5, 0.5, 0.5, 1.0)
-"""The engine's default colour, which gives way to that of a material."""
+"""The engine's default colour, which that of a material replaces."""
 KINDS = {
     "mjGEOM_PLANE": "plane",
     "mjGEOM_SPHERE": "sphere",

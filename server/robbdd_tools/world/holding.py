@@ -1,4 +1,4 @@
-"""What each agent's gripper holds, told from contacts alone."""
+"""What each agent's gripper holds, found from contacts alone."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
     Raises ``SceneError`` when the scene asks for a place that does not exist or for more than there is room for.
     """
     poses: dict[str, Pose] = {}
-    # What can be grasped may be told where to lie by a configuration as well, which goes first.
+    # What can be grasped may be placed by a configuration as well, which takes precedence.
     fixed = {name: cast.pose(name) for name in cast.objects if name not in cast.ranges}
     placed = {name: pose for name, pose in fixed.items() if pose is not None}
     poses |= {name: pose for name, pose in placed.items() if not cast.objects[name].graspable}

@@ -28,7 +28,7 @@ AT_REST = 2e-3
 REST_TICKS = 6
 """Ticks in a row that everything must be at rest."""
 SETTLE_TICKS = 190
-"""Ticks (about three seconds) after which a world counts as settled, come what may."""
+"""Ticks (about three seconds) after which a world counts as settled in any case."""
 
 
 class Simulation:

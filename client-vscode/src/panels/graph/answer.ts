@@ -45,7 +45,7 @@ export function isGraphPicture(value: unknown): value is GraphPicture {
   );
 }
 
-/** What a reader is told about a picture that does not show the whole model as it is now; empty when it does. */
+/** What a reader learns about a picture that does not show the whole model as it is now; empty when it does. */
 export function remark({ svg, problem, shown, total, root }: GraphPicture): string {
   if (problem !== null) {
     const made = svg === "" ? "There is nothing to draw yet" : "This picture was made before";

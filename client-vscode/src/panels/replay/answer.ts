@@ -59,7 +59,7 @@ export interface Clause {
   readonly reason: string;
   readonly vacuous: string;
   readonly source: Location | null;
-  /** Whether the model states it no more; null (or nothing, from older servers) where that cannot be told. */
+  /** Whether the model states it no more; null (or nothing, from older servers) where that is not known. */
   readonly stale?: boolean | null;
   readonly parts: readonly Part[];
   /** Index of the part that decides the clause. */

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def context_for(prefixes: Mapping[str, str]) -> Json:
-    """Return our context with all prefixes of a graph; its terms give way to a prefix of the same name."""
+    """Return our context with all prefixes of a graph; a prefix of the same name replaces a term of it."""
     names = {namespace: prefix for prefix, namespace in prefixes.items()}
     renamed = {name: names[namespace] for name, namespace in PREFIXES.items()}
     terms = {

@@ -1,4 +1,4 @@
-"""What each variable stands for, told from the clauses that use it."""
+"""What each variable stands for, derived from the clauses that use it."""
 
 from __future__ import annotations
 

@@ -122,10 +122,10 @@ class Validation:
         found: dict[Key, list[Diagnostic]] = {entry.key: [] for entry in entries}
 
         def take(authors: Iterable[Key], diagnostics: Iterable[Diagnostic]) -> None:
-            told = list(diagnostics)
+            diagnosed = list(diagnostics)
             for author in authors:
                 if author in found:
-                    found[author] += told
+                    found[author] += diagnosed
 
         for result in results(shacl_report(writer.derived.graph, load_shapes())):
             take(writer.authors(result.focus), writer.diagnostics(result))

@@ -75,6 +75,6 @@ def _culprits(writer: FindingWriter, files: list[ShapeFile]) -> list[Diagnostic]
 
 
 def _faults(built: BuiltGraph, found: list[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield what is wrong with a graph file; that a variant is left out goes without saying where the cause is told."""
+    """Yield what is wrong with a graph file; a variant that is left out is not reported beside its cause."""
     has_error = any(diagnostic.severity is Severity.ERROR for diagnostic in found)
     return (fault for fault in built.faults if not (has_error and fault.code == "incomplete-variant"))

@@ -44,9 +44,9 @@ class StoryText:
                 self.left_out[node] = str(error)
         if not variants:
             raise Incomplete("it has no scenario that can be written")
-        told = [records.text(story, f"rbw:{part}") for part in ("role", "feature", "benefit")]
-        role, feature, benefit = map(quoted, told)
-        head = f"As A {role}\nI Want {feature}\nSo That {benefit}\n\n" if any(told) else ""
+        texts = [records.text(story, f"rbw:{part}") for part in ("role", "feature", "benefit")]
+        role, feature, benefit = map(quoted, texts)
+        head = f"As A {role}\nI Want {feature}\nSo That {benefit}\n\n" if any(texts) else ""
         inner = indented(f"{head}Scenarios:\n{indented((chr(10) * 2).join(variants))}")
         return f"User Story (ns={names.prefix(namespace)}) {name} {{\n{inner}\n}}"
 

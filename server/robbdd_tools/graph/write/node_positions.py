@@ -1,4 +1,4 @@
-"""Where the nodes of a graph stand in its text, told from the words alone: neither parser keeps positions."""
+"""Where the nodes of a graph stand in its text, found from the words alone: neither parser keeps positions."""
 
 from __future__ import annotations
 
