@@ -28,7 +28,8 @@ class TreeRun:
     """A behaviour tree in execution.
 
     ``stamp`` is called with ``<node> start`` and ``<node> end`` (the node has succeeded) when they happen; ``active``
-    are the nodes, by IRI, whose behaviour is at work, innermost first. Raises ``SceneError`` when the tree cannot be made.
+    are the nodes, by IRI, whose behaviour is at work, innermost first. Raises ``SceneError`` when the tree cannot be
+    made.
     """
 
     def __init__(self, spec: TreeSpec, attempt: Attempt, stamp: Callable[[str], None]) -> None:
