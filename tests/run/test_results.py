@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import pytest
 
 from kit import schema_errors
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.commands.progress import Display
 from robbdd_tools.monitor.contact import Contact
+from robbdd_tools.monitor.time import After
 from robbdd_tools.monitor.verdict import Outcome
+from robbdd_tools.protocol.clauses import Fluent, Junction
 from robbdd_tools.protocol.messages import ClauseJudged, RunFinished, ScenarioFinished
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec, SceneSpec
 from robbdd_tools.run.report import margin, plain_sentence, values_words, verdict_words
@@ -136,3 +139,14 @@ def test_a_verdict_says_when_and_why() -> None:
 
 def test_values_are_shown_by_their_short_names() -> None:
     assert values_words(SPEC) == "x = a, s = {a, 2}"
+
+
+def test_of_several_fluents_the_one_that_decides_is_named() -> None:
+    located = load_catalog().predicates["located-at"]
+    left, right = (Fluent(located, {"object": "t:a", "workspace": f"t:{place}"}, After("t:e")) for place in ("l", "r"))
+    several = ClauseSpec(5, "t:c", "c", "then", "…", Junction("or", (left, right)))
+    judged = ClauseJudged(0, 5, "holds", 0.031, "m", 2.0, "", operand=1)
+    assert verdict_words(judged, several) == "✔ +31 mm (decided by: a is located at r after e)"
+    assert verdict_words(judged, replace(several, statement=left)) == "✔ +31 mm"
+    # The sentence was edited since.
+    assert verdict_words(replace(judged, operand=2), several) == "✔ +31 mm"

@@ -131,7 +131,8 @@ def _clause(data: Mapping[str, Any]) -> Clause:
             return Junction(operator, tuple(map(_clause, operands)))
         case {"predicate": str(name), "arguments": arguments, "time": time}:
             found = _time(time)
-            assert found is not None
+            if found is None:
+                raise ValueError(f"{data!r} has no time constraint")
             iri, named = data.get("iri", ""), data.get("named", {})
             return Fluent(load_catalog().predicates[name], _arguments(arguments), found, iri, named)
         case {"text": str(words)}:

@@ -45,8 +45,10 @@ def deciding_words(clause: ClauseSpec, judged: ClauseJudged) -> str:
     statement = clause.statement
     if judged.operand is None or not isinstance(statement, Junction):
         return ""
+    # A person may have edited the sentence that was judged.
     fluents = list(fluents_of(statement))
-    return f"decided by: {plain_sentence(sentence(fluents[judged.operand]))}" if len(fluents) > 1 else ""
+    known = 1 < len(fluents) > judged.operand
+    return f"decided by: {plain_sentence(sentence(fluents[judged.operand]))}" if known else ""
 
 
 def verdict_words(judged: ClauseJudged, clause: ClauseSpec | None = None) -> str:
