@@ -21,6 +21,7 @@ from robbdd_tools.base.processes import Ending
 from robbdd_tools.cli import main
 from robbdd_tools.commands import doctor, installation, selftest
 from robbdd_tools.commands.doctor import Part, State, examine
+from robbdd_tools.run.database import MIGRATIONS
 from robbdd_tools.run.store import FOLDER, RunStore
 
 DOCTOR = [sys.executable, "-m", "robbdd_tools.cli", "doctor"]
@@ -186,7 +187,9 @@ def database(tmp_path: Path) -> Path:
     store.begin().discard()
     with closing(sqlite3.connect(store.database)) as connection:
         connection.executemany(
-            "INSERT INTO execution VALUES (?, 2, ?, '', '', '', 0, 1, 1, 'holds', 1, 0, 1, 1, '', '')",
+            """INSERT INTO execution (id, run, idx, key, story, variant, variation, repetition, seed, verdict,
+                simulated, resampled, wall, stepping, host, ended)
+            VALUES (?, 2, ?, '', '', '', 0, 1, 1, 'holds', 1, 0, 1, 1, '', '')""",
             [(number, number) for number in range(1, 10)],
         )
         connection.commit()
@@ -202,7 +205,9 @@ def test_the_database_of_results_is_checked_and_left_as_it_is(database: Path, tm
     before = database.read_bytes()
     part = stored(tmp_path)
     assert (part.state, part.fix) == (State.WORKS, "")
-    assert part.detail.endswith("0 runs, writable; results.sqlite: schema 1, integrity checked, writable")
+    assert part.detail.endswith(
+        f"0 runs, writable; results.sqlite: schema {len(MIGRATIONS)}, integrity checked, writable"
+    )
     assert database.read_bytes() == before
 
 
@@ -225,7 +230,10 @@ def test_a_database_of_a_newer_version_or_of_something_else_is_reported(database
     with closing(sqlite3.connect(database)) as connection:
         connection.execute("PRAGMA user_version = 999")
     part = stored(tmp_path)
-    assert (part.state, "(schema 999; this one knows 1): update RobBDD" in part.detail) == (State.FAILED, True)
+    assert (part.state, f"(schema 999; this one knows {len(MIGRATIONS)}): update RobBDD" in part.detail) == (
+        State.FAILED,
+        True,
+    )
     database.unlink()
     database.mkdir()
     assert stored(tmp_path).state is State.FAILED

@@ -25,6 +25,7 @@ DISPLAY = """
 import sys
 from robbdd_tools.commands.progress import Display
 from robbdd_tools.protocol.messages import *
+from robbdd_tools.protocol.specs import *
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.monitor.verdict import Outcome
 text = sys.argv[1]
