@@ -1,5 +1,6 @@
 """Messages and manifests survive the way to the other process."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -102,3 +103,19 @@ def test_a_manifest_comes_back_equal(tmp_path: Path) -> None:
     manifest = Manifest("m.bdd", 1, (scenario,), False, {"features/steps/own.py": "/own.py"})
     write_manifest(tmp_path, manifest)
     assert read_manifest(tmp_path) == manifest
+
+
+def test_a_manifest_of_an_earlier_version_is_read(tmp_path: Path) -> None:
+    clause = ClauseSpec(
+        9, "https://x/g", "g", "then", '( a after event "e:e" or b after event "e:e" )', None, ("a", "b")
+    )
+    scenario = ScenarioSpec("s.feature", 6, "n", "s", "v", 1, {}, 7, SceneSpec(), {}, (clause,))
+    write_manifest(tmp_path, Manifest("m.bdd", 1, (scenario,)))
+    path = tmp_path / "manifest.json"
+    data = json.loads(path.read_text(encoding="utf-8"))
+    (entry,) = data["scenarios"][0]["clauses"]
+    # It wrote the values for users' code beside the sentence, and nothing of what the sentence states.
+    del entry["statement"]
+    entry["arguments"] = [{}]
+    path.write_text(json.dumps(data), encoding="utf-8")
+    assert read_manifest(tmp_path).scenarios == (scenario,)

@@ -88,7 +88,7 @@ class StepWriter:
 
 
 def sentence(statement: stated.Statement, *, within: bool = False) -> str:
-    """Return the sentence of a statement; ``within`` tells that it is a part of a group."""
+    """Return the sentence of a statement; ``within``: it is a part of a group."""
     match statement:
         case stated.Fluent(predicate, arguments, time):
             return f"{filled(predicate.sentence, arguments)} {_time_words(time)}"

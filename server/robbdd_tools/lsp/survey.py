@@ -158,7 +158,7 @@ class Survey:
     def _converted(self, answer: Answer) -> dict[str, Findings]:
         convert, documents = self._server.convert, answer.documents
         found: dict[str, list[types.Diagnostic]] = {answer.uri: []}
-        # Remarks and hints are for whoever reads the file: elsewhere they would bury what has to be fixed.
+        # Remarks and hints are for whoever reads the file: elsewhere they would hide what has to be fixed.
         for one in (one for one in answer.diagnostics if one.severity <= Severity.WARNING):
             found.setdefault(one.uri, []).append(convert.diagnostic(documents, one))
         return {uri: Findings.of(diagnostics) for uri, diagnostics in found.items()}

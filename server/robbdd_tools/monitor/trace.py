@@ -43,13 +43,13 @@ class Trace:
     ``names`` are the recorded bodies (objects by name, an agent's tool by the agent's name);
     ``times`` (n,) s, increasing; ``positions`` (n, len(names), 3) m in the world frame; ``orientations``
     (n, len(names), 4) unit quaternions (w, x, y, z); ``grips`` maps an agent to an (n, len(names)) array with 1
-    where its gripping faces hold that body. ``finished`` tells that nothing will be appended; ``remark`` is the
+    where its gripping faces hold that body. ``finished``: nothing will be appended; ``remark`` is the
     execution's own last word on what went wrong ("gripper lost env:cube1 at 3.42 s"). ``reaches`` maps agent and
     object to reach margins (n,) rad, not a number where none was sampled; ``settings`` maps an element and the name
     of a configuration to its value. ``forces`` maps an agent and what it touched to the largest contact force (N) in
     any physics step since the sample before (n,), ``impulses`` to the impulse (N s) since then; of the agents
     ``watched`` everything that they touched is there. ``contacts`` are those contacts one by one. ``immovable`` are
-    the elements that are not pushed when they are hit: fixed objects, and agents. ``outlines`` tells how far objects
+    the elements that are not pushed when they are hit: fixed objects, and agents. ``outlines`` is how far objects
     reach around their position. ``unreached``
     says why the scenario, a part of a behaviour tree, was never begun, if so: nothing is known of it then.
     ``contents`` maps a workspace to those that are composed into it, at any depth.

@@ -69,7 +69,7 @@ class Verdict:
     ``robustness`` is the signed margin in ``unit`` (positive: holds), ``None`` when unknown. ``at`` (s) is the
     instant of violation (the first sample with a negative margin), of the worst margin when it holds, ``None``
     when unknown; ``worst_at`` (s) is that of the worst margin in any case. ``reason`` says in words why it is
-    violated or unknown, ``cause`` tells an unknown one from others without words; ``vacuous`` why it could not have
+    violated or unknown, ``cause`` is the type of the reason of an unknown one; ``vacuous`` why it could not have
     been violated, nothing where it could. ``fault`` is the error in users' code that kept the evidence away.
     ``operand`` is the number (from 0, in the order of the sentence) of the fluent that decides the clause.
     """

@@ -89,7 +89,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
     # contacts is a JSON list of what agents touched that no clause names.
     ("ALTER TABLE execution ADD COLUMN contacts TEXT NOT NULL DEFAULT '[]'",),
     (
-        # cause tells unknown verdicts apart; operand is the number of the fluent that decides the clause.
+        # cause is the type of an unknown verdict's reason; operand is the number of the fluent that decides the clause.
         "ALTER TABLE clause ADD COLUMN cause TEXT NOT NULL DEFAULT ''",
         "ALTER TABLE clause ADD COLUMN operand INTEGER",
     ),

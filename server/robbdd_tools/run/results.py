@@ -35,7 +35,7 @@ class ScenarioResult:
 class RunResults:
     """Everything known of a run; ``apply`` takes the messages in the order in which they come.
 
-    ``ending`` says why scenarios were left open, ``cause`` tells the reasons apart.
+    ``ending`` says why scenarios were left open, ``cause`` is the type of the reason.
     """
 
     manifest: Manifest

@@ -16,7 +16,7 @@ class ClauseResult:
     ``role`` is ``given``, ``when`` or ``then``. ``margin`` is the robustness in ``unit`` (SI; positive: holds),
     ``None`` without a measurable margin or when unknown. ``at`` (s, simulated) is the instant of the violation,
     ``worst_at`` that of the smallest margin. ``reason`` says why it is violated or unknown, ``vacuous`` why it could
-    not have been violated. ``cause`` tells unknown verdicts apart without words. ``operand`` is the number (from 0, in
+    not have been violated. ``cause`` is the type of an unknown verdict's reason. ``operand`` is the number (from 0, in
     the order of the sentence) of the fluent that decides it.
     """
 
