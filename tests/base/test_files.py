@@ -133,7 +133,7 @@ def test_a_file_that_grows_while_it_is_read_ends_at_the_limit(tmp_path: Path, mo
 def test_a_nul_in_a_path_is_said() -> None:
     found = read_text(Path("/models/a\0b.bdd"))
     assert isinstance(found, Unreadable)
-    assert "'/models/a\\x00b.bdd' is no path" in found.reason
+    assert "'/models/a\\x00b.bdd' is not a path" in found.reason
     assert file_state("file:///models/a%00b.bdd") is None
 
 

@@ -31,10 +31,10 @@ def test_the_editors_setting_counts_until_it_is_gone() -> None:
     ("stated", "words"),
     [
         ({"model": 1}, "has no limit 'model'; there are model-size"),
-        ({"model-size": "1"}, "is a positive whole number of bytes"),
-        ({"model-size": True}, "is a positive whole number of bytes"),
-        ({"scanned-depth": 0}, "is a positive whole number of levels of folders"),
-        ([], "is an object"),
+        ({"model-size": "1"}, "must be a positive whole number of bytes"),
+        ({"model-size": True}, "must be a positive whole number of bytes"),
+        ({"scanned-depth": 0}, "must be a positive whole number of levels of folders"),
+        ([], "must be an object"),
     ],
 )
 def test_a_wrong_setting_is_explained_and_changes_nothing(stated: object, words: str) -> None:

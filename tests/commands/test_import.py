@@ -36,7 +36,7 @@ def test_nothing_is_overwritten_unasked(folder: Path) -> None:
     (folder / "model.scene").write_text("mine", encoding="utf-8")
     done = robbdd("import", "m.ttl", "-o", "model.bdd", folder=folder)
     assert done.returncode == 2
-    assert "model.scene is there already; --force replaces it" in done.stderr
+    assert "model.scene exists already; --force replaces it" in done.stderr
     assert (folder / "model.scene").read_text(encoding="utf-8") == "mine"
     assert robbdd("import", "m.ttl", "-o", "model.bdd", "--force", folder=folder).returncode == 0
 

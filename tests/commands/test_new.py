@@ -34,7 +34,7 @@ def test_a_new_project_is_sound_and_has_its_own_namespace(
 def test_a_folder_that_holds_something_is_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
     assert main(["new", str(tmp_path)]) == 2
-    assert capsys.readouterr().err == f"robbdd: {tmp_path} is there already; name a new or an empty folder\n"
+    assert capsys.readouterr().err == f"robbdd: {tmp_path} exists already; name a new or an empty folder\n"
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
 
 

@@ -25,4 +25,4 @@ async def test_a_project_begins_from_a_template(editor: Editor, tmp_path: Path) 
 
     again = await ask(editor, "robbdd/newProject", template=template["name"], uri=path_to_uri(folder))
     assert list(again.models) == []
-    assert "is there already" in again.problem
+    assert "exists already" in again.problem

@@ -1,1 +1,1 @@
-"""Documents, ranges, diagnostics and data files: what every layer shares and nothing more."""
+"""Types and helpers that every layer shares: documents, ranges, diagnostics, data files."""

@@ -1,4 +1,4 @@
-"""Lets long work be interrupted where nothing is half done, without knowing who interrupts it or why."""
+"""Checkpoints: points in long work where it can be interrupted safely."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from threading import local
 
 
 class Abandoned(Exception):
-    """Nobody waits for this work any more."""
+    """The result of this work is no longer needed."""
 
 
 class _Watch(local):
@@ -19,14 +19,14 @@ _watch = _Watch()
 
 
 def checkpoint() -> None:
-    """Tell whoever watches this thread that it may interrupt; raises what it raises, such as ``Abandoned``."""
+    """Allow an interruption here; raises the watcher's exception, such as ``Abandoned``."""
     if _watch.look is not None:
         _watch.look()
 
 
 @contextmanager
 def watched(look: Callable[[], None]) -> Generator[None]:
-    """Call ``look`` at each checkpoint of this thread for a while."""
+    """Call ``look`` at each checkpoint of this thread inside the ``with`` block."""
     before, _watch.look = _watch.look, look
     try:
         yield

@@ -1,4 +1,4 @@
-"""Finds the data files (grammars, metamodels, examples) in a checkout and in an installed wheel alike."""
+"""Find data files (grammars, metamodels, examples) in a checkout or an installed wheel."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Ends the processes that code of users leaves behind, daemons in sessions of their own included.
+"""End all processes that users' code leaves running, including daemons in sessions of their own.
 
-On Linux they are found in ``/proc``: as descendants of the agent, which adopts orphans, and once that has ended by the
-mark in the environment that they inherited from it. Elsewhere only the members of its group are found, see
-``processes.end_group``.
+On Linux they are found in ``/proc``: while the agent runs, as its descendants (it adopts orphans); afterwards, by the
+mark that they inherited in their environment. On other systems only the members of the agent's process group are found,
+see ``processes.end_group``.
 """
 
 from __future__ import annotations
@@ -16,27 +16,27 @@ from contextlib import suppress
 from pathlib import Path
 
 MARK = "ROBBDD_AGENT"
-"""Environment variable whose value is different for each agent."""
+"""Environment variable with a different value for each agent."""
 PROCESSES = Path("/proc")
 _SET_CHILD_SUBREAPER = 36
 """``PR_SET_CHILD_SUBREAPER`` of ``linux/prctl.h``."""
 _ROUNDS = 100
-"""Searches for processes that begin while others are ended, until they are left alone."""
+"""Maximum number of searches, since processes may start while others are ended."""
 
 
 def adopt_orphans() -> None:
-    """Become the parent of all descendants whose own parent ends, so that ``end_descendants`` finds them."""
+    """Become the parent of all orphaned descendants, so that ``end_descendants`` finds them."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
 
 def end_descendants() -> None:
-    """End the processes below this one at once."""
+    """Kill all descendants of this process."""
     _end_all(lambda: _below(os.getpid()))
 
 
 def end_marked(mark: str) -> None:
-    """End the processes that inherited a value of ``MARK`` at once."""
+    """Kill all processes whose environment has this value of ``MARK``."""
     entry = f"{MARK}={mark}".encode()
     _end_all(lambda: (pid for pid in _pids() if pid != os.getpid() and entry in _environment(pid)))
 
@@ -52,7 +52,7 @@ def _end_all(find: Callable[[], Iterable[int]]) -> None:
             with suppress(OSError):
                 os.kill(pid, signal.SIGKILL)
         for pid in found:
-            # An own child, adopted ones included, stays as a zombie until someone asks for its end.
+            # A child, adopted ones included, stays a zombie until its parent waits for it.
             with suppress(OSError):
                 os.waitpid(pid, 0)
 
@@ -69,15 +69,15 @@ def _below(root: int) -> Iterator[int]:
 
 
 def _pids() -> Iterator[int]:
-    """Yield the numbers of running processes; none where the system does not list them as files."""
+    """Yield the IDs of running processes; none on systems without ``/proc``."""
     with suppress(OSError):
         yield from (int(entry.name) for entry in PROCESSES.iterdir() if entry.name.isdecimal())
 
 
 def _parent(pid: int) -> int:
-    """Return the number of a process's parent; 0 for one that has ended."""
+    """Return the parent ID of a process; 0 if the process has ended."""
     try:
-        # The name, in parentheses, may hold anything.
+        # The process name, in parentheses, may contain any character.
         state, parent = (PROCESSES / str(pid) / "stat").read_bytes().rpartition(b")")[2].split()[:2]
     except (OSError, ValueError):
         return 0

@@ -1,4 +1,4 @@
-"""Diagnostics and the certain fixes that may come with them."""
+"""Diagnostics and their fixes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robbdd_tools.base.document import Span
 
 
 class Severity(IntEnum):
-    """How bad it is; the order is that of the Language Server Protocol."""
+    """Severity of a diagnostic, ordered as in the Language Server Protocol."""
 
     ERROR = 1
     WARNING = 2
@@ -37,7 +37,7 @@ class Edit:
 
 @dataclass(frozen=True, slots=True)
 class NewFile:
-    """A file that a change makes, with all its text."""
+    """A file that a change creates, with its whole text."""
 
     uri: str
     text: str
@@ -45,7 +45,7 @@ class NewFile:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A change that is known to fix a diagnostic, with the file that it makes, if any."""
+    """A change that is known to fix a diagnostic, and the file that it creates, if any."""
 
     title: str
     edits: tuple[Edit, ...]

@@ -19,7 +19,7 @@ class Span:
         return Span(self.start + offset, self.end + offset)
 
     def contains(self, offset: int) -> bool:
-        """Tell whether ``offset`` lies inside or at either end (a cursor behind a name is on it)."""
+        """Return whether ``offset`` lies inside or at either end (a cursor just after a name is on the name)."""
         return self.start <= offset <= self.end
 
 
@@ -63,7 +63,7 @@ class Document:
         return Position(line, offset - self.line_starts[line])
 
     def offset(self, position: Position) -> int:
-        """Convert a position to an offset; beyond a line's or the text's end it is clamped there."""
+        """Convert a position to an offset, clamped to the line and the text."""
         if position.line >= len(self.line_starts):
             return len(self.text)
         return self.line_starts[position.line] + min(position.column, len(self.line_text(position.line)))
@@ -82,7 +82,7 @@ def edited_part(old: str, new: str) -> tuple[int, int]:
 
 
 def _common(one: str, other: str) -> int:
-    """Return the length of the longest common prefix, by comparing ever finer slices."""
+    """Return the length of the longest common prefix, by bisection."""
     low, high = 0, min(len(one), len(other))
     while low < high:
         middle = (low + high + 1) // 2

@@ -5,10 +5,10 @@ from __future__ import annotations
 RESERVED = frozenset(
     ("con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in "0123456789¹²³"))
 )
-"""Names of devices, which Windows gives to no file, whatever its ending."""
+"""Device names, which Windows does not allow for files, whatever their extension."""
 
 
 def safe_stem(name: str) -> str:
-    """Return a name without what a file system refuses or treats in its own way, as a file's name without ending."""
+    """Return a name as a file stem, without characters and names that some file system refuses."""
     stem = "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in name).strip(".") or "_"
     return f"_{stem}" if stem.partition(".")[0].casefold() in RESERVED else stem

@@ -1,7 +1,7 @@
-"""Reads files: regular ones only, never more than a limit. All other modules read through these functions.
+"""Read regular files, up to a size limit. All other modules read through these functions.
 
-Each file is checked before it is opened and again after, and is opened without waiting: a named pipe, a device or a
-link to one gives a reason instead of blocking the process or filling its memory.
+Each file is checked before it is opened and again afterwards, and is opened without blocking: a named pipe, a device or
+a link to one gives a reason instead of blocking the process or filling its memory.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import BinaryIO
 from robbdd_tools.base.limits import MIB, MODEL_SIZE, Limit
 from robbdd_tools.base.uris import path_of, uri_of
 
-# Absent on Windows, where no path of a folder names a pipe.
+# Windows lacks this flag; there, no path in a folder names a pipe.
 _OPENING = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 _KINDS = {
     stat.S_IFIFO: "a named pipe",
@@ -28,7 +28,7 @@ _KINDS = {
 
 @dataclass(frozen=True, slots=True)
 class Unreadable:
-    """Why a file has no text: ``code`` is a diagnostic code, ``reason`` a sentence with the fix."""
+    """Why a file cannot be read: ``code`` is a diagnostic code, ``reason`` a sentence with the fix."""
 
     code: str
     reason: str
@@ -44,12 +44,12 @@ class UnreadableFile(OSError):
 
 
 class MissingFile(UnreadableFile, FileNotFoundError):
-    """There is no such file."""
+    """The file does not exist."""
 
 
 @dataclass(frozen=True, slots=True)
 class FileState:
-    """A file on disk at its last change (nanoseconds, size in bytes), which stands for its text as a key of caches."""
+    """Modification time (nanoseconds) and size (bytes) of a file; caches use it as a key for the file's text."""
 
     uri: str
     path: Path
@@ -58,7 +58,7 @@ class FileState:
 
 
 def file_state(uri: str) -> FileState | None:
-    """Return the present state of a regular file on disk; ``None`` where there is none."""
+    """Return the current state of a regular file; ``None`` if there is none."""
     path = uri_to_path(uri)
     try:
         status = path.stat() if path is not None else None
@@ -70,7 +70,7 @@ def file_state(uri: str) -> FileState | None:
 
 
 def full_path(path: Path) -> Path:
-    """Return a path made absolute, without ``..`` (as imports are read), its links kept as the user wrote them."""
+    """Return a path made absolute and without ``..`` (as for imports); links stay as the user wrote them."""
     return Path(os.path.normpath(path.absolute()))
 
 
@@ -86,12 +86,12 @@ def uri_to_path(uri: str) -> Path | None:
 
 
 def too_large(name: str, size: int, limit: Limit = MODEL_SIZE) -> Unreadable | None:
-    """Refuse a text of more than a limit (``size`` in bytes, or code points of an open document)."""
+    """Return why a text is too large, if it is; ``size`` is in bytes, or in code points for an open document."""
     return _too_large(name, limit, f"has {size / MIB:.1f} MiB") if size > limit.value() else None
 
 
 def read_text(path: Path, limit: Limit = MODEL_SIZE) -> str | Unreadable:
-    """Return the text of a UTF-8 file (a byte-order mark is dropped) or the reason why there is none."""
+    """Return the text of a UTF-8 file (without byte-order mark) or why it cannot be read."""
     try:
         return load_text(path, limit)
     except UnreadableFile as error:
@@ -99,7 +99,7 @@ def read_text(path: Path, limit: Limit = MODEL_SIZE) -> str | Unreadable:
 
 
 def load_text(path: Path, limit: Limit = MODEL_SIZE) -> str:
-    """Return the text of a UTF-8 file (a byte-order mark is dropped); raises ``UnreadableFile``."""
+    """Return the text of a UTF-8 file (without byte-order mark); raises ``UnreadableFile``."""
     data = load_bytes(path, limit)
     if b"\0" in data[:8192]:
         raise UnreadableFile(Unreadable("file-binary", f"'{path.name}' is a binary file, not text"))
@@ -142,7 +142,7 @@ def open_regular(path: Path) -> BinaryIO:
         descriptor = os.open(path, _OPENING)
     except OSError as error:
         raise _error(_failed(path, error)) from None
-    # What the path names may have changed since it was checked.
+    # The file at this path may have been replaced since it was checked.
     problem = _not_regular(path, os.fstat(descriptor))
     if problem is not None:
         os.close(descriptor)
@@ -151,12 +151,12 @@ def open_regular(path: Path) -> BinaryIO:
 
 
 def unreadable(path: Path) -> Unreadable | None:
-    """Return why a path names no regular file, without opening anything; ``None`` when it names one."""
+    """Return why a path does not name a regular file, without opening it; ``None`` if it does."""
     try:
         return _not_regular(path, path.stat())
     except ValueError:
         shown = str(path).encode("unicode_escape").decode("ascii")
-        return Unreadable("file-missing", f"'{shown}' is no path: it contains a NUL or a lone surrogate")
+        return Unreadable("file-missing", f"'{shown}' is not a path: it contains a NUL or a lone surrogate")
     except OSError as error:
         return _failed(path, error)
 
@@ -170,7 +170,7 @@ def _not_regular(path: Path, status: os.stat_result) -> Unreadable | None:
         return None
     if stat.S_ISDIR(status.st_mode):
         return Unreadable("file-is-folder", f"'{path.name}' is a folder; name a file in it")
-    kind = _KINDS.get(stat.S_IFMT(status.st_mode), "no regular file")
+    kind = _KINDS.get(stat.S_IFMT(status.st_mode), "not a regular file")
     via = " (through a link)" if path.is_symlink() else ""
     return Unreadable("file-not-regular", f"'{path.name}' is {kind}{via}; only regular files are read")
 

@@ -1,8 +1,8 @@
-"""Starts Python interpreters of ours, isolated from the folder that is looked at and from the environment's modules.
+"""Start our Python interpreters, isolated from the opened folder and from the environment's modules.
 
-``python -m`` and ``python -c`` search the working directory before the standard library, and ``PYTHONPATH`` before it,
-too: a ``calendar.py`` beside a model would run. So no interpreter is started in any other way than here: with ``-P``,
-without ``PYTHONPATH``, in a folder of ours.
+``python -m`` and ``python -c`` search the working directory and ``PYTHONPATH`` before the standard library: a
+``calendar.py`` next to a model would run. So every interpreter is started here: with ``-P``, without ``PYTHONPATH``, in
+an empty folder of our own.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ STARTED_IN = "ROBBDD_STARTED_IN"
 """Environment variable: the working directory of the process that started this one."""
 _DROPPED = (SEARCHED, INHERITED, "PYTHONINSPECT", "PYTHONSTARTUP")
 _FOLDERS = ("PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX")
-"""Variables that name a folder to load code from: a relative one would be found in whatever folder is opened."""
+"""Variables that name a folder to load code from: a relative one would resolve inside the opened folder."""
 
 
 def run(module: str, *arguments: str, more: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
-    """Run a module of ours to its end, with ``more`` environment variables, and return what it wrote."""
+    """Run one of our modules to its end, with the extra environment variables ``more``, and return its output."""
     return subprocess.run(
         _command("-m", module, *arguments),
         cwd=working_folder(),
@@ -46,7 +46,7 @@ def run(module: str, *arguments: str, more: Mapping[str, str] | None = None) -> 
 def run_for(
     seconds: float, module: str, *arguments: str, more: Mapping[str, str] | None = None, sent: str = ""
 ) -> Ending:
-    """Run a module of ours that reads ``sent``; after ``seconds`` it is ended with its children."""
+    """Run one of our modules with ``sent`` as input; after ``seconds`` it is ended with its children."""
     environment = {**_environment(), **(more or {})}
     return processes.run_for(seconds, _command("-m", module, *arguments), working_folder(), environment, sent)
 
@@ -54,9 +54,9 @@ def run_for(
 def start(
     module: str, *arguments: str, folder: Path, log: IO[bytes], more: Mapping[str, str] | None = None
 ) -> subprocess.Popen[str]:
-    """Start a module of ours that works in ``folder``, speaks over its standard streams and logs to ``log``.
+    """Start one of our modules in ``folder``; it communicates over its standard streams and logs to ``log``.
 
-    ``more`` are further environment variables. It leads a process group, see ``own_group``.
+    ``more`` are further environment variables. The process leads a process group, see ``own_group``.
     """
     return subprocess.Popen(
         _command("-m", module, *arguments),
@@ -72,14 +72,14 @@ def start(
 
 
 async def start_worker(code: str) -> Process:
-    """Start an interpreter that executes ``code`` of ours and speaks over its standard streams."""
+    """Start an interpreter that executes ``code``, which is ours, and communicates over its standard streams."""
     return await asyncio.create_subprocess_exec(
         *_command("-c", code), cwd=working_folder(), env=_environment(), stdin=PIPE, stdout=PIPE
     )
 
 
 def inherited_paths() -> list[str]:
-    """Return the absolute folders of the ``PYTHONPATH`` that the first process of ours was started with.
+    """Return the absolute folders of ``PYTHONPATH`` as our first process got it.
 
     Empty and relative entries mean the working directory and are left out.
     """
@@ -88,14 +88,14 @@ def inherited_paths() -> list[str]:
 
 
 def started_in() -> Path:
-    """Return the folder that relative paths of users count from."""
+    """Return the folder that users' relative paths are relative to."""
     return Path(os.environ.get(STARTED_IN) or Path.cwd())
 
 
 def working_folder() -> Path:
-    """Return an empty folder of this process, which is deleted when it ends."""
+    """Return an empty folder of this process, deleted at its end."""
     folder = _new_folder()
-    if not folder.is_dir():  # a cleaner of temporary files came by
+    if not folder.is_dir():  # A cleaner of temporary files may have deleted it.
         _new_folder.cache_clear()
         folder = _new_folder()
     return folder
@@ -117,7 +117,7 @@ def _command(*arguments: str) -> list[str]:
 
 
 def _environment() -> dict[str, str]:
-    """Return the environment of an interpreter: ``PYTHONPATH`` goes under another name, for the agent."""
+    """Return the environment of an interpreter; ``PYTHONPATH`` is renamed, for the agent."""
     kept = {name: value for name, value in os.environ.items() if name not in _DROPPED}
     for name in _FOLDERS:
         if name in kept and not Path(kept[name]).is_absolute():
@@ -126,8 +126,8 @@ def _environment() -> dict[str, str]:
     if inherited:
         kept[INHERITED] = os.pathsep.join(inherited)
     if any(Path(entry).resolve() == PACKAGE_ROOT for entry in inherited):
-        # Installed by `pip install --target`: without this folder there is neither this package nor its libraries.
+        # After `pip install --target`, this folder holds this package and its libraries.
         kept[SEARCHED] = str(PACKAGE_ROOT)
-    with suppress(OSError):  # the working directory was deleted
+    with suppress(OSError):  # The working directory may have been deleted.
         kept[STARTED_IN] = str(Path.cwd())
     return kept

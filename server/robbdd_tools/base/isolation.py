@@ -1,8 +1,8 @@
-"""Cleans Python's module path in a running interpreter. Imports nothing that could be planted in a folder."""
+"""Clean Python's module path in a running interpreter. Imports nothing that could be planted in a folder."""
 
 from __future__ import annotations
 
-# All three are part of every running interpreter: none is searched for on sys.path.
+# All three are built into a running interpreter and are not searched for on sys.path.
 import os
 import site
 import sys
@@ -11,16 +11,16 @@ SEARCHED = "PYTHONPATH"
 INHERITED = "ROBBDD_PYTHONPATH"
 """Holds ``PYTHONPATH`` for the agent, which searches its absolute folders last."""
 NO_USER_CODE = "ROBBDD_NO_USER_CODE"
-"""Environment variable: when it is set, no process of ours imports code of users."""
+"""Environment variable: if set, none of our processes imports users' code."""
 UNTRUSTED = "untrusted"
-"""Value of ``NO_USER_CODE`` where that is because a workspace is not trusted, and not because of ``--no-user-code``."""
+"""Value of ``NO_USER_CODE`` if the workspace is not trusted (rather than ``--no-user-code`` given)."""
 
 
 def isolate() -> None:
     """Remove the working directory, the script's folder and the folders of ``PYTHONPATH`` from ``sys.path``.
 
-    A folder of ``PYTHONPATH`` that holds this package is searched last instead: an installation made by
-    ``pip install --target`` has its libraries there.
+    A folder of ``PYTHONPATH`` that holds this package moves to the end instead: an installation made by ``pip install
+    --target`` has its libraries there.
     """
     stated = os.environ.pop(SEARCHED, None)
     if stated is not None:
@@ -37,7 +37,7 @@ def isolate() -> None:
 
 
 def _installed() -> set[str]:
-    """Return the folders of the interpreter's own installation, which somebody may name in ``PYTHONPATH`` as well."""
+    """Return the folders of the interpreter's own installation, which ``PYTHONPATH`` may also name."""
     library = os.path.dirname(os.__file__)
     own = site.USER_SITE if site.ENABLE_USER_SITE else None
     return {library, os.path.join(library, "lib-dynload"), *site.getsitepackages(), *([own] if own else [])}

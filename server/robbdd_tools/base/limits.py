@@ -1,7 +1,8 @@
-"""Limits that keep hostile or broken input from taking the machine; the user may change each, a folder none.
+"""Limits that keep hostile or broken input from exhausting the machine. The user can change each; an opened folder
+cannot.
 
-A limit is read from its environment variable, so that the processes that we start have the same ones; the server sets
-these variables from the editor's setting ``robbdd.limits``. See docs/limits.md.
+A limit is read from its environment variable, so that child processes have the same limits; the server sets these
+variables from the editor's setting ``robbdd.limits``. See docs/limits.md.
 """
 
 from __future__ import annotations
@@ -29,28 +30,28 @@ class Limit:
         return f"ROBBDD_LIMIT_{self.name.replace('-', '_').upper()}"
 
     def value(self) -> int:
-        """Return the limit in force; a variable that is no positive whole number is ignored."""
+        """Return the current limit; a variable that is not a positive whole number is ignored."""
         stated = os.environ.get(self.variable, "")
         return int(stated) if _is_positive(stated) else self.default
 
     def use(self, value: int | None) -> None:
-        """Set the limit for this process and those that it starts; ``None`` restores what the process began with."""
+        """Set the limit for this process and its children; ``None`` restores the initial value."""
         stated = _GIVEN.get(self.variable, "") if value is None else str(value)
         os.environ[self.variable] = stated
 
 
 MODEL_SIZE = Limit("model-size", 8 * MIB, "bytes")
-"""A model, setting, template, query or shapes file; people write far smaller ones."""
+"""A model, setting, template, query or shapes file; hand-written ones are far smaller."""
 RESULT_SIZE = Limit("result-size", 512 * MIB, "bytes")
-"""A file of a run (results, manifest, trace), a mesh or a picture of a scene's model."""
+"""A file of a run (results, manifest, trace), or a mesh or texture of a scene's model."""
 MESSAGE_SIZE = Limit("message-size", 64 * MIB, "bytes")
 """The content of one message to the language server."""
 SCANNED_ENTRIES = Limit("scanned-entries", 200_000, "files and folders")
-"""Entries that one search of a folder looks at."""
+"""Entries that one search of a folder visits."""
 SCANNED_DEPTH = Limit("scanned-depth", 32, "levels of folders")
-"""Folders inside each other that one search enters."""
+"""Nesting depth of folders that one search enters."""
 VALIDATION_SECONDS = Limit("validation-seconds", 120, "seconds")
-"""Time for one validation of a file; that of 10,000 lines takes about 5 s of processor."""
+"""Time for one validation of a file; 10,000 lines take about 5 s of CPU time."""
 
 LIMITS: Mapping[str, Limit] = {
     limit.name: limit
@@ -66,18 +67,18 @@ LIMITS: Mapping[str, Limit] = {
 
 
 def use_limits(stated: object) -> str | None:
-    """Set the limits that an editor states as an object by name, and restore the others.
+    """Set the limits in an editor's setting (an object of name and value), and reset the others.
 
-    Returns what is wrong with the setting, ``None`` when it is sound; a wrong one changes nothing.
+    Returns what is wrong with the setting, or ``None``; an invalid setting changes nothing.
     """
     values = cast("dict[object, object]", stated) if isinstance(stated, dict) else {}
     for name, value in values.items():
         if name not in LIMITS:
             return f"The setting 'robbdd.limits' has no limit '{name}'; there are {', '.join(LIMITS)}."
         if not isinstance(value, int) or isinstance(value, bool) or value <= 0:
-            return f"The limit '{name}' in 'robbdd.limits' is a positive whole number of {LIMITS[str(name)].unit}."
+            return f"The limit '{name}' in 'robbdd.limits' must be a positive whole number of {LIMITS[str(name)].unit}."
     if stated is not None and not isinstance(stated, dict):
-        return "The setting 'robbdd.limits' is an object, such as {\"model-size\": 16777216}."
+        return "The setting 'robbdd.limits' must be an object, such as {\"model-size\": 16777216}."
     for name, limit in LIMITS.items():
         limit.use(cast("int | None", values.get(name)))
     return None

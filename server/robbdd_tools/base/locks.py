@@ -1,4 +1,4 @@
-"""Locks on files: held by an open file, so that the operating system releases them however a process ends."""
+"""File locks, released by the operating system however the holding process ends."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if sys.platform == "win32":
     import msvcrt
 
     def _try_lock(file: BinaryIO, *, shared: bool) -> bool:
-        """Lock the first byte; Windows has no shared locks here, so that ``shared`` is exclusive, too."""
+        """Lock the first byte. Windows has no shared locks here, so a ``shared`` lock is exclusive too."""
         del shared
         try:
             msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
@@ -28,7 +28,8 @@ else:
     import fcntl
 
     def _try_lock(file: BinaryIO, *, shared: bool) -> bool:
-        """Lock the file without waiting. ``flock`` and not ``lockf``: its locks belong to the open file."""
+        """Lock the file without waiting. ``flock``, not ``lockf``: its locks belong to the open file, not to the
+        process."""
         try:
             fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -52,9 +53,9 @@ class Lock:
 
 
 def hold(path: Path, patience: float = 0.0) -> Lock | None:
-    """Lock a file, made if missing, within ``patience`` seconds; ``None`` while somebody else holds the lock.
+    """Lock a file, created if missing, within ``patience`` seconds; ``None`` while another holder has the lock.
 
-    Raises ``OSError``, also where the file system has no locks.
+    Raises ``OSError``, also if the file system has no locks.
     """
     deadline = monotonic() + patience
     if path.exists() and not path.is_file():
@@ -73,7 +74,7 @@ def hold(path: Path, patience: float = 0.0) -> Lock | None:
 
 
 def is_held(path: Path) -> bool:
-    """Return whether a process, this one included, holds the lock on a file."""
+    """Return whether any process, this one included, holds the lock on a file."""
     with suppress(OSError), open_regular(path) as file:
         return not _try_lock(file, shared=True)
     return False

@@ -1,4 +1,4 @@
-"""What is kept for how long, and how often Python looks for reference cycles."""
+"""Garbage collection and caches: how long values are kept, and how often Python searches for reference cycles."""
 
 from __future__ import annotations
 
@@ -13,25 +13,26 @@ Key = TypeVar("Key")
 Value = TypeVar("Value")
 
 YOUNG, OLDER, OLD = 100_000, 50, 100
-"""Objects made before the youngest are searched, and searches before the next older ones are, as Python counts them."""
+"""Thresholds of ``gc.set_threshold``: objects made before the youngest are searched, and searches before each older
+generation is."""
 
 
 def collect_rarely() -> None:
-    """Search for cycles less often: trees have none, and a search of a large project takes longer than a keystroke."""
+    """Search for cycles less often: trees have none, and a search in a large project takes longer than a keystroke."""
     gc.set_threshold(YOUNG, OLDER, OLD)
 
 
 def collect_recent() -> None:
     """Free the cycles among objects made since the last search, in a few milliseconds.
 
-    Every rdflib graph is a cycle. Call this after work that builds graphs, which ``collect_rarely`` would let pile up.
+    Every rdflib graph is a cycle. Call this after work that builds graphs; after ``collect_rarely`` they would pile up.
     """
     gc.collect(1)
 
 
 @contextmanager
 def nothing_to_collect() -> Generator[None]:
-    """Search for no cycles while modules are loaded, nor ever in what was made meanwhile: it stays to the end."""
+    """Turn garbage collection off while modules are loaded, and exempt the objects made meanwhile for good."""
     gc.disable()
     yield
     gc.freeze()
@@ -39,7 +40,7 @@ def nothing_to_collect() -> Generator[None]:
 
 
 def kept_with_key(function: Callable[[Key], Value]) -> Callable[[Key], Value]:
-    """Keep the results of a function as long as the objects that it was called with, which they must not hold."""
+    """Cache a function's results for as long as its arguments live; the results must not refer to the arguments."""
     kept: WeakKeyDictionary[Key, Value] = WeakKeyDictionary()
 
     @wraps(function)

@@ -1,4 +1,4 @@
-"""The files that an MJCF or URDF file makes its engine read: included models, meshes, pictures."""
+"""Files that an MJCF or URDF file makes its engine read: included models, meshes, textures."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from xml.etree import ElementTree
 from robbdd_tools.base.files import Unreadable, UnreadableFile, load_bytes, unreadable
 
 FOLDERS = ("meshdir", "texturedir", "assetdir")
-"""Attributes of MJCF and URDF that name where files are looked for."""
+"""Attributes of MJCF and URDF that name folders to search for files."""
 
 
 def model_files(path: Path) -> Iterator[Path]:
-    """Yield a model file and the files that it names, each once, as far as they exist and whatever kind they have."""
+    """Yield a model file and the existing files that it names, each once, of whatever kind."""
     seen: dict[Path, None] = {}
     waiting = [path]
     while waiting:
@@ -27,7 +27,7 @@ def model_files(path: Path) -> Iterator[Path]:
 
 
 def unusable(path: Path) -> Unreadable | None:
-    """Return why an engine cannot be given a model file: the first file of it that is no regular one, if any."""
+    """Return why an engine cannot load a model file: the first of its files that is not regular, if any."""
     named = [path, *model_files(path)]
     return next((problem for file in named if (problem := unreadable(file)) is not None), None)
 

@@ -1,4 +1,4 @@
-"""Frozen dataclasses from the JSON that they were written as."""
+"""Read frozen dataclasses from JSON."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ _SCALARS = (bool, int, float, str)
 
 
 def from_plain(kind: type[Kind], data: object) -> Kind:
-    """Return a dataclass made of its fields as JSON gives them; raises ``TypeError``, ``ValueError`` or ``KeyError``.
+    """Return a dataclass made from its JSON; raises ``TypeError``, ``ValueError`` or ``KeyError``.
 
     Fields may be plain values, dataclasses, tuples and mappings of these, and any of them or ``None``. A value of
-    another type is refused, but for an integer where a float is expected.
+    another type is refused, except an integer for a float.
     """
     return cast(Kind, _value(kind, data))
 
 
 def finite(number: str) -> float:
-    """Return a number that JSON gives as text; raises ``ValueError`` for infinite ones and ``NaN``."""
+    """Return a JSON number as a float; raises ``ValueError`` for infinite ones and ``NaN``."""
     value = float(number)
     if not isfinite(value):
         raise ValueError(number)

@@ -1,4 +1,4 @@
-"""Text that others wrote, made safe to print: what a terminal, a log or a CI service would act on is escaped."""
+"""Make untrusted text safe to print: escape what a terminal, a log or a CI service would act on."""
 
 from __future__ import annotations
 
@@ -7,20 +7,19 @@ import re
 from unicodedata import category
 
 _JOINERS = "\u200c\u200d"
-"""Format characters that change nothing but the shape of letters and emoji around them."""
+"""Format characters that only change the shape of adjacent letters and emoji."""
 _NAMED = {"\n": r"\n", "\r": r"\r", "\t": r"\t"}
 _CI_PREFIX = re.compile(r"##(?=[\w-]*\[)")
-"""How commands to CI services begin wherever they are in a line: ``##[error]``, ``##vso[task…]``, ``##teamcity[``."""
+"""Start of CI commands that are recognised anywhere in a line: ``##[error]``, ``##vso[task…]``, ``##teamcity[``."""
 _CI_LINE = re.compile(r"\A(\s*):(?=:)")
-"""How commands to GitHub's runner begin: ``::error::`` at the beginning of a line."""
+"""Start of commands to GitHub's runner, recognised at the start of a line: ``::error::``."""
 
 
 def printable(line: str) -> str:
-    r"""Return one line of text as it is safe to print; ordinary text of any language stays as it is.
+    r"""Return one line of text, safe to print; ordinary text of any language stays unchanged.
 
     Control characters, line ends, escape sequences, unpaired surrogates and characters that reorder or hide text are
-    written as in Python (``\x1b``, ``\n``, ``\u202e``), and so is the beginning of what a CI service takes for a
-    command.
+    escaped as in Python (``\x1b``, ``\n``, ``\u202e``), and so is the start of a CI command.
     """
     if not line.isprintable():
         line = "".join(map(_shown, line))
@@ -28,16 +27,16 @@ def printable(line: str) -> str:
 
 
 def printable_json(document: object, indent: int | None = None) -> str:
-    """Return a document as JSON in which the same characters are escaped as JSON does; other programs read the same."""
+    """Return a document as JSON with the same characters escaped as in JSON; it parses to the same data."""
     text = json.dumps(document, indent=indent, ensure_ascii=False)
-    # Only the line ends of the layout are outside of strings.
+    # Line ends of the layout are the only ones outside of strings.
     if not text.replace("\n", "").isprintable():
         text = "".join(one if one == "\n" else _json_shown(one) for one in text)
     return _CI_PREFIX.sub(r"#\\u0023", text)
 
 
 def printable_terms(text: str) -> str:
-    """Return Turtle or N-Triples with the same characters escaped as these do; only line ends stay."""
+    """Return Turtle or N-Triples with the same characters escaped as in these formats; only line ends stay."""
     if text.replace("\n", "").isprintable():
         return text
     return "".join(f"\\U{ord(one):08X}" if one != "\n" and _is_hidden(one) else one for one in text)
@@ -59,5 +58,5 @@ def _json_shown(character: str) -> str:
 
 
 def encodable(text: str) -> str:
-    """Return a text that can be written as UTF-8: half characters are written as escapes."""
+    """Return a text that can be encoded as UTF-8: lone surrogates are escaped."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")

@@ -1,4 +1,4 @@
-"""Ends processes together with their children, on POSIX and on Windows.
+"""End processes together with their children, on POSIX and on Windows.
 
 The only module that knows the signals, process groups and priorities of operating systems.
 """
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypedDict
 
 END_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
-"""Signals that ask a program to end, as far as a system has them."""
+"""Signals that ask a program to end; a system may lack some."""
 NICENESS = 10
 """POSIX niceness of background work: it yields to the editor, but still makes progress."""
 WINDOWS_ERRORS = {
@@ -28,7 +28,7 @@ WINDOWS_ERRORS = {
     0xC0000409: "stack buffer overrun",
     0xC000013A: "interrupted by Ctrl-C",
 }
-"""Exit codes of processes that Windows ends, from its ``ntstatus.h``."""
+"""Windows exit codes of crashed processes, from ``ntstatus.h``."""
 _LEAST_ERROR = 0xC0000000
 
 
@@ -37,7 +37,7 @@ class RunningProcess(Protocol):
 
     @property
     def pid(self) -> int:
-        """Number of the process; on POSIX also of the group that it leads."""
+        """Process ID; on POSIX also the ID of the group that it leads."""
         ...
 
     def terminate(self) -> None:
@@ -57,9 +57,9 @@ class GroupArguments(TypedDict, total=False):
 
 
 def own_group() -> GroupArguments:
-    """Return the arguments of ``Popen`` that make the new process the leader of a group.
+    """Return the arguments of ``Popen`` that make the new process a group leader.
 
-    Ctrl-C in a terminal then reaches the parent alone, which can stop its children one by one.
+    Ctrl-C in a terminal then reaches only the parent, which can stop its children one by one.
     """
     if sys.platform == "win32":
         return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
@@ -68,7 +68,7 @@ def own_group() -> GroupArguments:
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a program ended (``code`` is ``None`` when it had to be ended) and what it wrote."""
+    """How a program ended (``code`` is ``None`` if it had to be killed) and its output."""
 
     code: int | None
     output: str
@@ -78,7 +78,7 @@ class Ending:
 def run_for(
     seconds: float, command: Sequence[str], folder: Path, environment: Mapping[str, str] | None = None, sent: str = ""
 ) -> Ending:
-    """Run a program in ``folder``; ``sent`` is its input.
+    """Run a program in ``folder`` with ``sent`` as input.
 
     After ``seconds`` it is ended with its children. Raises ``OSError``.
     """
@@ -103,23 +103,23 @@ def run_for(
 
 
 def request_end(process: RunningProcess) -> None:
-    """Ask the leader of a group to end; ``on_end_request`` lets it react."""
+    """Ask the leader of a group to end; it can react by ``on_end_request``."""
     with suppress(OSError):
         if sys.platform == "win32":
             try:
                 os.kill(process.pid, signal.CTRL_BREAK_EVENT)
             except OSError:
-                # Without a console there are no console events.
+                # Console events need a console.
                 process.terminate()
         else:
             process.terminate()
 
 
 def end_group(process: RunningProcess) -> None:
-    """End the leader of a group and its children at once."""
+    """Kill the leader of a group and its children."""
     with suppress(OSError):
         if sys.platform == "win32":
-            # Windows finds children through their parent: the tree has to be ended before its root is gone.
+            # Windows finds children through their parent, so the tree must be ended before its root.
             command = ["taskkill", "/pid", str(process.pid), "/t", "/f"]
             try:
                 ended = subprocess.run(command, capture_output=True, check=False).returncode == 0
@@ -132,7 +132,7 @@ def end_group(process: RunningProcess) -> None:
 
 
 def on_end_request(handle: Callable[[int], None]) -> None:
-    """Call ``handle`` with the signal's number when this process is asked to end. Only for the main thread."""
+    """Call ``handle`` with the signal number when this process is asked to end. Main thread only."""
     for name in ("SIGINT", "SIGTERM", "SIGBREAK"):
         number: int | None = getattr(signal, name, None)
         if number is not None:
@@ -141,10 +141,10 @@ def on_end_request(handle: Callable[[int], None]) -> None:
 
 @contextmanager
 def end_requests(handle: Callable[[int], None]) -> Generator[None]:
-    """Call ``handle`` with the signal's number when this process is asked to end while it is inside.
+    """Inside the block, call ``handle`` with the signal number when this process is asked to end.
 
-    Ctrl-C, a closed terminal and the like. What its starter wants to be ignored (``nohup``) is ignored. Has no effect
-    outside of the main thread.
+    Covers Ctrl-C, a closed terminal and the like. Signals that the parent made this process ignore (``nohup``) stay
+    ignored. Has no effect outside of the main thread.
     """
     before: dict[int, Any] = {}
     if threading.current_thread() is threading.main_thread():
@@ -160,7 +160,7 @@ def end_requests(handle: Callable[[int], None]) -> Generator[None]:
 
 
 def lower_priority() -> None:
-    """Let other processes go first from now on."""
+    """Lower the scheduling priority of this process."""
     if sys.platform == "win32":
         kernel = ctypes.windll.kernel32
         kernel.SetPriorityClass(kernel.GetCurrentProcess(), subprocess.BELOW_NORMAL_PRIORITY_CLASS)

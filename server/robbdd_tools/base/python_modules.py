@@ -1,4 +1,4 @@
-"""Finds Python modules and their names by their files and syntax trees; nothing is imported or executed."""
+"""Find Python modules and their names from files and syntax trees; nothing is imported or executed."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ModuleNames:
-    """The names that a module's file binds at its top level.
+    """The names that a module binds at its top level.
 
-    ``is_complete`` is false where code may bind others: ``from … import *``, ``__getattr__``, ``globals()``.
-    ``error`` is the syntax error of a file that is not Python, with its line.
+    ``is_complete`` is false if other code may bind more: ``from … import *``, ``__getattr__``, ``globals()``. ``error``
+    is the syntax error of a file that is not Python, with its line.
     """
 
     names: frozenset[str]
@@ -37,7 +37,7 @@ UNKNOWN = ModuleNames(frozenset(), is_complete=False)
 
 
 def find_module(name: str, folder: Path) -> ModuleSpec | None:
-    """Return where the process that runs models of a folder would find a module, ``None`` if nowhere.
+    """Return where the process that runs a folder's models would find a module, or ``None``.
 
     The order is that of ``agent.user_modules``: installed packages, the folder, ``PYTHONPATH``.
     """
@@ -60,7 +60,7 @@ def _spec(path: str, search: list[str], *, top: bool) -> ModuleSpec | None:
 
 
 def module_names(spec: ModuleSpec) -> ModuleNames:
-    """Return the names in a module that was found; ``UNKNOWN`` for one that is not a readable Python file."""
+    """Return the names in a found module; ``UNKNOWN`` if it is not a readable Python file."""
     if spec.origin is None or not spec.origin.endswith(".py"):
         return UNKNOWN
     state = file_state(path_to_uri(Path(spec.origin)))
@@ -89,7 +89,7 @@ def _is_dynamic(node: ast.AST) -> bool:
 
 
 def _bound(statements: Iterable[ast.stmt]) -> Iterator[str]:
-    """Yield what some statements bind in the scope that they are executed in."""
+    """Yield the names that statements bind in their scope."""
     for statement in statements:
         match statement:
             case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
@@ -101,7 +101,7 @@ def _bound(statements: Iterable[ast.stmt]) -> Iterator[str]:
 
 
 def _targets(statement: ast.stmt) -> Iterator[str]:
-    """Yield the names that a statement assigns to, and those that the statements inside it bind."""
+    """Yield the names that a statement and the statements inside it bind."""
     for child in ast.iter_child_nodes(statement):
         if isinstance(child, ast.stmt):
             yield from _bound((child,))

@@ -1,4 +1,4 @@
-"""Begins projects: copies of the examples under a namespace of their own."""
+"""Create projects: copies of the examples under a new namespace."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from robbdd_tools.base.writing import replace_file
 
 EXAMPLES = "examples"
 EXAMPLE_NAMESPACE = "https://example.org/robbdd/"
-"""What the namespaces of the examples begin with; a new project has its own name there."""
+"""Namespace prefix of the examples; a new project appends its own name to it."""
 IGNORED = ".robbdd/\n__pycache__/\n"
 
 
 class ScaffoldProblem(Exception):
-    """A project cannot begin as wanted; the message says why, for the user."""
+    """A project cannot be created; the message gives the user the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """An example that a project can begin as; ``about`` is the first line of its first model."""
+    """An example that can be copied as a project; ``about`` is the first line of its first model."""
 
     name: str
     about: str
@@ -41,9 +41,9 @@ def templates() -> dict[str, Template]:
 
 
 def begin_project(folder: Path, template: str) -> list[Path]:
-    """Copy a template into ``folder``, which must not hold anything yet; returns its models.
+    """Copy a template into ``folder``, which must be empty or missing; returns its models.
 
-    Hyphens in the template's name do not count: ``pick-place`` is ``pickplace``. Raises ``ScaffoldProblem`` and
+    Hyphens in the template's name are ignored: ``pick-place`` is ``pickplace``. Raises ``ScaffoldProblem`` and
     ``OSError``.
     """
     known = templates()
@@ -51,7 +51,7 @@ def begin_project(folder: Path, template: str) -> list[Path]:
     if chosen is None:
         raise ScaffoldProblem(f"there is no template '{template}'; there are {', '.join(known)}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise ScaffoldProblem(f"{folder} is there already; name a new or an empty folder")
+        raise ScaffoldProblem(f"{folder} exists already; name a new or an empty folder")
     name = re.sub(r"[^a-z0-9]+", "-", folder.absolute().name.lower()).strip("-") or "project"
     folder.mkdir(parents=True, exist_ok=True)
     for path in sorted(chosen.folder.iterdir()):

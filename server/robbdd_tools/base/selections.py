@@ -1,7 +1,7 @@
-"""Sets selected from a set: how many there are, all of them in order, and one by its rank.
+"""Combinations and permutations: their number, all of them in order, and one by its rank.
 
 A selection has ``length`` elements. Combinations ignore the order of their elements, permutations do not; both may
-repeat elements. The order is that of ``itertools``. Every count of scenarios in the product derives from here.
+repeat elements. The order is that of ``itertools``. Every count of scenarios in the product is computed here.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class SelectionRule:
-    """How sets are selected: ``kind`` is ``combinations`` or ``permutations``."""
+    """How elements are selected: ``kind`` is ``combinations`` or ``permutations``."""
 
     kind: str
     length: int
     repeated: bool
 
     def count(self, available: int) -> int:
-        """Return the number of sets that can be selected from ``available`` elements."""
+        """Return the number of selections from ``available`` elements."""
         if self.kind == PERMUTATIONS:
             return available**self.length if self.repeated else perm(available, self.length)
         if not self.repeated:
@@ -33,14 +33,14 @@ class SelectionRule:
         return comb(available + self.length - 1, self.length) if available else int(self.length == 0)
 
     def sets(self, source: Sequence[T]) -> Iterator[tuple[T, ...]]:
-        """Yield the sets in order."""
+        """Yield the selections in order."""
         if self.kind == PERMUTATIONS:
             return product(source, repeat=self.length) if self.repeated else permutations(source, self.length)
         choose = combinations_with_replacement if self.repeated else combinations
         return choose(source, self.length)
 
     def at(self, source: Sequence[T], rank: int) -> tuple[T, ...]:
-        """Return the set at position ``rank``, counted from 0, without the sets before it."""
+        """Return the selection at position ``rank``, counted from 0, without computing the ones before it."""
         free = list(source)
         picked: list[T] = []
         for left in range(self.length - 1, -1, -1):

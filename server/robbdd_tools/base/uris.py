@@ -1,7 +1,7 @@
-"""``file:`` URIs and the paths of POSIX and of Windows.
+"""``file:`` URIs and paths of POSIX and Windows.
 
-One file has several URIs: clients differ in which characters they escape, in the case of a drive's letter, and in
-whether they write ``file:/`` or ``file:///``. Inside, a file has one: the one that VS Code uses.
+One file has several URIs: clients differ in which characters they escape, in the case of a drive letter, and in whether
+they write ``file:/`` or ``file:///``. Inside, each file has one URI: the one that VS Code uses.
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ from pathlib import PurePath, PureWindowsPath
 from urllib.parse import quote, unquote
 
 HERE = type(PurePath())
-"""The paths of this system."""
+"""The path class of this system."""
 _FILE = re.compile(r"file:(?://([^/?#]*))?(/[^?#]*)", re.IGNORECASE)
 _DRIVE = re.compile(r"/([A-Za-z]):(?=/|$)")
 
 
 def path_of(uri: str, kind: type[PurePath] = HERE) -> PurePath | None:
-    """Return the path of a URI; ``None`` for any scheme but ``file:``, and for another machine's file on POSIX."""
+    """Return the path of a URI; ``None`` for other schemes than ``file:``, and on POSIX for a file of another host."""
     found = _FILE.fullmatch(uri)
     if found is None:
         return None
@@ -31,7 +31,7 @@ def uri_of(path: PurePath) -> str:
     """Return the URI of an absolute path."""
     text = quote(path.as_posix(), errors="surrogateescape")
     if isinstance(path, PureWindowsPath):
-        # A network path names its host; a drive is below the root of this machine.
+        # A UNC path names its host; a drive is on this machine.
         text = f"file:{text}" if text.startswith("//") else f"file:///{text}"
     else:
         text = f"file://{text}"
@@ -39,13 +39,13 @@ def uri_of(path: PurePath) -> str:
 
 
 def drive_uri(path: str, kind: type[PurePath] | None = None) -> str | None:
-    """Return the URI of a path that begins with a drive; ``None`` for any other, and where there are no drives."""
+    """Return the URI of a path that begins with a drive; ``None`` for any other path and for systems without drives."""
     found = (kind or HERE)(path)
     return uri_of(found) if isinstance(found, PureWindowsPath) and found.drive and found.is_absolute() else None
 
 
 def canonical_uri(uri: str, kind: type[PurePath] = HERE) -> str:
-    """Return the one URI of a file; any other URI as it is."""
+    """Return the canonical URI of a file; other URIs stay unchanged."""
     found = _FILE.fullmatch(uri)
     if found is None:
         return uri

@@ -1,4 +1,4 @@
-"""Where the user's own configuration is kept."""
+"""Path of the user's own configuration."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from pathlib import Path
 
 
 def user_file() -> Path:
-    """Return the user's own configuration, which no folder that is opened can bring along; it need not exist.
+    """Return the path of the user's own configuration, which no opened folder can supply; the file may be missing.
 
-    It is ``ROBBDD_CONFIG``, else ``robbdd/robbdd.toml`` in the platform's folder for configurations.
+    It is ``ROBBDD_CONFIG``, else ``robbdd/robbdd.toml`` in the platform's configuration folder.
     """
     own = os.environ.get("ROBBDD_CONFIG", "")
     if Path(own).is_absolute():

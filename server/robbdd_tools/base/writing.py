@@ -1,8 +1,8 @@
-"""Writes files whole: whoever reads one, or finds it after a crash or on a full disk, gets the old or the new content.
+"""Write files atomically: a reader finds the old or the new content, also after a crash or on a full disk.
 
-The content goes to a temporary file in the same folder, is synced, and takes the place of the old file at the end.
-Mode and owner stay, and a symbolic link stays a link: the file that it leads to is replaced. A file with several hard
-links keeps them, see ``_overwrite``. Existing pipes and devices (``/dev/stdout``) are written to as they are.
+The content is written to a temporary file in the same folder, synced, and renamed over the old file. Mode and owner are
+kept, and a symbolic link stays a link: its target is replaced. A file with several hard links keeps them, see
+``_overwrite``. Existing pipes and devices (``/dev/stdout``) are written to directly.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from pathlib import Path
 from typing import BinaryIO, TextIO
 
 TEMPORARY = ".robbdd-"
-"""What the names of temporary files begin with; they end in ``.tmp``, so that no reader takes them for its own."""
+"""Prefix of temporary files; they end in ``.tmp``, so that no reader takes them for results."""
 
 _STREAMS = (("dev",), ("proc",))
-"""First folders of paths that name an open stream, such as ``/dev/stdout``, even one that is sent to a file."""
+"""First folders of paths that name an open stream, such as ``/dev/stdout``, even if redirected to a file."""
 
 
 def replace_file(path: Path, content: str | bytes) -> None:
-    """Write a file whole, text as UTF-8 with ``\\n``; on an error the old file is untouched. Raises ``OSError``."""
+    """Write a file atomically, text as UTF-8 with ``\\n``; the old file survives errors. Raises ``OSError``."""
     data = content.encode("utf-8") if isinstance(content, str) else content
     with replacing_bytes(path) as file:
         file.write(data)
@@ -33,7 +33,8 @@ def replace_file(path: Path, content: str | bytes) -> None:
 
 @contextmanager
 def replacing(path: Path) -> Generator[TextIO]:
-    """Open a UTF-8 text file that takes its place at the end of the block; on an exception it leaves no trace.
+    """Open a UTF-8 text file that replaces the old one at the end of the block; an exception leaves the old file
+    untouched.
 
     Raises ``OSError``.
     """
@@ -46,7 +47,7 @@ def replacing(path: Path) -> Generator[TextIO]:
 
 @contextmanager
 def replacing_bytes(path: Path) -> Generator[BinaryIO]:
-    """Open a file that takes its place at the end of the block, see ``replacing``."""
+    """Open a binary file that replaces the old one at the end of the block, see ``replacing``."""
     status = _status(path)
     if status is not None and (not stat.S_ISREG(status.st_mode) or path.absolute().parts[1:2] in _STREAMS):
         with path.open("wb") as stream:
@@ -67,7 +68,7 @@ def replacing_bytes(path: Path) -> Generator[BinaryIO]:
             fresh.replace(target)
         _sync_folder(target.parent)
     except OSError as error:
-        # The user knows the file that was asked for, not the temporary one.
+        # Name the requested file in the error, not the temporary one.
         if error.filename in (None, str(fresh)):
             error.filename, error.filename2 = str(path), None
         raise
@@ -77,7 +78,7 @@ def replacing_bytes(path: Path) -> Generator[BinaryIO]:
 
 
 def _status(path: Path) -> os.stat_result | None:
-    """Return the status of an existing file that may be written; raises ``OSError`` for one that may not."""
+    """Return the status of an existing writable file; raises ``OSError`` if it cannot be written."""
     try:
         status = path.stat()
     except FileNotFoundError:
@@ -96,9 +97,9 @@ def _created(fresh: Path, path: Path) -> BinaryIO:
 
 
 def _take_over(descriptor: int, status: os.stat_result) -> None:
-    """Give a new file the owner and the mode of the one that it replaces."""
+    """Give a new file the owner and mode of the file that it replaces."""
     if hasattr(os, "fchown"):
-        # Only a privileged user can give files away; others own what they replace.
+        # Only a privileged user can change owners; others own the files that they replace.
         with suppress(PermissionError):
             os.fchown(descriptor, status.st_uid, status.st_gid)
     if hasattr(os, "fchmod"):
@@ -106,9 +107,9 @@ def _take_over(descriptor: int, status: os.stat_result) -> None:
 
 
 def _overwrite(target: Path, fresh: Path) -> None:
-    """Write the content of a complete new file into an old one that has other names too.
+    """Write the content of a complete new file into an old file that has several hard links.
 
-    Its other names show the new content. Where this fails halfway, the new file takes the place of this name.
+    The other links show the new content. If this fails halfway, the new file replaces this link only.
     """
     data = fresh.read_bytes()
     try:
@@ -122,7 +123,7 @@ def _overwrite(target: Path, fresh: Path) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Make a rename durable where folders can be opened; elsewhere the system does what it can."""
+    """Sync a rename to disk on systems where folders can be opened."""
     with suppress(OSError):
         descriptor = os.open(folder, os.O_RDONLY)
         try:

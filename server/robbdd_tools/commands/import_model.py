@@ -33,7 +33,7 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     scene = output.with_suffix(".scene")
     present = [file for file in (output, scene) if file.exists()]
     if present and not overwrite:
-        return fail(f"{present[0]} is there already; --force replaces it")
+        return fail(f"{present[0]} exists already; --force replaces it")
     model = sound_model(path)
     if model is None:
         return FAILED
