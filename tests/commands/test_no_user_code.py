@@ -56,7 +56,7 @@ def test_evaluators_of_users_are_refused(folder: Path) -> None:
         done = robbdd(folder, f"{command} --store runs --no-user-code")
         assert done.returncode == 2, command
         place = re.escape(f"{bddx}:{line_of(bddx, 'obs policy (ns=exec) starts-outside')}:")
-        words = rf"{place}\d+: the policy \S+starts-outside judges by the Python code policies:apart"
+        words = rf"{place}\d+: the policy \S+starts-outside judges with the Python code policies:apart"
         assert re.search(words, done.stderr), (command, done.stderr)
         assert "leave out --no-user-code if you trust this code" in done.stderr
     assert not (folder.parent / "ran").exists()
@@ -76,7 +76,7 @@ def test_a_behaviour_and_a_model_of_users_are_refused_at_their_lines(folder: Pat
     view = robbdd(folder, "view pickplace.bddx -o scene.png --no-user-code")
     assert view.returncode == 2
     assert model in view.stderr
-    assert "a model is made by the Python code policies:block" in view.stderr
+    assert "a model is created by the Python code policies:block" in view.stderr
     assert behaviour not in view.stderr, "a picture of the initial scene needs no behaviour"
     assert not (folder / "scene.png").exists()
     assert not (folder.parent / "ran").exists()
@@ -88,7 +88,7 @@ def test_steps_of_users_are_refused_at_their_file(folder: Path) -> None:
     steps.write_text(f"open({str(folder.parent / 'ran')!r}, 'w')\n", encoding="utf-8")
     done = robbdd(folder, "run pickplace.bdd --first 1 --no-store --no-user-code")
     assert done.returncode == 2
-    assert f"{steps} holds steps of users" in done.stderr
+    assert f"{steps} contains user-defined steps" in done.stderr
     assert not (folder.parent / "ran").exists()
 
 

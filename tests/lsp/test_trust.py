@@ -69,14 +69,14 @@ async def test_an_untrusted_workspace_is_checked_but_not_run(command: str, tmp_p
 
     steps = tmp_path / "pickplace" / "steps" / "pickplace_steps.py"
     problem = await refusal(editor, command, editor.uri)
-    assert problem == f"{REFUSED}: {steps} holds steps of users: trust the workspace if you trust this code"
+    assert problem == f"{REFUSED}: {steps} contains user-defined steps: trust the workspace if you trust this code"
     assert editor.client.messages[0].message.endswith(problem)
 
     bddx = tmp_path / "pickplace" / "pickplace.bddx"
     problem = await refusal(editor, command, path_to_uri(bddx))
     line = bddx.read_text(encoding="utf-8").split("starts-outside")[0].count("\n") + 1
     policy = (
-        rf"{re.escape(f'{bddx}:{line}')}:\d+: the policy \S+starts-outside judges by the Python code policies:apart"
+        rf"{re.escape(f'{bddx}:{line}')}:\d+: the policy \S+starts-outside judges with the Python code policies:apart"
     )
     assert re.search(policy, problem), problem
 

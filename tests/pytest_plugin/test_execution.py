@@ -212,7 +212,7 @@ def test_a_run_that_cannot_begin_is_an_error_of_each_test(cell: Path, monkeypatc
     monkeypatch.setenv("ROBBDD_NO_USER_CODE", "1")
     done = run(cell, "--robbdd-first=2")
     done.assert_outcomes(errors=2)
-    done.stdout.fnmatch_lines(["*pickplace_steps.py holds steps of users: *"])
+    done.stdout.fnmatch_lines(["*pickplace_steps.py contains user-defined steps: *"])
     assert robbdd.runs(cell) == ()
 
 

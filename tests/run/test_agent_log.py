@@ -28,7 +28,7 @@ def test_what_fits_is_kept_as_it_is(tmp_path: Path, size: int) -> None:
 @pytest.mark.parametrize("size", [101, 5000, 1_000_000])
 def test_of_what_does_not_fit_the_middle_is_left_out(tmp_path: Path, size: int) -> None:
     text = "".join(f"{number:010}" for number in range(size // 10 + 1))[:size]
-    cut = f"\n… {size - 100} bytes are left out: more was printed than the log may hold …\n"
+    cut = f"\n… {size - 100} bytes left out: the output exceeds the log's limit …\n"
     assert logged(tmp_path / "log", text, 100) == text[:50] + cut + text[-50:]
 
 

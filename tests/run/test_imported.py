@@ -66,9 +66,9 @@ def test_json_and_junit_tell_the_same() -> None:
         ('{"scenarios": [3]}', 1, "scenarios[0]: expected an object"),
         ('{"scenarios": [{"values": {}, "story": 3}]}', 1, "scenarios[0].story: expected a text"),
         ('{"scenarios": [{"values": {}, "story": "s", "variant": "v", "variation": true}]}', 1, "a whole number"),
-        ("<testsuites>\n<testsuite>", 2, "no well-formed XML"),
+        ("<testsuites>\n<testsuite>", 2, "not well-formed XML"),
         ("<html></html>", 1, "its element is <html>"),
-        ('<testsuite><testcase name="adds"/></testsuite>', 1, "not those of robbdd"),
+        ('<testsuite><testcase name="adds"/></testsuite>', 1, "not from robbdd"),
         ("[" * 100_000, 1, "nested too deeply"),
     ],
 )

@@ -276,7 +276,7 @@ def test_a_store_copied_without_its_log_says_what_it_lacks(store: RunStore, tmp_
         connection.execute("DELETE FROM execution WHERE idx > 1")
         connection.commit()
     assert missing_parts(place) == [
-        f"{store.database} lacks the results of 2 executions (000002, 000003), whose traces are there: "
+        f"{store.database} lacks the results of 2 executions (000002, 000003), whose traces exist: "
         "was it copied without its log results.sqlite-wal?"
     ]
 
@@ -309,7 +309,7 @@ def test_a_damaged_database_is_moved_aside_and_older_results_are_read(store: Run
     assert whole.results() == document, "its results.json is there"
     again = store.begin()
     assert "is damaged" in again.remark
-    assert "it is kept as results.sqlite.damaged-1, and a new one was begun" in again.remark
+    assert "it is kept as results.sqlite.damaged-1, and a new one was created" in again.remark
     assert store.database.with_name("results.sqlite.damaged-1").read_bytes() == data
     with closing(begun(again)) as recording:
         for message in execution(0):
@@ -343,7 +343,7 @@ def test_a_database_of_something_else_is_refused_and_left_as_it_is(store: RunSto
     with closing(sqlite3.connect(store.database)) as connection:
         connection.execute("CREATE TABLE stamps (country TEXT)")
     before = store.database.read_bytes()
-    with pytest.raises(DatabaseProblem, match="is a database of something else"):
+    with pytest.raises(DatabaseProblem, match="is a database of another program"):
         store.begin()
     assert store.database.read_bytes() == before
 
@@ -419,7 +419,7 @@ def test_a_run_in_a_folder_of_its_own_has_its_database_there(tmp_path: Path) -> 
         for index in range(COUNT):
             for message in execution(index):
                 recording.take(message)
-        with pytest.raises(OSError, match="another run is going on there"):
+        with pytest.raises(OSError, match="another run is writing to it"):
             begin_in(tmp_path / "own")
         recording.end("")
     document = place.results()

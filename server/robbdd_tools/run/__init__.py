@@ -1,1 +1,1 @@
-"""Launching, cancelling and keeping runs; the agent process itself is never imported here."""
+"""Launch, cancel and store runs. This package never imports the agent."""

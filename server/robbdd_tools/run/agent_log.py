@@ -1,4 +1,4 @@
-"""The log of an agent process: all that its code and users' code print, within a limit."""
+"""Size-limited log of an agent process's output."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.limits import RESULT_SIZE
 
 LIMIT = 4 * 1024 * 1024
-"""Bytes that are kept of what one agent process prints, half from the beginning and half from the end."""
+"""Bytes kept of one agent process's output: half from its beginning, half from its end."""
 _PART = 65536
 
 
 class BoundedLog:
-    """Copies what is written to ``stream`` to a file; of more than ``limit`` bytes only the first and the last half.
+    """Copy what is written to ``stream`` to a file; above ``limit`` bytes, keep only the first and the last half.
 
-    The first half is written at once, the last one when nobody can write any more. A disk that is full costs the log
-    only. Raises ``OSError`` where the file cannot be made.
+    The first half is written immediately, the last half when the write end is closed. A full disk loses the log only.
+    Raises ``OSError`` if the file cannot be created.
     """
 
     def __init__(self, path: Path, limit: int = LIMIT) -> None:
@@ -28,16 +28,16 @@ class BoundedLog:
         self._file = path.open("wb", buffering=0)
         self._read, write = os.pipe()
         self.stream: IO[bytes] = os.fdopen(write, "wb", buffering=0)
-        """What the process gets as its standard error stream; close it once the process has it."""
+        """Standard error stream for the process. Close it once the process has it."""
         self._thread = Thread(target=self._copy, daemon=True)
         self._thread.start()
 
     def wait(self, seconds: float) -> None:
-        """Wait until the log is complete, at most for a time: a process that got away may hold it open."""
+        """Wait at most ``seconds`` until the log is complete: an escaped process may still hold the stream open."""
         self._thread.join(seconds)
 
     def last_line(self) -> str:
-        """Return the last line that is not empty."""
+        """Return the last non-empty line."""
         try:
             lines = load_bytes(self.path, RESULT_SIZE).decode(errors="replace").split("\n")
         except OSError:
@@ -56,7 +56,7 @@ class BoundedLog:
                     del tail[: -self._half]
             cut += max(0, len(tail) - self._half)
             if cut:
-                self._write(f"\n… {cut} bytes are left out: more was printed than the log may hold …\n".encode())
+                self._write(f"\n… {cut} bytes left out: the output exceeds the log's limit …\n".encode())
             self._write(tail[-self._half :])
         os.close(self._read)
 
@@ -66,5 +66,5 @@ class BoundedLog:
             while left:
                 left = left[self._file.write(left) :]
         except OSError:
-            # The process must not wait for a log that nobody reads any more.
+            # Keep reading, so that the process does not block on a full pipe.
             return

@@ -1,4 +1,4 @@
-"""An agent process as the scheduler sees it: what it executes and until when."""
+"""Scheduler's view of one agent process: its scenario and its deadline."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from time import monotonic
 from robbdd_tools.run.launch import Agent
 
 STARTUP = 120.0
-"""Seconds of wall time that a process has from its start, or from an order, until it starts with the scenario."""
+"""Seconds of wall time in which a process must start a scenario after its own start or after an order."""
 
 
 @dataclass(slots=True, eq=False)
 class AgentWorker:
-    """An agent, the scenario that it is at, and the instant until which it must have finished or begun with it.
+    """An agent, its current scenario and the deadline for starting or finishing it.
 
-    ``following`` are the scenarios that it does next, because they share the execution of this one.
+    ``following`` are the scenarios that it executes next because they share the current execution.
     """
 
     agent: Agent
@@ -33,7 +33,7 @@ class AgentWorker:
     shared_outputs: int = 0
 
     def employ(self, task: Iterable[int]) -> None:
-        """Give it scenarios to execute, one after the other."""
+        """Assign scenarios to execute one after the other."""
         self.following = deque(task)
         self.index = index = self.following.popleft()
         self.started = self.failed = False
@@ -42,12 +42,12 @@ class AgentWorker:
         self.agent.execute(index)
 
     def release(self) -> None:
-        """Let it go on with what follows; else take note that it has nothing to do."""
+        """Continue with the following scenario, or mark the worker idle."""
         self.index, self.deadline, self.started = None, inf, False
         if self.following:
             self.employ(self.following)
 
     def expire(self) -> None:
-        """End it because it missed its deadline."""
+        """End the worker because it missed its deadline."""
         self.timed_out, self.deadline = True, inf
         self.agent.kill()

@@ -1,6 +1,6 @@
-"""The database of results: connections, schema and migrations.
+"""Results database: connections, schema and migrations.
 
-Journal mode WAL with full synchronisation: what is committed survives the end of the process and of the machine.
+Journal mode is WAL with full synchronisation: committed data survives a crash of the process or the machine.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from robbdd_tools.base.writing import replace_file
 
 NAME = "results.sqlite"
 LOG = "-wal"
-"""What SQLite adds to a database's name for its log, which holds the latest transactions."""
+"""Suffix of SQLite's write-ahead log, which holds the latest transactions."""
 BUSY = 30.0
 """Seconds that a connection waits while another one writes."""
 _DAMAGE = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
@@ -27,7 +27,7 @@ _UNWRITABLE = {sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY}
 MIGRATIONS: tuple[tuple[str, ...], ...] = (
     (
         # state: running, finished, stopped (at the first failure), interrupted, failed. A run that died is 'running'
-        # while nobody holds its lock. Host, start, end and jobs may differ between equal runs; nothing else does.
+        # although nobody holds its lock. Host, start, end and jobs may differ between equal runs; nothing else does.
         """CREATE TABLE run (
             number INTEGER PRIMARY KEY,
             state TEXT NOT NULL,
@@ -66,8 +66,8 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
             ended TEXT NOT NULL,
             UNIQUE (run, idx)
         )""",
-        # position is the order of judgement; ranges is a JSON list of the fluents' least and largest margins;
-        # held_before is 1 where the clause held before the behaviour began, NULL where that is not known.
+        # position is the order of judgement; ranges is a JSON list of the fluents' least and greatest margins;
+        # held_before is 1 if the clause held before the behaviour began, NULL if unknown.
         """CREATE TABLE clause (
             execution INTEGER NOT NULL REFERENCES execution (id) ON DELETE CASCADE,
             position INTEGER NOT NULL,
@@ -86,19 +86,19 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
             PRIMARY KEY (execution, position)
         ) WITHOUT ROWID""",
     ),
-    # contacts is a JSON list of what agents touched that no clause names.
+    # contacts is a JSON list of the agents' contacts that no clause names.
     ("ALTER TABLE execution ADD COLUMN contacts TEXT NOT NULL DEFAULT '[]'",),
     (
-        # cause is the type of an unknown verdict's reason; operand is the number of the fluent that decides the clause.
+        # cause is the type of an unknown verdict's reason; operand is the number of the deciding fluent.
         "ALTER TABLE clause ADD COLUMN cause TEXT NOT NULL DEFAULT ''",
         "ALTER TABLE clause ADD COLUMN operand INTEGER",
     ),
 )
-"""Statements that lead from each version of the schema to the next; ``PRAGMA user_version`` counts them."""
+"""Migration statements, one tuple per schema version; ``PRAGMA user_version`` counts them."""
 
 
 class DatabaseProblem(OSError):
-    """The database cannot be used; ``filename`` is its path and ``strerror`` says why, for the user."""
+    """The database cannot be used. ``filename`` is its path, ``strerror`` the reason shown to the user."""
 
     def __init__(self, path: Path, reason: str) -> None:
         super().__init__(errno.EIO, reason, str(path))
@@ -108,12 +108,12 @@ class DatabaseProblem(OSError):
 
 
 class DamagedDatabase(DatabaseProblem):
-    """The file is no database any more, or one that contradicts itself."""
+    """The file is not a database, or is corrupt."""
 
 
 @contextmanager
 def explained(path: Path) -> Generator[None]:
-    """Turn what SQLite complains of into ``DatabaseProblem``."""
+    """Translate SQLite errors to ``DatabaseProblem``."""
     try:
         yield
     except sqlite3.Error as error:
@@ -122,7 +122,7 @@ def explained(path: Path) -> Generator[None]:
 
 @contextmanager
 def transaction(connection: sqlite3.Connection) -> Generator[None]:
-    """Commit what is done inside, or nothing of it."""
+    """Commit all statements of the block, or none."""
     connection.execute("BEGIN IMMEDIATE")
     try:
         yield
@@ -135,9 +135,9 @@ def transaction(connection: sqlite3.Connection) -> Generator[None]:
 
 
 def open_database(path: Path, *, durable: bool = True) -> sqlite3.Connection:
-    """Open a database for writing, made and migrated as needed; raises ``DatabaseProblem``.
+    """Open a database for writing; create and migrate it as needed. Raises ``DatabaseProblem``.
 
-    Transactions are the caller's (``transaction``). Without ``durable`` nothing waits for the disk.
+    The caller manages transactions (``transaction``). Without ``durable``, commits do not wait for the disk.
     """
     if path.exists() and not path.is_file():
         raise DatabaseProblem(path, "is not a regular file")
@@ -158,9 +158,9 @@ def open_database(path: Path, *, durable: bool = True) -> sqlite3.Connection:
 
 
 def read_database(path: Path) -> sqlite3.Connection | None:
-    """Open a database for reading; ``None`` where there is none, or an empty one. Raises ``DatabaseProblem``.
+    """Open a database for reading; ``None`` if it is missing or empty. Raises ``DatabaseProblem``.
 
-    One that cannot be opened where it lies (read-only, with a log) is copied into memory.
+    A database that cannot be opened in place (read-only folder with a log) is copied into memory.
     """
     if not path.is_file():
         return None
@@ -174,13 +174,13 @@ def read_database(path: Path) -> sqlite3.Connection | None:
 
 
 def move_aside(path: Path) -> Path:
-    """Rename a damaged database and its log, so that nothing of them is lost; returns the new name."""
+    """Rename a damaged database and its log, so that no data is lost; return the new name."""
     for number in range(1, 10_000):
         target = path.with_name(f"{path.name}.damaged-{number}")
         if not target.exists():
             break
     else:
-        raise DatabaseProblem(path, "is damaged, and so are too many older ones beside it: remove these")
+        raise DatabaseProblem(path, "is damaged, and too many damaged copies are in its folder: remove them")
     for end in (LOG, "-shm", ""):
         part = path.with_name(path.name + end)
         if part.exists():
@@ -189,9 +189,9 @@ def move_aside(path: Path) -> Path:
 
 
 def check(connection: sqlite3.Connection, path: Path, pragma: str = "quick_check") -> None:
-    """Read the whole database; raises ``DamagedDatabase`` where it contradicts itself.
+    """Check the whole database; raises ``DamagedDatabase`` if it is inconsistent.
 
-    The pragma ``integrity_check`` compares the indexes with their tables, too.
+    The pragma ``integrity_check`` also compares indexes with their tables.
     """
     with explained(path):
         (found,) = connection.execute(f"PRAGMA {pragma}(1)").fetchone()
@@ -200,7 +200,7 @@ def check(connection: sqlite3.Connection, path: Path, pragma: str = "quick_check
 
 
 def inspect(path: Path) -> int:
-    """Check a database and whether it can be written, and leave it as it is; returns the version of its schema.
+    """Check that a database is intact and writable, without changing it; return its schema version.
 
     Raises ``DatabaseProblem``.
     """
@@ -208,7 +208,7 @@ def inspect(path: Path) -> int:
         version = _version(connection, path)
         check(connection, path, "integrity_check")
         connection.execute("BEGIN IMMEDIATE")
-        # Of a read-only database SQLite refuses no earlier statement.
+        # On a read-only database, SQLite refuses no earlier statement.
         connection.execute(f"PRAGMA user_version = {version}")
         connection.execute("ROLLBACK")
         return version
@@ -229,7 +229,7 @@ def _read(path: Path) -> sqlite3.Connection | None:
             connection.close()
             return None
         if version < len(MIGRATIONS):
-            # Whoever reads an older schema reads it as the latest one; the file is migrated by the next run.
+            # Readers migrate a copy of an older schema; the next run migrates the file.
             memory = _in_memory(connection)
             _migrate(memory, path)
             return memory
@@ -263,12 +263,12 @@ def _in_memory(connection: sqlite3.Connection) -> sqlite3.Connection:
 
 
 def _version(connection: sqlite3.Connection, path: Path) -> int:
-    """Return the version of the schema, 0 for an empty database; refuses what this version cannot use."""
+    """Return the schema version, 0 for an empty database. Raises ``DatabaseProblem`` for an unusable one."""
     (version,) = connection.execute("PRAGMA user_version").fetchone()
     kinds = {kind for (kind,) in connection.execute("SELECT DISTINCT type FROM sqlite_master")}
-    # A view or a trigger would run code of the file's author whenever we read or write.
+    # A view or a trigger would run code of the file's author on every access.
     if not kinds <= {"table", "index"} or (kinds and not version):
-        raise DatabaseProblem(path, "is a database of something else: move it away")
+        raise DatabaseProblem(path, "is a database of another program: move it away")
     if version > len(MIGRATIONS):
         known = len(MIGRATIONS)
         raise DatabaseProblem(
@@ -279,7 +279,7 @@ def _version(connection: sqlite3.Connection, path: Path) -> int:
 
 def _migrate(connection: sqlite3.Connection, path: Path) -> None:
     with transaction(connection):
-        # Another process may have migrated it meanwhile.
+        # Another process may have migrated it in the meantime.
         for statements in MIGRATIONS[_version(connection, path) :]:
             for statement in statements:
                 connection.execute(statement)

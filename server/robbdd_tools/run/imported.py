@@ -1,4 +1,4 @@
-"""Reads the results of a run elsewhere, as ``robbdd run --json`` or ``--junit`` wrote them."""
+"""Read results of runs made elsewhere, as written by ``robbdd run --json`` or ``--junit``."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ _CASE = re.compile(r"(?:[^\s:]*:)?(?P<variant>\S+) -- (?P<number>\d+)[^\[]*(?:\[
 _CLAUSE = re.compile(
     r"^(?P<sign>[✔✗?])(?P<said>.*?)  \[(?:Given|When|Then) (?P<sentence>[^\n]*)\]$", re.DOTALL | re.MULTILINE
 )
-"""A clause in a test case's output; only a reason may run over several lines."""
+"""A clause in a test case's output; only a reason may span several lines."""
 _MARGIN = re.compile(r" ([+−][\d.]+ [^\s:]+)")
 
 
 @dataclass(frozen=True, slots=True)
 class ImportedClause:
-    """A clause of an execution, in the order of its judgement.
+    """A clause of an execution, in the order of judgement.
 
-    ``iri`` is ``None`` where the file does not tell it; ``said`` is the verdict in words, ``margin`` that alone.
+    ``iri`` is ``None`` if the file does not contain it. ``said`` is the full verdict text, ``margin`` its margin only.
     """
 
     iri: str | None
@@ -37,10 +37,10 @@ class ImportedClause:
 
 @dataclass(frozen=True, slots=True)
 class ImportedScenario:
-    """An execution: number ``variation`` of a variant; ``variant`` is its IRI, or its name alone from JUnit XML.
+    """An execution: number ``variation`` of a variant. ``variant`` is its IRI, or only its name from JUnit XML.
 
-    ``model`` is the model file as it was named there (empty from JUnit XML), ``story`` the story's name; ``execution``
-    the name of that of a ``.bddx`` (empty without one); ``seconds`` is wall time where that is known.
+    ``model`` is the path of the model file at the place of the run (empty from JUnit XML), ``story`` the story's name.
+    ``execution`` is the name of the ``.bddx`` execution (empty without one); ``seconds`` is wall time, if known.
     """
 
     model: str
@@ -54,7 +54,7 @@ class ImportedScenario:
 
 
 class BrokenResults(Exception):
-    """The text holds no results; the message says why, for the user, ``line`` and ``column`` (from 1) where."""
+    """The text is not a results file. The message is for the user; ``line`` and ``column`` (from 1) say where."""
 
     def __init__(self, message: str, line: int = 1, column: int = 1) -> None:
         super().__init__(message)
@@ -63,7 +63,7 @@ class BrokenResults(Exception):
 
 
 def read_results(text: str) -> list[ImportedScenario]:
-    """Return the executions of a results file, which may begin with a byte-order mark; raises ``BrokenResults``."""
+    """Return the executions of a results file, with or without a byte-order mark; raises ``BrokenResults``."""
     text = text.removeprefix("\ufeff")
     return _from_junit(text) if text.lstrip().startswith("<") else _from_json(text)
 
@@ -74,7 +74,7 @@ def _from_json(text: str) -> list[ImportedScenario]:
     except json.JSONDecodeError as error:
         raise BrokenResults(f"this is neither JSON nor XML: {error.msg}", error.lineno, error.colno) from None
     except RecursionError:
-        raise BrokenResults("this is no results file: it is nested too deeply") from None
+        raise BrokenResults("this is not a results file: it is nested too deeply") from None
     scenarios = _Reader("", data).mapping("scenarios")
     return [_scenario(entry) for entry in scenarios.entries()]
 
@@ -107,7 +107,7 @@ def _clause(entry: _Reader) -> ImportedClause:
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """A value of a JSON document and its path, for messages."""
+    """A value of a JSON document with its path for messages."""
 
     path: str
     value: object
@@ -162,14 +162,14 @@ def _from_junit(text: str) -> list[ImportedScenario]:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as error:
         line, column = error.position
-        raise BrokenResults(f"this is no well-formed XML: {error}", line, column + 1) from None
+        raise BrokenResults(f"this is not well-formed XML: {error}", line, column + 1) from None
     suites = [root] if root.tag == "testsuite" else list(root.iter("testsuite"))
     if root.tag not in ("testsuite", "testsuites"):
-        raise BrokenResults(f"this is no JUnit XML: its element is <{root.tag}>, not <testsuites>")
+        raise BrokenResults(f"this is not JUnit XML: its element is <{root.tag}>, not <testsuites>")
     cases = [(suite.get("name", ""), case) for suite in suites for case in suite.findall("testcase")]
     found = [scenario for story, case in cases if (scenario := _case(story, case)) is not None]
     if cases and not found:
-        raise BrokenResults("these test results are not those of robbdd: no test case names a scenario")
+        raise BrokenResults("these test results are not from robbdd: no test case names a scenario")
     return found
 
 

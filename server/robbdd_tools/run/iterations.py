@@ -1,4 +1,4 @@
-"""Which executions of behaviours a clause of a scenario refers to: those of its iteration of ``for all``."""
+"""Find the behaviour executions of a clause's iteration of ``for all``."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from robbdd_tools.protocol.clauses import BehaviourCall
 
 
 def behaviour_scopes(steps: Iterable[Step]) -> list[Scope]:
-    """Return the scope of each behaviour among the steps of a scenario, in the order in which they are executed."""
+    """Return the scope of each behaviour step of a scenario, in execution order."""
     return [step.scope for step in steps if isinstance(step.statement, BehaviourCall)]
 
 
 def iterations_of(scope: Scope, behaviours: Sequence[Scope]) -> tuple[int, ...]:
-    """Return the numbers, from 1, of the first and last behaviour in a scope, or in the next one around that has any.
+    """Return the numbers (from 1) of the first and last behaviour in a scope, or in the nearest outer scope with any.
 
-    Nothing for a scenario with a single behaviour: every event of it is meant.
+    Returns nothing for a scenario with a single behaviour: all its events belong to it.
     """
     if len(behaviours) < 2:
         return ()

@@ -1,4 +1,4 @@
-"""Results as JUnit XML, which CI systems read: a suite per user story, a test case per execution."""
+"""JUnit XML report for CI systems: one suite per user story, one test case per execution."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from robbdd_tools.run.results import RunResults, ScenarioResult
 
 
 def junit(results: RunResults) -> str:
-    """Return the document. A violated clause is a failure, an unknown one an error; ``time`` is wall time, s."""
+    """Return the document. A violated clause is a failure, an unknown one an error; ``time`` is wall time in s."""
     root = ElementTree.Element("testsuites")
     for story, scenarios in groupby(results.scenarios, key=lambda scenario: scenario.spec.story):
         _suite(root, story, list(scenarios))
@@ -57,7 +57,7 @@ def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
 
 
 def _clauses(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
-    """Yield each clause's outcome and its words: sentence, margin, instant, reason."""
+    """Yield each clause's outcome and text: sentence, margin, instant, reason."""
     for clause in scenario.spec.clauses:
         judged = scenario.judged.get(clause.line) or never_judged(
             0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED
@@ -71,5 +71,5 @@ def _wall(scenario: ScenarioResult) -> float:
 
 
 def _lines(words: Iterable[str]) -> str:
-    """Escape what XML cannot say and what would act on a terminal; the lines stay."""
+    """Escape characters that XML cannot hold or that control a terminal; keep line breaks."""
     return "\n".join(printable(line) for each in words for line in each.split("\n"))

@@ -1,4 +1,4 @@
-"""Starts agent processes, gives them orders, streams their messages, stops them."""
+"""Start agent processes, send them orders, read their messages and stop them."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from robbdd_tools.run.agent_log import LIMIT, BoundedLog
 
 LOGS = "logs"
 WORK = "work"
-"""Working directory of the agents, in the run's folder: files that users' code writes are kept with the run."""
+"""Agents' working directory in the run folder: files written by users' code are kept with the run."""
 MESSAGE_BEGIN = '{"type": '
-"""How ``encode`` begins every message; within a string its quotes would be escaped."""
+"""First characters of every message of ``encode``. Inside a string, its quotes would be escaped."""
 LONGEST = 1024 * 1024
-"""Bytes that a line of the message channel has at most."""
+"""Maximum bytes of a line on the message channel."""
 MOST_STRANGE = 20
-"""Lines that are no messages of which a run shows the text, for each process."""
+"""Number of stray lines, which are not messages, that a run reports for each process."""
 PATIENCE = 0.2
-"""Seconds that agents have to end by themselves when they are asked to stop."""
+"""Seconds that agents have to stop by themselves."""
 _numbers = itertools.count(1)
 
 
 class Agent:
-    """One agent process working on a run folder; ``number`` names its log.
+    """One agent process of a run folder; ``number`` names its log.
 
-    ``module`` is what it runs, ``arguments`` are its arguments after the folder. Of what it prints, ``log_limit``
-    bytes are kept.
+    ``module`` is the module to run, ``arguments`` its arguments after the folder. ``log_limit`` is the number of bytes
+    kept of its output.
     """
 
     def __init__(
@@ -61,20 +61,20 @@ class Agent:
 
     @property
     def pid(self) -> int:
-        """The process's number."""
+        """The process id."""
         return self._process.pid
 
     def execute(self, index: int) -> None:
-        """Order a scenario; an agent that is gone says so by the end of its messages."""
+        """Order a scenario. If the agent has ended, ``messages`` ends, too."""
         assert self._process.stdin is not None
         try:
             self._process.stdin.write(encode(Execute(index)) + "\n")
             self._process.stdin.flush()
-        except (OSError, ValueError):  # its pipe is broken, or closed already
+        except (OSError, ValueError):  # the pipe is broken or already closed
             pass
 
     def messages(self) -> Iterator[RunMessage]:
-        """Yield the messages as they come until the process ends; a line that is no message becomes a log line."""
+        """Yield messages as they arrive until the process ends; other lines become log messages."""
         strange = 0
         for line in _lines(cast(BinaryIO, cast(TextIOWrapper, self._process.stdout).buffer)):
             try:
@@ -87,19 +87,19 @@ class Agent:
         self._close()
 
     def _close(self) -> None:
-        """Give back the descriptors of a process that has ended: this object may live on."""
+        """Close the descriptors of an ended process, as this object may live on."""
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 with suppress(OSError):
                     pipe.close()
 
     def kill(self) -> None:
-        """End the process and its children at once."""
+        """Kill the process and its children immediately."""
         if self._process.poll() is None:
             end_group(self._process)
 
     def ending(self) -> str:
-        """Say how the process ended, for clauses that it left open."""
+        """Describe how the process ended; used as the reason of its open clauses."""
         code = self._process.wait()
         self._log.wait(PATIENCE)
         tail = self._log.last_line()
@@ -111,24 +111,24 @@ class Agent:
             request_end(self._process)
 
     def finish(self) -> None:
-        """End what is left of an ended process and complete its log."""
+        """Kill remaining child processes and complete the log."""
         self._leftovers.join(PATIENCE)
         self._log.wait(PATIENCE)
 
     def wait(self, seconds: float) -> None:
-        """Wait for the process's end, at most for a time."""
+        """Wait at most ``seconds`` for the process to end."""
         with suppress(TimeoutExpired):
             self._process.wait(max(0.0, seconds))
 
     def _end_leftovers(self) -> None:
-        """End what the process leaves behind when it ends: it may hold the channel and the log open."""
+        """Kill child processes that outlive the agent: they may hold the channel and the log open."""
         self._process.wait()
         end_group(self._process)
         end_marked(self._mark)
 
 
 def _decoded(line: str) -> RunMessage:
-    """Return the message of a line, behind what other code wrote to the channel without ending its line, if any."""
+    """Return the message of a line; text of other code that precedes it on the same line is split off."""
     try:
         return decode(line)
     except ValueError:
@@ -139,7 +139,7 @@ def _decoded(line: str) -> RunMessage:
 
 
 def _lines(stream: BinaryIO) -> Iterator[str]:
-    """Yield the lines of a stream that are not empty; of one that is too long only its beginning."""
+    """Yield the non-empty lines of a stream, each cut at the maximum length."""
     while part := stream.readline(LONGEST + 1):
         rest = part
         while len(rest) > LONGEST and not rest.endswith(b"\n"):
@@ -149,7 +149,7 @@ def _lines(stream: BinaryIO) -> Iterator[str]:
 
 
 def stop(agents: Iterable[Agent]) -> None:
-    """Stop processes together, letting them end by themselves where they do, within ``PATIENCE``."""
+    """Stop processes in parallel; kill those that have not ended after ``PATIENCE``."""
     stopping = list(agents)
     for agent in stopping:
         agent.terminate()

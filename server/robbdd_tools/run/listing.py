@@ -1,4 +1,4 @@
-"""The scenarios of a variant before they are run, in the words that reports and editors use for them."""
+"""List the scenarios of a variant before a run, in the wording of reports and editors."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class ListedClause:
 class ListedScenario:
     """Scenario ``number`` (from 1) of a variant.
 
-    ``varying`` are the values that tell it from others, ``shared`` those that all scenarios of the variant have, both
-    as words; ``clauses`` are in the order in which they are judged.
+    ``varying`` are the values that differ between the variant's scenarios, ``shared`` those that all have, both as
+    text. ``clauses`` are in the order of judgement.
     """
 
     number: int
@@ -42,7 +42,7 @@ class ListedScenario:
 
 
 def listed_scenarios(model: AcceptanceModel, variant: Iri, first: int, most: int) -> Iterator[ListedScenario]:
-    """Yield ``most`` scenarios of a variant from number ``first`` on; nothing where the model has no such variant."""
+    """Yield at most ``most`` scenarios of a variant, starting at number ``first``; none for an unknown variant."""
 
     def chosen(found: Variant) -> Iterator[Numbered]:
         end = min(count(found.variation), first - 1 + most)
@@ -58,7 +58,7 @@ def listed_scenarios(model: AcceptanceModel, variant: Iri, first: int, most: int
 
 
 def _varying(variant: Variant) -> frozenset[Iri]:
-    """Return the variables that do not have the same value in all scenarios; looks at the ends of each choice only."""
+    """Return the variables whose value differs between scenarios; compares only the ends of each choice."""
     variation = variant.variation
     last = count(variation) - 1
     if last < 1:

@@ -1,4 +1,4 @@
-"""Run messages that are well-formed but cannot come from the agent, only from code that writes to its channel."""
+"""Detect well-formed messages that other code, not the agent, wrote to its channel."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robbdd_tools.protocol.specs import ScenarioSpec
 
 
 def misfit(message: RunMessage, specs: Sequence[ScenarioSpec], executed: int | None) -> str:
-    """Say why a message of an agent that executes scenario ``executed`` cannot be meant; nothing when it fits.
+    """Return why the agent of scenario ``executed`` cannot have sent a message; empty if it can.
 
     ``specs`` are the scenarios of the manifest.
     """

@@ -1,4 +1,4 @@
-"""What a stored run lacks of what it had, as after a copy of a part of its store."""
+"""Report missing parts of a stored run, as after copying only a part of its store."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from robbdd_tools.run.store import RESULTS, StoredRun
 from robbdd_tools.run.stored_results import finished_executions
 
 NAMED = 3
-"""Files that a message names."""
+"""Number of files that a message names."""
 
 
 def missing_parts(run: StoredRun) -> list[str]:
-    """Return what a run lacks, as sentences; nothing of one that goes on. Raises ``NoSuchRun``."""
+    """Return the missing parts of a run as sentences; none for a live run. Raises ``NoSuchRun``."""
     try:
         finished = finished_executions(run.database, run.number)
     except DatabaseProblem as error:
@@ -25,11 +25,11 @@ def missing_parts(run: StoredRun) -> list[str]:
     status = run.status()
     traces = {int(path.stem) for path in trace_file(run.folder, 0).parent.glob("*.mcap") if path.stem.isdecimal()}
     found: list[str] = []
-    # Each process may have written the trace of what it was at when the run ended.
+    # Each process may have been writing a trace when the run ended.
     unknown = traces.difference(finished)
     if len(unknown) > status.jobs:
         found.append(
-            f"{run.database} lacks the results of {_named(unknown)}, whose traces are there: "
+            f"{run.database} lacks the results of {_named(unknown)}, whose traces exist: "
             f"was it copied without its log {run.database.name}{LOG}?"
         )
     lost = {index for index, simulated in finished.items() if simulated}.difference(traces)

@@ -1,4 +1,4 @@
-"""Puts the messages of scenarios that are executed side by side into the order of the manifest."""
+"""Reorder the messages of parallel executions into manifest order."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robbdd_tools.protocol.messages import RunMessage, ScenarioFinished
 
 
 class InOrder:
-    """Lets the messages of one scenario through as they come, and keeps those of later ones until it is their turn.
+    """Pass on the current scenario's messages immediately; buffer those of later ones until their turn.
 
     ``turns`` are the numbers of the scenarios, increasing.
     """
@@ -19,7 +19,7 @@ class InOrder:
         self._kept: dict[int, list[RunMessage]] = {}
 
     def take(self, index: int, message: RunMessage) -> Iterator[RunMessage]:
-        """Take a message that belongs to scenario ``index``; yields those that are due now."""
+        """Take a message of scenario ``index``; yield the messages that are due."""
         if not self._turns or index != self._turns[0]:
             self._kept.setdefault(index, []).append(message)
             return
@@ -32,11 +32,11 @@ class InOrder:
             due = self._kept.pop(self._turns[0], []) if self._turns else []
 
     def forget(self, index: int) -> None:
-        """Drop what is kept of scenario ``index`` and later ones."""
+        """Drop the buffered messages of scenario ``index`` and later ones."""
         self._kept = {kept: messages for kept, messages in self._kept.items() if kept < index}
 
     def finished(self) -> Iterator[RunMessage]:
-        """Yield the messages of the finished scenarios whose turn never came."""
+        """Yield the messages of finished scenarios whose turn never came."""
         for _, messages in sorted(self._kept.items()):
             if isinstance(messages[-1], ScenarioFinished):
                 yield from messages

@@ -1,4 +1,4 @@
-"""Lets the agent's side render pictures of a run folder, with the first back end that works here."""
+"""Render pictures of a run folder in a separate process, with the first graphics back end that works."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from pathlib import Path
 from robbdd_tools.base.interpreter import run
 
 NO_GRAPHICS = 3
-"""Exit code of the rendering process when a back end does not work."""
+"""Exit code of the rendering process if its back end does not work."""
 MOMENTS, VIDEOS, THUMBNAILS = "moments", "videos", "thumbnails"
 
 
 class NoPictures(Exception):
-    """There are no pictures; the message says why, and what to do about it."""
+    """Pictures cannot be rendered; the message gives the reason and what to do."""
 
 
 def back_ends() -> tuple[str, ...]:
-    """Return the values of ``MUJOCO_GL`` that may render here without a display, best first, or the one that is set."""
+    """Return possible values of ``MUJOCO_GL`` for rendering without a display, best first, or the value already set."""
     chosen = os.environ.get("MUJOCO_GL")
     if chosen:
         return (chosen,)
@@ -33,36 +33,36 @@ def back_ends() -> tuple[str, ...]:
 
 
 def advice() -> str:
-    """Return what to do where no back end works."""
+    """Return what to do when no back end works."""
     if sys.platform in ("win32", "darwin"):
         return "install the driver of the graphics card and start this in a session with a desktop"
     return "install EGL (libegl1 and libgl1) or OSMesa (libosmesa6), or set MUJOCO_GL=glfw where there is a display"
 
 
 def no_display() -> str:
-    """Return why no window can be shown here, nothing where one can."""
+    """Return why no window can be opened here; empty if one can."""
     if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
         return ""
-    return "--viewer needs a display, and there is none (DISPLAY is not set); --record DIR writes moving pictures"
+    return "--viewer needs a display, and there is none (DISPLAY is not set); --record DIR writes videos"
 
 
 def render_scene(folder: Path, index: int, output: Path) -> None:
-    """Write the initial scene of scenario number ``index`` of a run folder; raises ``NoPictures``."""
+    """Render the initial scene of scenario number ``index`` of a run folder; raises ``NoPictures``."""
     _render(folder, str(index), output)
 
 
 def render_moments(folder: Path, output: Path) -> int:
-    """Write the moment of every violated clause into a folder and return how many; raises ``NoPictures``."""
+    """Render the moment of every violated clause into a folder and return the count; raises ``NoPictures``."""
     return len(_render(folder, MOMENTS, output))
 
 
 def render_videos(folder: Path, output: Path) -> int:
-    """Write every scenario of a run as a moving picture and return how many; raises ``NoPictures``."""
+    """Render a video of every scenario of a run and return the count; raises ``NoPictures``."""
     return len(_render(folder, VIDEOS, output))
 
 
 def render_thumbnails(folder: Path, output: Path, chosen: Iterable[tuple[int, int]]) -> int:
-    """Write small pictures of the violations of some clauses (scenario, feature line); raises ``NoPictures``."""
+    """Render thumbnails of the violations of some clauses (scenario, feature line); raises ``NoPictures``."""
     return len(_render(folder, THUMBNAILS, output, [f"{index}:{line}" for index, line in chosen]))
 
 

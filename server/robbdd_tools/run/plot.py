@@ -1,4 +1,4 @@
-"""A small plot of a clause's margin over time, with its window and the events, as SVG that suits any theme."""
+"""Small SVG plot of a clause's margin over time, with its window and events; suits light and dark themes."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from robbdd_tools.run.report import MINUS, margin
 
 WIDTH, HEIGHT = 320, 180
 LEFT, RIGHT, TOP, BOTTOM = 64, 12, 34, 20
-"""Room around the plot for numbers and for the names of events, pixels."""
+"""Margins of the plot for numbers and event names, pixels."""
 INK, LINE, GOOD, BAD = "#8a8f98", "#3f8fd6", "#2ea043", "#e5534b"
 """Colours that are legible on white and on black."""
 LETTER = 5.6
-"""Width of a letter of the names of events, pixels, about."""
+"""Approximate width of a letter of the event names, pixels."""
 LEVELS = 2
-"""Lines on which names of events stand that would cover each other."""
+"""Rows for event names that would overlap on one."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """Where times (s) and margins lie in the picture."""
+    """Mapping of times (s) and margins to pixels."""
 
     duration: float
     low: float
@@ -36,9 +36,9 @@ class _Frame:
 
 
 def plot(kept: Mapping[str, Any], line: int, operand: int | None = None) -> str | None:
-    """Return the plot of the clause on a feature line as SVG, ``None`` where there is nothing to plot.
+    """Return the plot of the clause on a feature line as SVG, ``None`` if there is nothing to plot.
 
-    ``kept`` is what is kept beside a trace; of several fluents, number ``operand`` is shown, which decides the clause.
+    ``kept`` are the stored curves of a trace. Among several fluents, number ``operand``, the deciding one, is plotted.
     """
     parts: Sequence[Mapping[str, Any]] = kept["clauses"].get(str(line), ())
     number = operand or 0
@@ -73,7 +73,7 @@ def _axes(frame: _Frame, part: Mapping[str, Any], bounds: tuple[float, float]) -
     yield f'<line x1="{LEFT}" y1="{zero}" x2="{WIDTH - RIGHT}" y2="{zero}" stroke="{INK}" stroke-dasharray="4 3"/>'
     yield f'<text x="{LEFT - 6}" y="{zero + 3}" text-anchor="end">0</text>'
     for value in bounds:
-        # A number that would cover that of the zero line is left out.
+        # Leave out a number that would overlap that of the zero line.
         if abs(frame.y(value) - zero) > 11:
             words = margin(value, part["unit"]) or f"{value:+.0f}".replace("-", MINUS)
             yield f'<text x="{LEFT - 6}" y="{frame.y(value) + 3}" text-anchor="end">{escape(words)}</text>'

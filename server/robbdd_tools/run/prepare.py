@@ -1,4 +1,4 @@
-"""Lays a run out in a folder: features, hooks and steps for behave, the manifest, the graph as JSON-LD."""
+"""Prepare a run folder: features, behave's hooks and steps, the manifest, the graph as JSON-LD."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ paths = {FEATURES}
 
 @dataclass(frozen=True, slots=True)
 class RunRequest:
-    """What to run: a model, the name it goes by in reports, the seed, and the variants (all when ``None``).
+    """What to run: a model, its name in reports, the seed, and the variants (all when ``None``).
 
-    ``scenarios`` selects among those of a variant. A model with executions is run as they say, each of them the
-    scenarios of its variant, with a seed of its own where it has one; ``executions`` are those to run (all when
-    ``None``). ``repeat`` is how often each scenario is executed (as executions say, else once, when ``None``); ``only``
-    selects among what would be executed.
+    ``scenarios`` selects scenarios within a variant. If the model has executions, they define the run: each executes
+    its variant's scenarios, with its own seed if it has one; ``executions`` selects among them (all when ``None``).
+    ``repeat`` is the number of repetitions of each scenario (when ``None``, that of the execution, else one); ``only``
+    filters the result.
     """
 
     model: AcceptanceModel
@@ -59,26 +59,26 @@ class RunRequest:
     only: Callable[[ScenarioSpec], bool] | None = None
 
     def wants(self, variant: Iri) -> bool:
-        """Tell whether a variant is to be run."""
+        """Return whether a variant is to be run."""
         return self.variants is None or variant in self.variants
 
     def stories(self) -> tuple[Story, ...]:
-        """Return the stories with a variant to be run, with those variants."""
+        """Return the stories that have a variant to run, with those variants only."""
         return _stories(self.model.stories, self.wants)
 
     def chosen_executions(self) -> tuple[Execution, ...]:
-        """Return the executions to be run, of the variants to be run."""
+        """Return the executions to run, of the variants to run."""
         chosen = self.model.executions if self.executions is None else self.executions
         return tuple(execution for execution in chosen if self.wants(execution.variant))
 
 
 def prepare(request: RunRequest, folder: Path) -> Manifest:
-    """Write everything that the agent needs into ``folder`` (made if missing); raises ``OSError``."""
+    """Write everything that the agent needs into ``folder`` (created if missing); raises ``OSError``."""
     return prepare_all([request], request.name, request.seed, folder)
 
 
 def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Path, traces: bool = False) -> Manifest:
-    """Write everything that the agent needs to run several models, called ``name`` together; raises ``OSError``."""
+    """Write everything that the agent needs to run several models under one ``name``; raises ``OSError``."""
     parts: list[_Part] = []
     sources: dict[str, str] = {}
     for stale in (folder / FEATURES / "steps").glob(OWN_STEPS):
@@ -95,9 +95,9 @@ def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Pa
 
 
 def bring_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, str]:
-    """Copy the steps that users wrote for a model (its path or URI), if any, into ``folder``. Raises ``OSError``.
+    """Copy the user-written steps of a model (path or URI), if any, into ``folder``. Raises ``OSError``.
 
-    Returns the copy's path in the folder with that of the original.
+    Returns a map of the copy's path in the folder to the original's.
     """
     path = uri_to_path(model) if model.startswith("file:") else Path(model)
     own = None if path is None else steps_file(path)
@@ -112,10 +112,10 @@ def bring_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, 
 def lay_out(
     plan: FeaturePlan, name: str, seed: int, folder: Path, executions: tuple[Execution, ...] = ()
 ) -> Iterator[ScenarioSpec]:
-    """Write features, hooks, steps and manifest into ``folder`` (made if missing), scenario by scenario.
+    """Write features, hooks, steps and manifest into ``folder`` (created if missing); yield each scenario.
 
-    ``name`` is that of the model in reports. Each of the ``executions`` has a folder of features of its own; nothing
-    is repeated. Raises ``OSError`` and ``TemplateProblem``.
+    ``name`` is the model's name in reports. Each of the ``executions`` has its own folder of features; none is
+    repeated. Raises ``OSError`` and ``TemplateProblem``.
     """
     return _written(list(_parts(plan, name, seed, executions, FEATURES, 1)), Manifest(name, seed, ()), folder)
 
@@ -131,7 +131,7 @@ def _written(parts: Sequence[_Part], head: Manifest, folder: Path) -> Iterator[S
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """Scenarios that are executed in one way, with the folder of their features in that of the run."""
+    """Scenarios that are executed in one way, and the folder of their features in the run folder."""
 
     plan: FeaturePlan
     writer: SpecWriter
@@ -140,7 +140,7 @@ class _Part:
     only: Callable[[ScenarioSpec], bool] | None
 
     def specs(self, folder: Path) -> Iterator[ScenarioSpec]:
-        """Write the features below the run's folder and yield what is to be executed."""
+        """Write the features below the run folder and yield the scenarios to execute."""
         for written in written_scenarios(self.plan, folder / self.folder):
             feature = f"{self.folder}/{written.file.name}"
             for spec in self.writer.specs(feature, written.story.iri, written.scenario, self.repeat):
@@ -172,13 +172,13 @@ def _parts(
 
 
 def _stories(stories: Iterable[Story], wanted: Callable[[Iri], bool]) -> tuple[Story, ...]:
-    """Return the stories with a wanted variant, with these variants only."""
+    """Return the stories that have a wanted variant, with these variants only."""
     chosen = (only(story, wanted) for story in stories)
     return tuple(story for story in chosen if story.variants)
 
 
 def write_surroundings(folder: Path, model_name: str, json_ld: str) -> None:
-    """Add what plain behave and readers of graphs want: ``behave.ini`` and the model as JSON-LD. Raises ``OSError``."""
+    """Add files for plain behave and for graph readers: ``behave.ini`` and the model as JSON-LD. Raises ``OSError``."""
     folder.mkdir(parents=True, exist_ok=True)
     replace_file(folder / "behave.ini", _BEHAVE)
     replace_file(folder / f"{model_name}.jsonld", json_ld)

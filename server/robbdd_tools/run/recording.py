@@ -1,6 +1,6 @@
-"""Writes the results of a run into its database while it goes on: each finished execution in a transaction of its own.
+"""Write the results of a live run to the database, one transaction per finished execution.
 
-``Recording.take`` stands between the scheduler and everybody who shows results: what it has taken is committed.
+``Recording.take`` runs before anything shows a result: a result that is shown is committed.
 """
 
 from __future__ import annotations
@@ -38,15 +38,15 @@ if TYPE_CHECKING:
 
 
 class OtherSimulator(Exception):
-    """A run cannot be resumed with this simulator; the message says why."""
+    """A run cannot be resumed with this simulator; the message gives the reason."""
 
 
 class Recording:
-    """The rows of one run that is going on. Every method raises ``DatabaseProblem`` when the database cannot be used.
+    """The database rows of one live run. Every method raises ``DatabaseProblem`` if the database cannot be used.
 
-    ``begin`` it or ``resume`` it, let it ``take`` every message when it comes, and ``end`` it; ``close`` it in any
-    case. One thread at a time may use it. Several processes may record executions of one run: one of them begins it,
-    one ends it, and each takes the messages of its own executions.
+    Call ``begin`` or ``resume`` first, ``take`` for every message on arrival, then ``end``; call ``close`` in any case.
+    Only one thread may use it at a time. Several processes may record executions of one run: one of them begins it, one
+    ends it, and each takes the messages of its own executions.
     """
 
     def __init__(self, place: StoredRun, manifest: Manifest) -> None:
@@ -59,7 +59,7 @@ class Recording:
         self._connection = open_database(place.database, durable=place.kept)
 
     def begin(self, record: RunRecord, policy: Policy, prepared: str = "") -> None:
-        """Write down what is run; ``prepared`` is a digest of the run's folder."""
+        """Record what is run; ``prepared`` is a digest of the run folder."""
         self._stops = policy.stop_on_failure
         row = {
             "number": self._place.number,
@@ -83,7 +83,7 @@ class Recording:
             _insert(connection, "run", row)
 
     def resume(self, policy: Policy) -> RunResults:
-        """Go on with an unfinished run as ``policy`` says; returns what is finished of it."""
+        """Resume an unfinished run under ``policy``; return its finished results."""
         self._stops = policy.stop_on_failure
         number = self._place.number
         with self._writing() as connection:
@@ -97,10 +97,9 @@ class Recording:
         return results
 
     def take(self, message: RunMessage) -> bool:
-        """Keep a message; an execution is in the database when this returns for its end.
+        """Store a message; a finished execution is committed on return.
 
-        Returns whether the message is news (``is_news``). Raises ``OtherSimulator`` when a run is resumed with another
-        one.
+        Returns ``is_news(message)``. Raises ``OtherSimulator`` if a resumed run uses another simulator.
         """
         match message:
             case RunStarted():
@@ -118,25 +117,25 @@ class Recording:
         return self.is_news(message)
 
     def is_news(self, message: RunMessage) -> bool:
-        """Return whether a message is about an execution that was not finished before the run was resumed."""
+        """Return whether a message is about an execution that was unfinished when the run was resumed."""
         return getattr(message, "index", None) not in self._done
 
     def forget(self, index: int) -> None:
-        """Delete the execution of a scenario that is executed once more."""
+        """Delete the execution of a scenario that is executed again."""
         with self._writing() as connection:
             connection.execute("DELETE FROM execution WHERE run = ? AND idx = ?", (self._place.number, index))
 
     def end(self, ending: str, *, interrupted: bool = False) -> RunResults:
-        """Write down how the run ended (``ending``: why executions were left open) and return its results.
+        """Record the end of the run and return its results; ``ending`` is the reason for open executions.
 
-        ``run.json`` and ``results.json`` are written, too. Raises ``OSError``.
+        Also writes ``run.json`` and ``results.json``. Raises ``OSError``.
         """
         number = self._place.number
         with self._writing() as connection:
             results = restored(connection, number, self.manifest)
             first = first_failure(results) if self._stops else None
             if first is not None:
-                # What was finished beyond it depends on the number of processes.
+                # Which later executions were finished depends on the number of processes.
                 connection.execute("DELETE FROM execution WHERE run = ? AND idx > ?", (number, first))
                 results = restored(connection, number, self.manifest)
             count = sum(one.finished is not None for one in results.scenarios)
@@ -159,7 +158,7 @@ class Recording:
         return results
 
     def close(self) -> None:
-        """Let the database and the run's lock go."""
+        """Close the database and release the run's lock."""
         self._connection.close()
         if self._place.lock is not None:
             self._place.lock.release()
@@ -224,10 +223,10 @@ class Recording:
 
 
 def pending(results: RunResults, *, stops: bool) -> list[int]:
-    """Return the numbers of the scenarios that are to be executed so that a run has all results.
+    """Return the numbers of the scenarios still to execute for a run to have all results.
 
-    Scenarios that share an execution are executed together again, as far as one of them is open. When the run
-    ``stops`` at its first failure, those beyond one that is known are left out.
+    Scenarios that share an execution are executed together again if one of them is open. If the run ``stops`` at its
+    first failure, scenarios after a known failure are left out.
     """
     first = first_failure(results) if stops else None
     wanted = [
@@ -253,13 +252,13 @@ def first_failure(results: RunResults) -> int | None:
 
 
 def why(error: OSError) -> str:
-    """Say why a run cannot be kept any further."""
+    """Return why no further results of a run can be kept."""
     reason = str(error) if isinstance(error, DatabaseProblem) else f"{error.filename}: {error.strerror or error}"
     return f"results cannot be kept any more: {reason}"
 
 
 def _insert(connection: sqlite3.Connection, table: str, row: Mapping[str, object]) -> int | None:
-    """Insert a row whose names are ours and return its identifier."""
+    """Insert a row and return its id. Table and column names come from this module, never from users."""
     names, places = ", ".join(row), ", ".join("?" * len(row))
     return connection.execute(f"INSERT INTO {table} ({names}) VALUES ({places})", tuple(row.values())).lastrowid
 

@@ -1,7 +1,7 @@
-"""Related scenarios: those that are linked to nodes of one behaviour tree and can be judged from one execution of it.
+"""Related scenarios: scenarios linked to nodes of one behaviour tree, judged from one execution of it.
 
-Scenarios go together when their variables of one name have one value. A scenario that leaves variables open to the
-others (to pick a thing, no matter where to) goes with the first ones that it fits.
+Scenarios are related if their variables of equal name have equal values. A scenario that leaves variables open to the
+others (pick an object, wherever it is placed) joins the first group that it fits.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from robbdd_tools.graph.acceptance_model import (
 
 Values = Mapping[Iri, Cell]
 Key = tuple[Iri, Iri | None, int]
-"""A variant, the execution that executes it if there is one, and the number of one of its scenarios."""
+"""A variant, its execution if it has one, and the number of one of its scenarios."""
 
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A scenario that is linked to a node of a behaviour tree, by the behaviour in its When."""
+    """A scenario linked to a node of a behaviour tree by the behaviour in its When."""
 
     variant: Variant
     execution: Execution | None
@@ -41,15 +41,15 @@ class Member:
 
     @property
     def key(self) -> Key:
-        """What it is found by."""
+        """Key of the scenario."""
         return self.variant.iri, None if self.execution is None else self.execution.iri, self.number
 
 
 @dataclass(slots=True)
 class Group:
-    """Scenarios that one execution of a tree is judged for, in the order of the nodes; ``number`` counts from 1.
+    """Scenarios judged from one execution of a tree, in node order; ``number`` counts from 1.
 
-    ``values`` are those of all of them.
+    ``values`` is the union of their values.
     """
 
     tree: BehaviourTree
@@ -58,20 +58,20 @@ class Group:
     values: dict[Iri, Cell] = field(default_factory=dict[Iri, Cell])
 
     def takes(self, member: Member) -> bool:
-        """Tell whether a scenario agrees with those that are in it; it holds no two scenarios of one variant."""
+        """Return whether a scenario agrees with the members. A group holds at most one scenario of each variant."""
         if any(other.key[:2] == member.key[:2] for other in self.members):
             return False
         return all(self.values.get(name, value) == value for name, value in member.values.items())
 
     def add(self, member: Member) -> None:
-        """Take a scenario in."""
+        """Add a scenario."""
         self.members.append(member)
         self.values |= member.values
 
 
 @dataclass(frozen=True, slots=True)
 class Linked:
-    """The node of a behaviour tree that a variant is linked to; ``is_root`` when it stands for the whole tree."""
+    """The behaviour-tree node of a variant; ``is_root`` if the node is the root of its tree."""
 
     node: Iri
     is_root: bool
@@ -87,7 +87,7 @@ class Relations:
         links = list(_links(model, trees))
         self._linked = {variant.iri: Linked(node, node in roots) for variant, _, _, _, node in links}
         self.behaviours: dict[Iri, BehaviourClause] = {}
-        """What each linked node executes, as the first scenario that is linked to it has it."""
+        """The behaviour of each linked node, taken from the first scenario linked to it."""
         for _, _, _, link, node in links:
             self.behaviours.setdefault(node, link)
         for tree in model.trees:
@@ -97,20 +97,20 @@ class Relations:
                 self._groups.update((member.key, group) for member in group.members)
 
     def node(self, variant: Variant) -> Linked | None:
-        """Return the node that a variant is linked to, if it is."""
+        """Return the node that a variant is linked to, if any."""
         return self._linked.get(variant.iri)
 
     def group(self, variant: Iri, execution: Iri | None, number: int) -> Group | None:
-        """Return the scenarios that go with one, itself among them; ``None`` for one without a behaviour tree."""
+        """Return the group of a scenario; ``None`` for one without a behaviour tree."""
         return self._groups.get((variant, execution, number))
 
 
 _Link = tuple[Variant, Execution | None, int, BehaviourClause, Iri]
-"""A linked variant, what executes it, the number of its setting, its behaviour and the node."""
+"""A linked variant, its execution, the number of its setting, its behaviour and the node."""
 
 
 def linked_behaviour(variant: Variant) -> BehaviourClause | None:
-    """Return the behaviour that links a variant to a behaviour tree, if one does."""
+    """Return the behaviour that links a variant to a behaviour tree, if any."""
     return next((one for one in variant.template.clauses if isinstance(one, BehaviourClause) and one.node), None)
 
 
@@ -130,7 +130,7 @@ def _links(model: AcceptanceModel, trees: Mapping[Iri, BehaviourTree]) -> Iterat
 
 @dataclass(frozen=True, slots=True)
 class _Setting:
-    """What scenarios must have in common to be judged from one execution, besides their values."""
+    """What scenarios must have in common, besides their values, to be judged from one execution."""
 
     scene: SceneModel
     implementation: Implementation | None = None
@@ -154,7 +154,7 @@ def _groups(tree: BehaviourTree, links: Iterable[_Link]) -> list[Group]:
         waiting = iter(list(known))
         for number, values in every_scenario(variant):
             member = Member(variant, execution, number, values, link, node)
-            # Scenarios mostly come in the same order, so that the next group is the one: the others are a last resort.
+            # Scenarios are mostly in the same order, so the next group usually fits; try the others last.
             group = next(waiting, None)
             if group is None or not group.takes(member):
                 group = next((other for other in known if other.takes(member)), None)
@@ -167,5 +167,5 @@ def _groups(tree: BehaviourTree, links: Iterable[_Link]) -> list[Group]:
 
 
 def roots_of(tree: BehaviourTree) -> tuple[TreeNode, ...]:
-    """Return the nodes that stand at the top: the root or, where code makes the tree, all that it names."""
+    """Return the top nodes: the root, or all named nodes if code creates the tree."""
     return tuple(TreeNode(node, "leaf") for node in tree.nodes) if tree.root is None else (tree.root,)

@@ -1,4 +1,4 @@
-"""Verdicts in words: the same phrases on the command line and in editors."""
+"""Wording of verdicts, shared by the command line and editors."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ MINUS = "−"
 
 
 def plain_sentence(text: str) -> str:
-    """Return a step's sentence for reading: names without prefix and quotes, ``event`` left out."""
+    """Return a step's sentence for display: names without prefix and quotes, without the word ``event``."""
     without_event = text.replace('event "', '"')
     return re.sub(r'"([^"]*)"', lambda match: re.sub(r"'?[\w.-]+:([^,'\]]*)'?", r"\1", match[1]), without_event)
 
 
 def contact_words(contact: Contact) -> str:
-    """Return a contact for reading: who touched what, when, and how hard."""
+    """Return a contact as text: who touched what, when, and how hard."""
     agent, part, other = (name.rpartition(":")[2] for name in (contact.agent, contact.part, contact.other))
     who = f"{part}, held by {agent}," if part else agent
     whom = "itself" if other == agent else other
@@ -32,7 +32,7 @@ def contact_words(contact: Contact) -> str:
 
 
 def margin(robustness: float | None, unit: str) -> str:
-    """Return a signed margin: metres as millimetres, other units as they are, nothing where there is no unit."""
+    """Return a signed margin: metres as millimetres, other units unchanged; empty without a unit."""
     if robustness is None or not unit:
         return ""
     value, shown = (robustness * 1000.0, "mm") if unit == "m" else (robustness, unit)
@@ -41,18 +41,18 @@ def margin(robustness: float | None, unit: str) -> str:
 
 
 def deciding_words(clause: ClauseSpec, judged: ClauseJudged) -> str:
-    """Return which of several fluents decides a clause; nothing for a clause of one fluent."""
+    """Return the text of the deciding fluent; empty for a clause with one fluent."""
     statement = clause.statement
     if judged.operand is None or not isinstance(statement, Junction):
         return ""
-    # A person may have edited the sentence that was judged.
+    # The judged sentence may have been edited by hand.
     fluents = list(fluents_of(statement))
     known = 1 < len(fluents) > judged.operand
     return f"decided by: {plain_sentence(sentence(fluents[judged.operand]))}" if known else ""
 
 
 def verdict_words(judged: ClauseJudged, clause: ClauseSpec | None = None) -> str:
-    """Return sign and margin of a judged clause; when it was violated, the fluent that decides it, and the reason."""
+    """Return sign and margin of a judged clause; for a violated one also the deciding fluent and the reason."""
     outcome = Outcome(judged.verdict)
     parts = [SIGNS[outcome]]
     shown = margin(judged.robustness, judged.unit)
@@ -72,7 +72,7 @@ def values_words(spec: ScenarioSpec) -> str:
 
 
 def value_words(name: str, value: object) -> str:
-    """Return a variable and its value, both given with their prefixes: ``thing = cube0``."""
+    """Return a variable and its value, both given with prefix: ``thing = cube0``."""
     return f"{_variable(name)} = {_local(value)}"
 
 

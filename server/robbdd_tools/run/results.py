@@ -1,4 +1,4 @@
-"""Collects the messages of a run into its results, and writes them as the documented JSON."""
+"""Collect run messages into results, and write them as the documented JSON."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ class ScenarioResult:
 
 @dataclass(slots=True)
 class RunResults:
-    """Everything known of a run; ``apply`` takes the messages in the order in which they come.
+    """All known results of a run; ``apply`` takes its messages in order of arrival.
 
-    ``ending`` says why scenarios were left open, ``cause`` is the type of the reason.
+    ``ending`` is the reason for open scenarios, ``cause`` the type of that reason.
     """
 
     manifest: Manifest
@@ -49,7 +49,7 @@ class RunResults:
         self.scenarios = [ScenarioResult(spec) for spec in self.manifest.scenarios]
 
     def apply(self, message: RunMessage) -> None:
-        """Keep what a message tells."""
+        """Apply a message."""
         match message:
             case ClauseJudged():
                 self.scenarios[message.index].judged[message.line] = message
@@ -65,7 +65,7 @@ class RunResults:
                 pass
 
     def close(self, reason: str, cause: Cause = Cause.NOT_EXECUTED) -> list[ClauseJudged]:
-        """Judge every clause that is still open *unknown* for ``reason``; returns these judgements."""
+        """Judge every open clause *unknown* for ``reason``; return these judgements."""
         self.ending, self.cause = reason, cause
         closing = [
             never_judged(index, clause.line, reason, cause)
@@ -85,7 +85,7 @@ class RunResults:
         return next(clause for clause in self.scenarios[index].spec.clauses if clause.line == line)
 
     def count(self, outcome: Outcome) -> int:
-        """Return how many scenarios have a verdict."""
+        """Return the number of scenarios with a verdict."""
         return sum(scenario.verdict is outcome for scenario in self.scenarios)
 
     def as_json(self) -> dict[str, Any]:
@@ -109,7 +109,7 @@ class RunResults:
 
 
 def finished_in(document: Mapping[str, Any]) -> frozenset[int]:
-    """Return the numbers of the scenarios that a document of results has finished."""
+    """Return the numbers of the finished scenarios in a results document."""
     return frozenset(i for i, entry in enumerate(document["scenarios"]) if entry.get("duration") is not None)
 
 
@@ -137,7 +137,7 @@ def _scenario(scenario: ScenarioResult, vacuous: Mapping[str, str]) -> dict[str,
 
 
 def _shared(tree: TreeSpec, node: str) -> dict[str, Any]:
-    """Return the execution of a behaviour tree that a scenario was judged from, together with others of one name."""
+    """Return the behaviour-tree execution from which a scenario and its related scenarios were judged."""
     return {"execution": tree.name, "tree": tree.tree, "node": node}
 
 

@@ -1,4 +1,4 @@
-"""What the agent has to know of each scenario: its scene, its events, its seed, the lines of its clauses."""
+"""Build the agent's specification of each scenario: its scene, events, seed and clause lines."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Values = Mapping[Iri, Cell]
 
 @dataclass(frozen=True, slots=True)
 class _Shared:
-    """What all scenarios of a variant have in common."""
+    """Data that all scenarios of a variant have in common."""
 
     clauses: tuple[Clause, ...]
     objects: tuple[Iri, ...]
@@ -52,9 +52,9 @@ class _Shared:
 
 
 class SpecWriter:
-    """Makes the specifications of the scenarios of one model, executed as ``execution`` wants, if there is one.
+    """Build the scenario specifications of one model, for ``execution`` if there is one.
 
-    ``relations`` are those of the whole model, so that a scenario comes out the same whatever else is run.
+    ``relations`` cover the whole model, so that a scenario's specification does not depend on the selection.
     """
 
     def __init__(
@@ -111,7 +111,7 @@ class SpecWriter:
         return replace(observation, targets=tuple(map(self._curie, observation.targets)), mapped=mapped)
 
     def specs(self, feature: str, story: Iri, scenario: ScenarioText, repeat: int = 1) -> Iterator[ScenarioSpec]:
-        """Yield the repetitions of a scenario of a feature, which is a path relative to the run's folder."""
+        """Yield the repetitions of a feature's scenario; ``feature`` is a path relative to the run folder."""
         first = self._spec(feature, story, scenario)
         execution = None if self.execution is None else Iri(self.execution.iri)
         for repetition in range(1, repeat + 1):
@@ -124,7 +124,7 @@ class SpecWriter:
         variant = scenario.variant
         shared = self._known(variant)
         curie = self._curie
-        # A template may leave a step out; there is nothing to judge or to execute then.
+        # A template may omit a step; then there is nothing to judge or to execute.
         steps = [(line, step) for line, step in zip(scenario.lines, scenario.steps, strict=True) if line]
         scopes = behaviour_scopes(step for _, step in steps)
         return ScenarioSpec(
@@ -210,7 +210,7 @@ class SpecWriter:
         )
 
     def _used(self, shared: _Shared, extra: tuple[Iri, ...]) -> set[str]:
-        """Return what values and clauses speak of, and the objects that carry the workspaces among it."""
+        """Return the elements used by values and clauses, and the objects that carry workspaces among them."""
         named = [iri for name in used_names(shared.clauses) for iri in (name, *self._model.sets.get(name, ()))]
         used = {self._curie(str(name)) for name in (*extra, *named)}
         waiting = [name for name in used if name in shared.workspaces or name in shared.contains]
@@ -226,7 +226,7 @@ class SpecWriter:
         return tuple(self._curie(element) for element in dict.fromkeys((*own, *added)))
 
     def _config(self, fluent: Fluent, values: Values) -> Iterator[ConfigSpec]:
-        """How a clause wants elements set up, the value as the feature text has it."""
+        """Yield the set-up that a clause requires of elements; values are in feature-text form."""
         target, value = (_value(fluent.arguments[slot], values) for slot in ("target", "value"))
         for element in target if isinstance(target, tuple) else (target,):
             yield ConfigSpec(self._word(element), fluent.arguments["name"], self._word(value))
@@ -238,7 +238,7 @@ class SpecWriter:
 
 
 def _givens(model: AcceptanceModel, clauses: tuple[Clause, ...], values: Values) -> Iterator[tuple[Fluent, Values]]:
-    """Yield what is certainly given: a world that contradicts it from the start would test nothing."""
+    """Yield the unconditional Given fluents: a world that contradicts them from the start would test nothing."""
     for clause in clauses:
         match clause:
             case Fluent(role="given"):
@@ -258,12 +258,11 @@ def _value(term: Iri | str, values: Values) -> Cell:
 
 
 def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
-    """Which emitter stamps which event of the model.
+    """Map each event of the model to its emitter.
 
-    The template's duration is the execution's, a behaviour's duration is that of its first and last emitted event.
-    Any other event is the behaviour's event that the model states (``emits``), else that of the same name
-    (``inner_event``). Of a scenario
-    that is ``linked`` to a node of a behaviour tree, the duration is the node's, unless that is the root.
+    The template's duration is emitted by the execution, a behaviour's duration by its first and last event. Any other
+    event is the behaviour event that the model states (``emits``), else the one of the same name (``inner_event``). In
+    a scenario ``linked`` to a node of a behaviour tree, the node emits the duration, unless it is the root.
     """
     template = variant.template
     bound = {template.start: "scenario-start", template.end: "scenario-end"}

@@ -1,7 +1,7 @@
-"""Hands the scenarios of a run folder out to several agent processes and keeps all of them busy.
+"""Distribute the scenarios of a run folder over several agent processes.
 
-Standard library only: a pool of processes as libraries have it neither replaces a worker that hangs nor tells which
-task a worker died of, and both are wanted here.
+Standard library only: existing process pools neither replace a hanging worker nor report which task killed a worker,
+and both are needed here.
 """
 
 from __future__ import annotations
@@ -41,18 +41,18 @@ from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.order import InOrder
 
 TIMEOUT = 300.0
-"""Seconds of wall time that a scenario has unless something else is said."""
+"""Default wall time of a scenario, s."""
 ATTEMPTS = 3
-"""Processes in a row that may end before they start a scenario, until the run is given up."""
+"""Number of processes in a row that may end before they start a scenario; then the run is given up."""
 CANCELLED = "the run was cancelled"
 STOPPED = "not executed: the run was stopped at the first failure"
 
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """How a run goes: processes at a time, seconds of wall time per scenario, whether its first failure ends it.
+    """Run policy: number of parallel processes, wall time per scenario (s), whether the first failure ends the run.
 
-    ``log_limit`` is how many bytes are kept of what each process prints.
+    ``log_limit`` is the number of bytes kept of each process's output.
     """
 
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
@@ -69,7 +69,7 @@ class Policy:
 
 
 def _tasks(manifest: Manifest, indices: Iterable[int]) -> Iterator[tuple[int, ...]]:
-    """Put the scenarios that share an execution together, each task where its first scenario stands."""
+    """Group the scenarios that share an execution; each group takes the place of its first scenario."""
     together: dict[int | str, list[int]] = {}
     for index in indices:
         tree = manifest.scenarios[index].tree
@@ -85,18 +85,18 @@ Event = tuple[AgentWorker, RunMessage | None]
 
 
 def no_watcher(_: RunMessage) -> None:
-    """Look at nothing."""
+    """Ignore the message."""
 
 
 class Scheduler:
     """Executes the scenarios of a prepared run folder.
 
-    ``messages`` is to be consumed by one thread; ``cancel`` may be called from any thread and from a signal handler.
-    ``watch`` is called with every message when it arrives; those that ``messages`` yields are in the manifest's order,
-    so that they do not depend on how many processes there are. ``ending`` says why scenarios were left open.
-    ``indices`` are those of the scenarios to be executed, increasing; all when ``None``. Scenarios that share an
-    execution go to one process, one after the other. ``execute`` executes single scenarios in any order instead; the
-    processes stay until ``close``. ``first_agent`` is the number of the first process, which names its log.
+    One thread consumes ``messages``; ``cancel`` may be called from any thread and from a signal handler. ``watch`` is
+    called with every message on arrival. ``messages`` yields them in manifest order, so that their order does not
+    depend on the number of processes. ``ending`` is the reason for open scenarios. ``indices`` are the scenarios to
+    execute, increasing; all when ``None``. Scenarios that share an execution go to one process, one after the other.
+    ``execute`` instead executes single scenarios in any order; the processes stay until ``close``. ``first_agent`` is
+    the number of the first process, which names its log.
     """
 
     def __init__(
@@ -128,18 +128,19 @@ class Scheduler:
 
     @property
     def busy(self) -> dict[int, int]:
-        """Process number → number of the scenario that it executes."""
+        """Process number → number of its current scenario."""
         return {w.agent.pid: w.index for w in list(self._workers) if w.index is not None and w.started}
 
     def cancel(self) -> None:
-        """End the run within half a second, keeping what is finished."""
+        """End the run within half a second; finished results are kept."""
         self._cancelled = True
         self._events.put(None)
 
     def execute(self, index: int) -> Iterator[RunMessage]:
         """Execute one scenario and yield its messages.
 
-        It is not finished when they end without ``ScenarioFinished``; ``ending`` says why. Raises ``OSError``.
+        If they end without ``ScenarioFinished``, the scenario is unfinished and ``ending`` is the reason. Raises
+        ``OSError``.
         """
         self._order = InOrder([index])
         self._waiting.clear()
@@ -151,10 +152,10 @@ class Scheduler:
         stop(worker.agent for worker in self._workers)
 
     def messages(self) -> Iterator[RunMessage]:
-        """Yield the messages of the run until its end; the last one is ``RunFinished``. Raises ``OSError``."""
+        """Yield the messages of the run; the last one is ``RunFinished``. Raises ``OSError``."""
         complaints: set[str] = set()
         for message in self._messages():
-            # Every process, and every scenario of a broken feature, has the same complaint: once is enough.
+            # Every process, and every scenario of a broken feature, reports the same problem: show it once.
             if isinstance(message, LogLine):
                 if message.text in complaints:
                     continue
@@ -187,7 +188,7 @@ class Scheduler:
         return bool(self._waiting) or any(worker.index is not None for worker in self._workers)
 
     def _employ(self) -> None:
-        """Hand out what waits to processes that have nothing to do, new ones as far as there may be."""
+        """Assign waiting scenarios to idle workers; start new workers up to the limit."""
         idle = [worker for worker in self._workers if worker.index is None]
         while self._waiting and (idle or len(self._workers) < self._policy.jobs):
             worker = idle.pop() if idle else self._launch()
@@ -205,9 +206,9 @@ class Scheduler:
         self._events.put((worker, None))
 
     def _next_event(self) -> Event | None:
-        """Wait for a message, or for the first deadline: a process that missed it is ended, and says so itself.
+        """Wait for a message or the next deadline; a worker that misses its deadline is ended.
 
-        One that never ceases to send messages misses it all the same.
+        A constant stream of messages does not extend a deadline.
         """
         first = min(self._workers, key=lambda worker: worker.deadline)
         left = first.deadline - monotonic()
@@ -219,7 +220,7 @@ class Scheduler:
             return None
 
     def _take(self, worker: AgentWorker, message: RunMessage | None) -> Iterator[RunMessage]:
-        """Act on a message, or on the end of a process (``None``); one that cannot be meant is logged."""
+        """Handle a worker's message or its end (``None``); a misfit is logged."""
         problem = "" if message is None else self._misfit(worker, message)
         if problem:
             message = LogLine("warning", problem)
@@ -243,13 +244,13 @@ class Scheduler:
                     worker.started, worker.deadline = True, monotonic() + self._limit(index)
                 yield from self._pass_on(worker, message)
             case UserCodeFailed(None, fault):
-                # The code that all scenarios share is loaded by each process.
+                # Each process loads the code that all scenarios share.
                 if fault.id not in self._shared_faults:
                     self._shared_faults.add(fault.id)
                     self._watch(message)
                     yield message
             case Output(None):
-                # Each process loads the same code and prints the same; the one that is ahead is shown.
+                # Each process loads the same code and prints the same; show only the first one.
                 worker.shared_outputs += 1
                 if worker.shared_outputs > self._shared_outputs:
                     self._shared_outputs = worker.shared_outputs
@@ -265,7 +266,7 @@ class Scheduler:
                 yield from self._finish(worker, message)
 
     def _misfit(self, worker: AgentWorker, message: RunMessage) -> str:
-        """Say why a message of a process cannot be meant; nothing when it fits what the process does."""
+        """Return why a process cannot have sent a message; empty if it can."""
         match message:
             case ClauseJudged(line=line) if line in worker.judged:
                 return f"ignored another verdict on the clause of line {line}"
@@ -277,7 +278,7 @@ class Scheduler:
                 return misfit(message, self._specs, worker.index)
 
     def _limit(self, _index: int) -> float:
-        """Seconds that a scenario may take."""
+        """Return a scenario's time limit, s."""
         return self._policy.timeout or inf
 
     def _finish(self, worker: AgentWorker, message: ScenarioFinished) -> Iterator[RunMessage]:
@@ -287,7 +288,7 @@ class Scheduler:
         worker.release()
 
     def _stop_after(self, index: int) -> None:
-        """Leave scenarios after one undone; those before it go on, so that the outcome does not depend on timing."""
+        """Skip scenarios after ``index``; earlier ones continue, so that the outcome does not depend on timing."""
         if index != self._indices[-1]:
             self.ending, self._stopped = STOPPED, True
         self._waiting = deque(earlier for task in self._waiting if (earlier := _before(index, task)))
@@ -299,7 +300,7 @@ class Scheduler:
         stop(worker.agent for worker in beyond)
 
     def _close_ended(self, worker: AgentWorker) -> Iterator[RunMessage]:
-        """Judge what a process left open when it ended, or have it done by another when it had not begun."""
+        """Close the clauses that a process left open, or requeue its scenarios if it had not started them."""
         if worker.index is None:
             return
         spec = self._specs[worker.index]

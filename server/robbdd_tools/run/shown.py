@@ -1,4 +1,4 @@
-"""What is shown of stored runs and of one recorded execution: docs/schemas/runs.schema.json and trace.schema.json."""
+"""JSON for displaying stored runs and recorded executions: docs/schemas/runs.schema.json, trace.schema.json."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from robbdd_tools.run.stored_results import FAILED, FINISHED
 
 
 class NoTrace(Exception):
-    """There is nothing to show; the message says why."""
+    """There is nothing to show; the message gives the reason."""
 
 
 def summary(run: StoredRun) -> dict[str, Any]:
-    """Return what a list of runs tells of one."""
+    """Return a run's entry in the list of runs."""
     found: dict[str, Any] = {"run": run.number, "folder": path_to_uri(run.folder.absolute())}
     try:
         record, status = run.record(), run.status()
@@ -36,7 +36,7 @@ def summary(run: StoredRun) -> dict[str, Any]:
 
 
 def scenarios(run: StoredRun) -> Iterator[dict[str, Any]]:
-    """Yield what a list of runs shows of each scenario of a run; raises ``NoSuchRun``."""
+    """Yield the scenario entries of a run in the list of runs; raises ``NoSuchRun``."""
     results = run.results()
     finished = finished_in(results)
     for index, (spec, entry) in enumerate(zip(run.manifest().scenarios, results["scenarios"], strict=False)):
@@ -44,7 +44,7 @@ def scenarios(run: StoredRun) -> Iterator[dict[str, Any]]:
 
 
 def traced_variants(run: StoredRun) -> frozenset[str]:
-    """Return the IRIs of the variants of which a run keeps a trace; of one that cannot be read there are none."""
+    """Return the IRIs of the variants with a stored trace; empty for an unreadable run."""
     try:
         return frozenset(one["variant"] for one in scenarios(run) if one["trace"])
     except NoSuchRun:
@@ -52,10 +52,10 @@ def traced_variants(run: StoredRun) -> frozenset[str]:
 
 
 def find_trace(store: RunStore, word: str | None, given: Mapping[str, object]) -> tuple[StoredRun, int]:
-    """Return the run and the number of a scenario with a trace: of the run ``word``, else of the newest that has one.
+    """Find a scenario with a trace in run ``word``, else in the newest run that has one; return run and number.
 
-    ``given`` are the fields that it has in ``scenarios``. Among several that fit it is the first that is violated, else
-    the first. Raises ``NoTrace`` and ``NoSuchRun``.
+    ``given`` are fields to match in ``scenarios``. Among several matches, the first violated one wins, else the first.
+    Raises ``NoTrace`` and ``NoSuchRun``.
     """
     runs = list(reversed(store.runs())) if word is None else [store.find(word)]
     for run in runs:
@@ -74,7 +74,7 @@ def find_trace(store: RunStore, word: str | None, given: Mapping[str, object]) -
 def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
     """Return the document of a trace; raises ``NoTrace`` and ``NoSuchRun``.
 
-    Of the text as it is now it knows nothing: clauses have no ``source`` and no ``stale``, but the sentence of their
+    It is independent of the current model text: clauses have no ``source`` and no ``stale``, but the sentence of their
     step as ``written``.
     """
     specs, document = run.manifest().scenarios, run.results()
@@ -108,7 +108,7 @@ def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
 
 
 def kept_curves(run: StoredRun, index: int) -> Mapping[str, Any]:
-    """Return what is kept beside a trace: duration, remark, events, curves by feature line; raises ``NoTrace``."""
+    """Return the curves stored with a trace: duration, remark, events, curves by feature line; raises ``NoTrace``."""
     path = curves_file(run.folder, index)
     try:
         return json.loads(load_text(path, RESULT_SIZE))
@@ -136,7 +136,7 @@ def _scenario(run: StoredRun, index: int, spec: ScenarioSpec, verdict: str, *, f
         "repetition": spec.repetition,
         "seed": spec.seed,
         "verdict": verdict,
-        # That of an execution that was broken off is no evidence.
+        # A result of an interrupted execution is no evidence.
         "trace": finished and trace_file(run.folder, index).is_file(),
     }
 

@@ -1,8 +1,9 @@
-"""Keeps runs in numbered folders beside the models, ``.robbdd/runs/<n>/``, and their results in one database.
+"""Store of numbered run folders in the project, ``.robbdd/runs/<n>/``, with one database of results.
 
-A stored run is the run's own folder (features, manifest, logs, moments, traces) with ``run.json``, which says what was
-run, and rows in ``results.sqlite`` beside the folder ``runs``. A run in a folder of its own has its database in there.
-``results.json`` is made from the database when a run ends; earlier versions kept nothing else, and are read as well.
+A stored run is the run folder (features, manifest, logs, moments, traces) with ``run.json``, which records what was
+run, and rows in ``results.sqlite`` next to the folder ``runs``. A run in a folder of its own has its database inside.
+``results.json`` is generated from the database when a run ends. Earlier versions wrote only this file; it is still
+read.
 """
 
 from __future__ import annotations
@@ -39,32 +40,32 @@ from robbdd_tools.run.stored_results import (
 from robbdd_tools.run.upkeep import make_ready, remove_runs
 
 MARKS = ("pyproject.toml", "robbdd.toml", ".git")
-"""What the root of a project has one of."""
+"""Files or folders that mark a project's root."""
 FOLDER = Path(".robbdd") / "runs"
 RESULTS = "results.json"
 RECORD = "run.json"
 LOCK = "lock"
-"""File in a run's folder, and in that of all runs, which is locked while a run goes on, or begins."""
+"""Lock file of a run folder, held while the run is live, and of the folder of all runs, held while one begins."""
 KEPT = 20
-"""Runs that a store holds of those that came to their end, and of the others; the oldest ones make room."""
+"""Number of completed runs, and of others, that a store keeps; older ones are removed."""
 LATEST = "latest"
 PATIENCE = 30.0
-"""Seconds that a run waits for another one that is just beginning."""
+"""Seconds that a run waits for another one that is beginning."""
 
 
 class NoSuchRun(RobbddError):
-    """There is no such run, or it cannot be read; the message says which there are, or why."""
+    """The run does not exist or cannot be read; the message lists the existing runs or gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """What was run: the model, and a digest of its graph.
+    """What was run: the model and a digest of its graph.
 
-    ``path`` is the model's relative to the project's root, ``origin`` relative to the run's folder; ``version`` is that
-    of this package, ``simulator`` that of the engine. ``files`` are digests of the other files that were used, by
-    their paths relative to the run's folder. ``user_seed`` is the seed that the user gave, ``None`` without one: then
-    executions of a model have their own. ``models`` are the paths of the models relative to the run's folder, where
-    they are not all of ``path``, which is then a folder above them.
+    ``path`` is the model's path relative to the project's root, ``origin`` relative to the run folder; ``version`` is
+    that of this package, ``simulator`` that of the engine. ``files`` are digests of the other used files, by their
+    paths relative to the run folder. ``user_seed`` is the seed given by the user, ``None`` without one: then a model's
+    executions have their own seeds. ``models`` are the paths of the models relative to the run folder if they are not
+    all in the file ``path``; ``path`` is then their common folder.
     """
 
     path: str
@@ -80,10 +81,10 @@ class RunRecord:
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A run's folder; ``number`` is its place in its ``database``, 0 for a folder elsewhere.
+    """A run folder; ``number`` is its number in ``database``, 0 for a folder outside a store.
 
-    It stays when it is ``kept``. ``lock`` is there while this process executes it; ``remark`` is what the user should
-    know of its store.
+    A ``kept`` run is never pruned. ``lock`` is set while this process executes it; ``remark`` is a note on its store
+    for the user.
     """
 
     number: int
@@ -100,11 +101,11 @@ class StoredRun:
 
     @property
     def began(self) -> bool:
-        """Whether it was written down what is run."""
+        """Whether its record has been written."""
         return (self.folder / RECORD).is_file()
 
     def record(self) -> RunRecord:
-        """Return what was run; raises ``NoSuchRun``."""
+        """Return its record; raises ``NoSuchRun``."""
         fields = self._json(RECORD)
         try:
             found = RunRecord(**fields)
@@ -113,8 +114,8 @@ class StoredRun:
             raise NoSuchRun(f"{self.folder / RECORD} is not the record of a run") from None
 
     def status(self) -> RunStatus:
-        """Return how far it is; raises ``NoSuchRun``."""
-        # The lock is looked at first: a run that ends meanwhile has its last state in the database.
+        """Return its progress; raises ``NoSuchRun``."""
+        # Check the lock first: a run that ends in between has its final state in the database.
         live = self.is_live
         try:
             found = read_status(self.database, self.number, live=live)
@@ -131,33 +132,33 @@ class StoredRun:
         return self._kept_results() if found is None else found.as_json()
 
     def read_results(self) -> RunResults | None:
-        """Return its results, ``None`` where the database has none; raises ``NoSuchRun`` and ``DatabaseProblem``."""
+        """Return its results, ``None`` if the database has none; raises ``NoSuchRun`` and ``DatabaseProblem``."""
         live = self.is_live
         if read_status(self.database, self.number, live=live) is None:
             return None
         return read_results(self.database, self.number, self.manifest(), live=live)
 
     def manifest(self) -> Manifest:
-        """Return what the agent was to execute; raises ``NoSuchRun``."""
+        """Return the agent's manifest; raises ``NoSuchRun``."""
         try:
             return read_manifest(self.folder)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise NoSuchRun(f"{self.folder} holds no run: {error}") from error
 
     def model(self) -> Path:
-        """Return what was run, a file or a folder, which may be gone by now; raises ``NoSuchRun``."""
+        """Return the file or folder that was run, which may no longer exist; raises ``NoSuchRun``."""
         return (self.folder / self.record().origin).resolve()
 
     def models(self) -> list[Path]:
-        """Return the files and folders that were run, which may be gone by now; raises ``NoSuchRun``."""
+        """Return the files and folders that were run, which may no longer exist; raises ``NoSuchRun``."""
         return [(self.folder / model).resolve() for model in self.record().models] or [self.model()]
 
     def write_record(self, record: RunRecord) -> None:
-        """Write what is run; raises ``OSError``."""
+        """Write the record; raises ``OSError``."""
         _write(self.folder / RECORD, asdict(record))
 
     def write_results(self, results: Mapping[str, Any]) -> None:
-        """Write what came out; raises ``OSError``."""
+        """Write the results; raises ``OSError``."""
         _write(self.folder / RESULTS, results)
 
     def discard(self) -> None:
@@ -167,7 +168,7 @@ class StoredRun:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _kept_status(self, problem: str = "") -> RunStatus:
-        """Return the status by the file of results alone."""
+        """Return the status from the results file alone."""
         results = self._kept_results(problem)
         scenarios: list[Mapping[str, Any]] = results.get("scenarios", [])
         counts = Counter(entry["verdict"] for entry in scenarios if entry.get("duration") is not None)
@@ -175,7 +176,7 @@ class StoredRun:
         return RunStatus(state, results.get("ending", ""), len(scenarios), counts)
 
     def _kept_results(self, problem: str = "") -> Mapping[str, Any]:
-        """Return the file of results; where there is none, the reason is ``problem`` or what is missing."""
+        """Return the results file's document; raises ``NoSuchRun`` with ``problem`` or what is missing."""
         try:
             return self._json(RESULTS)
         except NoSuchRun as error:
@@ -202,17 +203,17 @@ class StoredRun:
 
 
 def run_in(folder: Path, *, kept: bool = True) -> StoredRun:
-    """Return the run in a folder of its own."""
+    """Return the run in a folder outside a store."""
     return StoredRun(0, folder, folder / NAME, kept)
 
 
 def begin_in(folder: Path, *, kept: bool = True) -> StoredRun:
-    """Make a folder for a run of its own, and remove what an earlier one left there; raises ``OSError``."""
+    """Create a folder for a single run and remove the contents of an earlier one; raises ``OSError``."""
     folder.mkdir(parents=True, exist_ok=True)
     run = run_in(folder, kept=kept)
     lock = hold(folder / LOCK)
     if lock is None:
-        raise OSError(errno.EBUSY, "another run is going on there", str(folder))
+        raise OSError(errno.EBUSY, "another run is writing to it", str(folder))
     for name in ("traces", "margins", "moments", "features"):
         shutil.rmtree(folder / name, ignore_errors=True)
     (folder / RESULTS).unlink(missing_ok=True)
@@ -227,15 +228,15 @@ class RunStore:
         self.database = _database_of(full_path(folder))
 
     def runs(self) -> list[StoredRun]:
-        """Return the runs, the oldest first."""
+        """Return the runs, oldest first."""
         found = self._folders()
-        # Where the database cannot be read, each run says so.
+        # If the database cannot be read, each run reports it.
         with suppress(DatabaseProblem):
             found |= dict.fromkeys(numbers(self.database))
         return [self._run(number) for number in sorted(found)]
 
     def begin(self) -> StoredRun:
-        """Make the folder of a new run and remove the oldest ones beyond ``KEPT``; raises ``OSError``."""
+        """Create the folder of a new run and remove the oldest ones beyond ``KEPT``; raises ``OSError``."""
         self.folder.mkdir(parents=True, exist_ok=True)
         ignore = self.database.parent / ".gitignore"
         if not ignore.exists():
@@ -281,7 +282,7 @@ class RunStore:
         return {int(entry.name): None for entry in entries if entry.name.isdecimal() and entry.is_dir()}
 
     def _prune(self, runs: Iterable[StoredRun]) -> None:
-        """Remove the oldest runs: those that did what they were to do make room for each other only, others as well."""
+        """Remove the oldest runs; completed runs and others are counted separately."""
         whole: list[StoredRun] = []
         others: list[StoredRun] = []
         for run in runs:
@@ -295,7 +296,7 @@ class RunStore:
 
 
 def _database_of(folder: Path) -> Path:
-    """Return the database beside the folder of a project's runs, also of a copy of it, else in the folder."""
+    """Return the database next to the folder of a project's runs (or of a copy of it), else inside the folder."""
     beside = folder.with_name(NAME)
     in_project = folder.parts[-len(FOLDER.parts) :] == FOLDER.parts
     return beside if in_project or (folder.name == FOLDER.name and beside.is_file()) else folder / NAME
@@ -315,7 +316,7 @@ def project_root(path: Path) -> Path:
 
 
 def origin(model: Path, folder: Path) -> str:
-    """Return a model's path relative to the folder of its run: both may be moved together."""
+    """Return a model's path relative to its run folder, so that both can be moved together."""
     return Path(os.path.relpath(model, folder)).as_posix()
 
 
@@ -325,10 +326,10 @@ def store_beside(path: Path) -> RunStore:
 
 
 def shown_path(path: Path) -> str:
-    """Return a model's path as records have it: relative to its project's root."""
+    """Return a model's path relative to its project's root."""
     return full_path(path).relative_to(project_root(path)).as_posix()
 
 
 def _write(path: Path, document: object) -> None:
-    """Write a document as a whole: who reads meanwhile, an editor that follows the runs, gets the old one or this."""
+    """Write a document atomically: a concurrent reader gets the old or the new one."""
     replace_file(path, printable_json(document, indent=1) + "\n")

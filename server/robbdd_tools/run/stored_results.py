@@ -1,4 +1,4 @@
-"""Reads what the database holds of one run: how far it is, and its results."""
+"""Read the status and the results of one run from the database."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from robbdd_tools.run.database import explained, read_database
 from robbdd_tools.run.results import RunResults
 
 RUNNING, FINISHED, STOPPED, INTERRUPTED, FAILED = "running", "finished", "stopped", "interrupted", "failed"
-CAUSES = {STOPPED: Cause.STOPPED, INTERRUPTED: Cause.CANCELLED}
-"""Why executions are missing from a run that is in a state."""
 """States of a run in the database."""
+CAUSES = {STOPPED: Cause.STOPPED, INTERRUPTED: Cause.CANCELLED}
+"""State of a run → cause of its missing executions."""
 DIED = "died"
-"""State of a run that is ``RUNNING`` by the database but not by its lock."""
+"""State of a run that is ``RUNNING`` in the database but whose lock is free."""
 _ENDINGS = {
-    RUNNING: "not executed yet: the run is going on",
+    RUNNING: "not executed yet: the run is in progress",
     DIED: "the run ended without notice",
     INTERRUPTED: "the run was interrupted",
 }
@@ -32,10 +32,11 @@ _ENDINGS = {
 
 @dataclass(frozen=True, slots=True)
 class RunStatus:
-    """How far a run is.
+    """Progress of a run.
 
-    ``ending`` says why executions are open; ``counts`` are verdicts of finished executions. ``timeout`` (s of wall
-    time) and ``stop_on_failure`` are how it was run; ``prepared`` is a digest of its manifest and features.
+    ``ending`` is the reason for open executions; ``counts`` are the numbers of finished executions by verdict.
+    ``timeout`` (s of wall time) and ``stop_on_failure`` are its settings; ``prepared`` is a digest of its manifest and
+    features.
     """
 
     state: str
@@ -56,11 +57,11 @@ class RunStatus:
 
     @property
     def is_whole(self) -> bool:
-        """Whether the run did all that it was asked to."""
+        """Whether the run executed everything that it was asked to."""
         return self.state in (FINISHED, STOPPED)
 
     def words(self) -> str:
-        """Return what is to be said of a run that has not finished everything: ``interrupted: 12 of 40 finished``."""
+        """Return the text for a run with unfinished executions: ``interrupted: 12 of 40 finished``."""
         if self.state == FINISHED:
             return ""
         name = "stopped at the first failure" if self.state == STOPPED else self.state
@@ -68,7 +69,7 @@ class RunStatus:
 
 
 def read_status(database: Path, number: int, *, live: bool = False) -> RunStatus | None:
-    """Return the status of a run, ``None`` where the database knows none; ``live`` when its process is there.
+    """Return the status of a run, ``None`` if the database has no such run; ``live`` if its process is running.
 
     Raises ``DatabaseProblem``.
     """
@@ -81,7 +82,7 @@ def read_status(database: Path, number: int, *, live: bool = False) -> RunStatus
 
 
 def numbers(database: Path) -> list[int]:
-    """Return the numbers of the runs that a database knows; raises ``DatabaseProblem``."""
+    """Return the numbers of the runs in a database; raises ``DatabaseProblem``."""
     with explained(database):
         connection = read_database(database)
         if connection is None:
@@ -91,7 +92,7 @@ def numbers(database: Path) -> list[int]:
 
 
 def finished_executions(database: Path, number: int) -> Mapping[int, float] | None:
-    """Return simulated time (s) by number of each finished execution of a run, ``None`` where there is no such run.
+    """Return simulated time (s) by number of each finished execution of a run, ``None`` if there is no such run.
 
     Raises ``DatabaseProblem``.
     """
@@ -107,9 +108,9 @@ def finished_executions(database: Path, number: int) -> Mapping[int, float] | No
 
 
 def read_results(database: Path, number: int, manifest: Manifest, *, live: bool = False) -> RunResults | None:
-    """Return the results of a run; ``None`` where the database knows none. Raises ``DatabaseProblem``.
+    """Return the results of a run; ``None`` if the database has none. Raises ``DatabaseProblem``.
 
-    Clauses of executions that are not finished are unknown, for the reason that they are not.
+    Clauses of unfinished executions are unknown; their reason is why the execution is unfinished.
     """
     with explained(database):
         connection = read_database(database)
@@ -128,7 +129,7 @@ def read_results(database: Path, number: int, manifest: Manifest, *, live: bool 
 
 
 def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) -> RunResults:
-    """Return the finished executions of a run as results that are open for more; raises ``sqlite3.Error``."""
+    """Return the finished executions of a run as results that accept more; raises ``sqlite3.Error``."""
     results = RunResults(manifest)
     query = "SELECT id, idx, simulated, wall, stepping, resampled, contacts FROM execution WHERE run = ? ORDER BY idx"
     for identifier, position, simulated, wall, stepping, resampled, contacts in connection.execute(query, (number,)):

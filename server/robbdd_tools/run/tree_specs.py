@@ -1,4 +1,4 @@
-"""What the agent has to know of an execution of a behaviour tree: what its leaves do, its scene, its events."""
+"""Build the agent's specification of a behaviour-tree execution: its leaves' behaviours, scene and events."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from robbdd_tools.run.related import Group, Member, Relations, roots_of
 from robbdd_tools.run.seeds import scenario_seed
 
 LEAD = 0.5
-"""Seconds recorded before a tree starts, at least."""
+"""Minimum seconds recorded before a tree starts."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Shared:
-    """What the scenarios of a group have in common."""
+    """Data that the scenarios of a group have in common."""
 
     tree: TreeSpec
     scene: SceneSpec
@@ -27,9 +27,9 @@ class _Shared:
 
 @dataclass(slots=True)
 class TreeSpecWriter:
-    """Makes scenarios that are linked to a behaviour tree share one execution of it.
+    """Make scenarios that are linked to a behaviour tree share one execution of it.
 
-    ``scene`` tells the scene of a scenario by itself, ``events`` what emits its events, both as CURIEs.
+    ``scene`` returns the scene of a single scenario, ``events`` the emitters of its events, both as CURIEs.
     """
 
     model: AcceptanceModel
@@ -40,7 +40,7 @@ class TreeSpecWriter:
     _shared: dict[int, _Shared] = field(default_factory=dict[int, _Shared])
 
     def related(self, spec: ScenarioSpec, execution: Iri | None) -> ScenarioSpec:
-        """Return a scenario as it is judged from the execution that it shares; others are returned as they are."""
+        """Return a scenario as judged from its shared execution; an unrelated scenario is returned unchanged."""
         group = self.relations.group(Iri(spec.variant), execution, spec.variation)
         if group is None:
             return spec
@@ -90,7 +90,7 @@ class TreeSpecWriter:
         return NodeSpec(node.iri, name, node.kind, behaviour=link.behaviour, arguments=arguments)
 
     def _element(self, term: Iri | str, values: Mapping[Iri, Cell]) -> str | tuple[str, ...]:
-        """Return the CURIE of what a term stands for, of a set of workspaces all; nothing for anything else."""
+        """Return the CURIE of a term's element, all CURIEs of a set of workspaces; empty for anything else."""
         value = values.get(term, self.model.sets.get(term, term)) if isinstance(term, Iri) else term
         if isinstance(value, tuple) and all(self.model.kinds.get(Iri(one)) == "workspace" for one in value):
             return tuple(self.model.curie(str(one)) for one in value)
@@ -98,7 +98,7 @@ class TreeSpecWriter:
 
 
 def _joined(scenes: list[SceneSpec]) -> SceneSpec:
-    """Join scenes of one scene model; where they differ, what happens first in the tree has the say."""
+    """Join scenes of one scene model; on conflict, the scenario that comes first in the tree wins."""
     first = scenes[0]
     config = {(one.target, one.name): one for scene in reversed(scenes) for one in scene.config}
     places = {thing: place for scene in reversed(scenes) for thing, place in scene.places.items()}
@@ -114,7 +114,7 @@ def _joined(scenes: list[SceneSpec]) -> SceneSpec:
 
 
 def _horizons(member: Member) -> Iterator[tuple[bool, float]]:
-    """Yield whether a horizon is that of *before*, and its seconds."""
+    """Yield horizons as pairs: whether it precedes (*before*), and its length in s."""
     for clause in (*member.variant.template.clauses, *member.variant.clauses):
         yield from _clause_horizons(clause)
     for policy in () if member.execution is None else member.execution.policies:

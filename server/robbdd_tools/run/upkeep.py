@@ -1,4 +1,4 @@
-"""Looks after a database between runs: makes or migrates it, marks runs that died, removes old ones."""
+"""Maintain a database between runs: create or migrate it, mark dead runs, remove old ones."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from robbdd_tools.run.stored_results import DIED, RUNNING
 
 
 def make_ready(database: Path, live: Collection[int]) -> str:
-    """Prepare a database for a new run while the runs ``live`` go on; returns what the user should know of it.
+    """Prepare a database for a new run while the runs ``live`` are in progress; return a note for the user.
 
-    A damaged one is moved aside, unless a run is writing to it. It is read as a whole when a run died on it. Raises
-    ``DatabaseProblem``.
+    A damaged database is moved aside, unless a run is writing to it. The whole database is checked if a run died.
+    Raises ``DatabaseProblem``.
     """
     try:
         _settle(database, live)
@@ -23,12 +23,12 @@ def make_ready(database: Path, live: Collection[int]) -> str:
             raise
         target = move_aside(database)
         open_database(database).close()
-        return f"{error}; it is kept as {target.name}, and a new one was begun"
+        return f"{error}; it is kept as {target.name}, and a new one was created"
     return ""
 
 
 def remove_runs(database: Path, numbers: Iterable[int]) -> None:
-    """Remove all that a database holds of some runs; raises ``DatabaseProblem``."""
+    """Remove all rows of some runs; raises ``DatabaseProblem``."""
     with explained(database), closing(open_database(database)) as connection, transaction(connection):
         for number in numbers:
             connection.execute("DELETE FROM run WHERE number = ?", (number,))

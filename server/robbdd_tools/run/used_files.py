@@ -1,6 +1,6 @@
-"""The files beside the graph that a run used: models of scenes and arms with what they include, users' Python code.
+"""Files, apart from the graph, that a run used: models of scenes and arms with their includes, users' Python code.
 
-They are found by reading, never by importing: what is chosen while it runs is not among them.
+They are found by reading, never by importing; files chosen at run time are not included.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ if TYPE_CHECKING:
 
 
 def digests(manifest: Manifest, folder: Path) -> dict[str, str]:
-    """Return the SHA-256 of each file that a run uses, by its path relative to the run's folder."""
+    """Return the SHA-256 of each file that a run uses, by its path relative to the run folder."""
     found = dict.fromkeys(path.resolve() for path in _used(manifest))
     return {Path(os.path.relpath(path, folder.resolve())).as_posix(): _digest(path) for path in sorted(found)}
 
 
 def changed(known: Mapping[str, str], folder: Path) -> list[Path]:
-    """Return the files of ``digests`` that are not any more what they were."""
+    """Return the files of ``digests`` whose content has changed."""
     paths = ((folder / name).resolve() for name in known)
     return [path for path, digest in zip(paths, known.values(), strict=True) if _digest(path) != digest]
 
 
 def prepared_digest(folder: Path) -> str:
-    """Return the SHA-256 of what was prepared in a run's folder: the manifest, the features and their steps."""
+    """Return the SHA-256 of a run folder's prepared content: the manifest, the features and their steps."""
     every = (path for path in (folder / FEATURES).rglob("*") if path.is_file() and path.suffix != ".pyc")
     found = {path.relative_to(folder).as_posix(): _digest(path) for path in (folder / MANIFEST, *every)}
     return hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()
@@ -70,7 +70,7 @@ def _sources(execution: ExecutionSpec) -> Iterator[ModelSource]:
 
 
 def _code(execution: ExecutionSpec) -> Iterator[tuple[str, Origin | None]]:
-    """Yield the names of users' code, ``module:attribute``, with where each is written, if that matters."""
+    """Yield the names of users' code, ``module:attribute``, with the place of each reference if known."""
     if execution.implementation.kind == "python":
         yield execution.implementation.name, execution.implementation.origin
     for policy in execution.policies:
@@ -97,7 +97,7 @@ def _path(source: ModelSource) -> Path:
 
 
 def _modules(name: str, folder: Path) -> Iterator[Path]:
-    """Yield the file of ``module:attribute`` in a folder, and those that it imports from there."""
+    """Yield the file of ``module:attribute`` in a folder, and the files that it imports from there."""
     seen: dict[Path, None] = {}
     waiting = [name.partition(":")[0]]
     while waiting:

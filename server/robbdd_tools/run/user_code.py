@@ -1,4 +1,4 @@
-"""Which code of users a run would execute: one rule for ``--no-user-code`` and for untrusted workspaces."""
+"""Find the users' code that a run would execute: one rule for ``--no-user-code`` and for untrusted workspaces."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ _FIX_TRUST = "trust the workspace if you trust this code"
 
 
 class UserCodeRefused(RobbddError):
-    """A run would execute code of users, which ``--no-user-code`` refuses; the message names each place."""
+    """A run would execute users' code, which ``--no-user-code`` refuses; the message names each place."""
 
 
 def refuse_user_code(manifest: Manifest, folder: Path, *, judges: bool = True, simulates: bool = True) -> None:
-    """Raise ``UserCodeRefused`` for what ``refusal`` reports."""
+    """Raise ``UserCodeRefused`` with the message of ``refusal``, if any."""
     problem = refusal(manifest, folder, judges=judges, simulates=simulates)
     if problem:
         raise UserCodeRefused(problem)
 
 
 def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates: bool = True) -> str:
-    """Say which code of users a prepared run has, where, and what to do; nothing where it has none or may run it.
+    """Return which users' code a prepared run has, where, and what to do; empty if none or if it may run.
 
-    A run both simulates and judges; judging stored traces needs evaluators only, a picture models only.
+    A run both simulates and judges; judging stored traces uses evaluators only, a picture uses models only.
     """
     reason = os.environ.get(NO_USER_CODE)
     if not reason:
@@ -53,7 +53,7 @@ def _uses(manifest: Manifest, folder: Path, judges: bool, simulates: bool) -> It
     if simulates and judges:
         for file in sorted((folder / "features" / "steps").glob(OWN_STEPS)):
             source = manifest.sources.get(file.relative_to(folder).as_posix(), str(file))
-            yield f"{source} holds steps of users"
+            yield f"{source} contains user-defined steps"
 
 
 def _models(execution: ExecutionSpec) -> Iterator[str]:
@@ -61,13 +61,14 @@ def _models(execution: ExecutionSpec) -> Iterator[str]:
     sources = () if scene is None else (*scene.models, *(one for entry in scene.elements for one in entry.models))
     for source in sources:
         if source.kind == "python":
-            yield f"{source.origin or execution.name}: a model is made by the Python code {source.name}"
+            yield f"{source.origin or execution.name}: a model is created by the Python code {source.name}"
 
 
 def _evaluators(execution: ExecutionSpec, spec: ScenarioSpec) -> Iterator[str]:
     for policy in execution.policies:
         if policy.rule.kind == "python":
-            yield f"{policy.origin or spec.model}: the policy {policy.iri} judges by the Python code {policy.rule.name}"
+            place, code = policy.origin or spec.model, policy.rule.name
+            yield f"{place}: the policy {policy.iri} judges with the Python code {code}"
 
 
 def _behaviours(spec: ScenarioSpec) -> Iterator[str]:

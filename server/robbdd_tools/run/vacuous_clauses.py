@@ -1,4 +1,4 @@
-"""Which clauses of a run could not have failed or held from the start, and why."""
+"""Find clauses of a run that could not have failed or that held from the start, with the reason."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HELD_BEFORE = "its predicate already held before the behaviour began, in every e
 
 @dataclass(slots=True)
 class Vacuity:
-    """Collects, clause by clause, why it proves little."""
+    """Collects, by clause, why its verdict proves little."""
 
     _said: dict[str, str] = field(default_factory=dict[str, str])
     _ranges: dict[str, list[Range]] = field(default_factory=dict[str, list[Range]])
@@ -25,24 +25,24 @@ class Vacuity:
     _held: dict[str, list[bool]] = field(default_factory=dict[str, list[bool]])
 
     def judged(self, clause: ClauseSpec, judged: ClauseJudged) -> None:
-        """Take what a single verdict says."""
+        """Record a single verdict."""
         if judged.vacuous:
             self._said.setdefault(clause.iri, judged.vacuous)
 
     def varied(self, clause: ClauseSpec, ranges: Sequence[Sequence[float]]) -> None:
-        """Take how far the margin of each fluent of a clause varied in one execution."""
+        """Record the range of each fluent's margin in one execution of a clause."""
         if not ranges:
             return
         known = self._ranges.get(clause.iri, [])
         found: list[Range] = [(low, high) for low, high in ranges]
-        # A set of another size has other fluents: then all are taken together.
+        # A set of another size has other fluents; then all are pooled.
         if known and len(known) != len(found):
             known, found = [joined(known)], [joined(found)]
         self._ranges[clause.iri] = [joined(list(pair)) for pair in zip(known or found, found, strict=True)]
         self._executions[clause.iri] = self._executions.get(clause.iri, 0) + 1
 
     def held(self, clause: ClauseSpec, before: bool | None) -> None:
-        """Record whether a clause held before the behaviour of one execution, ``None`` where that is not known."""
+        """Record whether a clause held before the behaviour of one execution, ``None`` if unknown."""
         if before is not None:
             self._held.setdefault(clause.iri, []).append(before)
 
