@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from tests.nightly import fuzz as fuzzing
 from tests.nightly.fuzz import Finding, case, fuzz, run_case
+from tests.nightly.others import SMOKE
 from tests.nightly.planted import FAULTY, PLANTED
 from tests.nightly.processes import Usage
 from tests.nightly.session import Fault
@@ -56,6 +57,10 @@ def test_a_case_that_raises_crashes_or_hangs_is_found(
     assert folder.name == f"{name}-{SEED}-{FAULTY}"
     assert "seed 1, case 3" in (folder / "FINDING.txt").read_text(encoding="utf-8")
     assert (folder / "case.txt").read_bytes() == case(target, SEED, FAULTY)["case.txt"]
+
+
+def test_the_tests_that_are_run_with_other_versions_exist() -> None:
+    assert [path for path in SMOKE if not (ROOT / path).is_file()] == []
 
 
 def used(memory: int = 100, descriptors: int = 20, threads: int = 10, processes: int = 3) -> Usage:
