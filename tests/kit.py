@@ -9,7 +9,11 @@ from __future__ import annotations
 import json
 import os
 import re
+import signal
+import subprocess
 import sys
+from collections.abc import Generator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -197,6 +201,34 @@ def make_fifo(path: Path) -> None:
     if sys.platform == "win32":
         pytest.skip("Windows has no named pipes in folders")
     os.mkfifo(path)
+
+
+@contextmanager
+def small_disk(folder: Path, kib: int) -> Generator[None]:
+    """Mount a file system of a fixed size on an empty folder; skips the test where that is not allowed."""
+    command = ["mount", "-t", "tmpfs", "-o", f"size={kib}k", "tmpfs", str(folder)]
+    if sys.platform != "linux" or subprocess.run(command, capture_output=True, check=False).returncode:
+        pytest.skip("a small file system can be mounted by root on Linux only")
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+def fill_disk(path: Path) -> None:
+    """Write a file until its file system is full."""
+    with path.open("wb", buffering=0) as file, suppress(OSError):
+        while True:
+            file.write(b"x" * 512)
+
+
+def default_signals() -> None:
+    """Let the signals that ask a process to end do so, for ``preexec_fn``.
+
+    A process that is started by ``nohup`` or in the background of a script ignores some of them, and passes that on.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:

@@ -266,14 +266,22 @@ def test_commands_print_only_through_what_escapes() -> None:
 
 SYSTEM_MODULES = {"signal", "fcntl", "msvcrt", "resource", "select", "termios", "pty", "ctypes", "winreg"}
 SYSTEM_CALLS = {f"os.{name}" for name in ("kill", "killpg", "fork", "nice", "setsid", "waitpid", "mkfifo", "getuid")}
-SYSTEM_HOMES = {"base.processes", "base.descendants", "base.locks"}
+SYSTEM_NAMES = {"sys.platform", "os.name", "platform.system"}
+SYSTEM_HOMES = {
+    "base.processes",
+    "base.descendants",
+    "base.locks",
+    "base.renames",
+    "base.user_settings",
+    "run.pictures",
+}
 
 
 def system_specifics(path: Path) -> Iterator[str]:
-    """Yield the modules and calls that a module uses and only some operating systems have."""
+    """Yield the modules and calls that only some operating systems have, and the questions which one it is."""
     yield from (name for name in imports(path) if name in SYSTEM_MODULES)
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Attribute) and ast.unparse(node) in SYSTEM_CALLS:
+        if isinstance(node, ast.Attribute) and ast.unparse(node) in SYSTEM_CALLS | SYSTEM_NAMES:
             yield ast.unparse(node)
 
 

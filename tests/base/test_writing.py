@@ -151,3 +151,13 @@ def test_a_stream_that_is_sent_to_a_file_stays_that_stream(tmp_path: Path) -> No
         replace_file(Path(f"/proc/self/fd/{out.fileno()}"), "first\n")
         assert os.fstat(out.fileno()).st_nlink == 1
     assert (tmp_path / "out").read_text() == "first\n"
+
+
+def test_an_error_names_the_file_that_was_asked_for_and_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Path, "replace", fail_with(errno.ENOSPC))
+    path = tmp_path / "m.bdd"
+    with pytest.raises(OSError, match="No space left") as raised:
+        replace_file(path, "new")
+    assert str(raised.value) == f"[Errno {errno.ENOSPC}] {os.strerror(errno.ENOSPC)}: '{path}'"

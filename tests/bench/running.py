@@ -14,7 +14,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from kit import EXAMPLES
+from kit import EXAMPLES, default_signals
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph
@@ -139,7 +139,7 @@ def _cancelled() -> float:
 
 def _run_of_the_example(*options: str) -> subprocess.Popen[str]:
     command = [sys.executable, "-m", "robbdd_tools.cli", "run", str(MODEL), "--no-store", *options]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8")
+    return subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", preexec_fn=default_signals)
 
 
 def _version() -> float:

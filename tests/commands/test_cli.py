@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from kit import EXAMPLES, MODEL, SCENE, corpus, make_endless, schema_errors
+from kit import EXAMPLES, MODEL, SCENE, corpus, default_signals, make_endless, schema_errors
 
 PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
 ROBBDD = [sys.executable, "-m", "robbdd_tools.cli"]
@@ -200,7 +200,9 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     make_endless(model)
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
     command = [*ROBBDD, "run", str(model), "--json", str(report), "--jobs", "1", "--no-store"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", env=environment)
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, encoding="utf-8", env=environment, preexec_fn=default_signals
+    )
     assert process.stdout is not None
     while "part-to-bin -- 1" not in process.stdout.readline():
         assert process.poll() is None

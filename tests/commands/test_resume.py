@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from kit import EXAMPLES, make_endless, schema_errors
+from kit import EXAMPLES, default_signals, make_endless, schema_errors
 from robbdd_tools.run.database import NAME
 from robbdd_tools.run.store import FOLDER, RunStore
 
@@ -32,7 +32,8 @@ def robbdd(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     pipe = subprocess.PIPE
-    return subprocess.Popen([*ROBBDD, *arguments], stdout=pipe, stderr=pipe, encoding="utf-8", cwd=folder)
+    command = [*ROBBDD, *arguments]
+    return subprocess.Popen(command, stdout=pipe, stderr=pipe, encoding="utf-8", cwd=folder, preexec_fn=default_signals)
 
 
 @pytest.fixture

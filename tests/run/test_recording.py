@@ -6,14 +6,14 @@ import json
 import shutil
 import sqlite3
 import subprocess
-from contextlib import closing, suppress
+from contextlib import closing
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 
 import pytest
 
-from kit import schema_errors, write_manifest
+from kit import fill_disk, schema_errors, small_disk, write_manifest
 from robbdd_tools.catalog.coordination import TreeSpec
 from robbdd_tools.protocol.messages import RunFinished, RunStarted, ScenarioFinished
 from robbdd_tools.protocol.run_folder import trace_file
@@ -192,10 +192,7 @@ def test_a_run_that_stops_at_a_failure_goes_on_before_it_only(store: RunStore) -
 def test_a_full_disk_in_mid_run_loses_nothing_that_was_finished(store: RunStore) -> None:
     mount = store.folder.parent
     mount.mkdir(parents=True)
-    done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=192k", "tmpfs", str(mount)], check=False)
-    if done.returncode:
-        pytest.skip("a small file system can be mounted by root only")
-    try:
+    with small_disk(mount, 192):
         place = store.begin()
         recording, finished = begun(place), 0
 
@@ -206,7 +203,7 @@ def test_a_full_disk_in_mid_run_loses_nothing_that_was_finished(store: RunStore)
                 finished += isinstance(message, ScenarioFinished)
 
         filler = mount / "filler"
-        fill(filler)
+        fill_disk(filler)
         with pytest.raises(DatabaseProblem, match="full"):
             take_all()
         filler.unlink()
@@ -219,15 +216,6 @@ def test_a_full_disk_in_mid_run_loses_nothing_that_was_finished(store: RunStore)
                     recording.take(message)
             recording.end("")
         assert place.results() == run_whole(RunStore(store.folder.parent.parent / "other")).results()
-    finally:
-        subprocess.run(["umount", str(mount)], check=True)
-
-
-def fill(path: Path) -> None:
-    """Write a file until its file system is full."""
-    with path.open("wb", buffering=0) as file, suppress(OSError):
-        while True:
-            file.write(b"x" * 512)
 
 
 def test_a_store_that_can_only_be_read_is_read(store: RunStore) -> None:

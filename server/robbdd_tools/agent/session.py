@@ -229,7 +229,8 @@ class ScenarioRun:
             found = dict(self._curves(execution, trace))
             write_curves(curves_file(folder, self._index), (self._spec.variant, self._spec.variation), found, trace)
         except (OSError, TypeError) as error:
-            self._channel.send(LogLine("warning", f"{self._spec.name}: the trace is not kept: {error}"))
+            reason = getattr(error, "strerror", None) or error
+            self._channel.send(LogLine("warning", f"{self._spec.name}: the trace is not kept: {reason}"))
 
     def _curves(self, execution: Execution, trace: Trace) -> Iterator[tuple[int, tuple[Curve, ...]]]:
         for line in (clause.line for clause in self._spec.clauses):

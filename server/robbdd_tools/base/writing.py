@@ -17,6 +17,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
+from robbdd_tools.base.renames import rename
+
 TEMPORARY = ".robbdd-"
 """Prefix of temporary files; they end in ``.tmp``, so that no reader takes them for results."""
 
@@ -65,12 +67,12 @@ def replacing_bytes(path: Path) -> Generator[BinaryIO]:
         if status is not None and status.st_nlink > 1:
             _overwrite(target, fresh)
         else:
-            fresh.replace(target)
+            rename(fresh, target)
         _sync_folder(target.parent)
     except OSError as error:
         # Name the requested file in the error, not the temporary one.
         if error.filename in (None, str(fresh)):
-            error.filename, error.filename2 = str(path), None
+            raise OSError(error.errno, error.strerror or str(error), str(path)) from error
         raise
     finally:
         with suppress(OSError):
@@ -119,7 +121,7 @@ def _overwrite(target: Path, fresh: Path) -> None:
             file.flush()
             os.fsync(file.fileno())
     except OSError:
-        fresh.replace(target)
+        rename(fresh, target)
 
 
 def _sync_folder(folder: Path) -> None:

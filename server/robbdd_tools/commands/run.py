@@ -94,13 +94,14 @@ def seen(policy: Policy, *, viewer: bool) -> Policy:
 def conclude(run: Run, outputs: Outputs, ended_by: int) -> int:
     """Write the reports of a run, say where it is kept, and return the exit code. Raises ``OSError``."""
     results = run.progress
-    if outputs.record is not None:
-        _record(run.folder, outputs.record)
-    _report(results, outputs)
+    # First of all: a report that cannot be written costs no result.
     if run.place.kept:
         print_note(f"kept as {f'run {run.number}' if run.number else run.folder}")
         if not results.complete and results.cause is not Cause.STOPPED:
             print_note(f"resume it with: robbdd run --resume {run.number or run.folder}")
+    if outputs.record is not None:
+        _record(run.folder, outputs.record)
+    _report(results, outputs)
     if run.problem:
         return fail(run.problem)
     if ended_by:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.limits import RESULT_SIZE
+from robbdd_tools.base.renames import rename
 from robbdd_tools.base.writing import replace_file
 
 NAME = "results.sqlite"
@@ -184,7 +185,7 @@ def move_aside(path: Path) -> Path:
     for end in (LOG, "-shm", ""):
         part = path.with_name(path.name + end)
         if part.exists():
-            part.rename(target.with_name(target.name + end))
+            rename(part, target.with_name(target.name + end))
     return target
 
 

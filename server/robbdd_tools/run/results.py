@@ -77,6 +77,12 @@ class RunResults:
             self.apply(message)
         return closing
 
+    def drop_unfinished(self) -> None:
+        """Forget the verdicts of executions that are not finished."""
+        for scenario in self.scenarios:
+            if scenario.finished is None:
+                scenario.judged.clear()
+
     def vacuous(self) -> Mapping[str, str]:
         """Return, by clause IRI, why a clause could not have failed in this run."""
         return self._vacuity.reasons()

@@ -202,6 +202,8 @@ class Run(Recorded):
             self.progress = self._recording.end(self.ending, interrupted=bool(self._reason))
         except OSError as error:
             self.problem = self.problem or why(error)
+            # An execution that could not be stored is executed again when the run is resumed.
+            self.progress.drop_unfinished()
             self.progress.close(self.problem)
         self.ending = self.progress.ending
 
