@@ -51,15 +51,15 @@ def test_a_range_has_a_word_or_four_numbers() -> None:
 @pytest.mark.parametrize(
     ("name", "text", "wanted"),
     [
-        ("mass", "heavy", "'mass' cannot be 'heavy': it is a number from 0.001 to 50 kg"),
-        ("mass", "-1", "'mass' cannot be '-1': it is a number from 0.001 to 50 kg"),
-        ("mass", "nan", "it is a number from 0.001 to 50 kg"),
-        ("mass", "1 2", "it is a number from 0.001 to 50 kg"),
-        ("mass", "", "it is a number from 0.001 to 50 kg"),
-        ("seed", "1.5", "it is a whole number from 0 to 4.29497e"),
-        ("ee_speed", "inf", "it is a number from 0.01 to 3 m/s"),
+        ("mass", "heavy", "'mass' cannot be 'heavy': it must be a number from 0.001 to 50 kg"),
+        ("mass", "-1", "'mass' cannot be '-1': it must be a number from 0.001 to 50 kg"),
+        ("mass", "nan", "it must be a number from 0.001 to 50 kg"),
+        ("mass", "1 2", "it must be a number from 0.001 to 50 kg"),
+        ("mass", "", "it must be a number from 0.001 to 50 kg"),
+        ("seed", "1.5", "it must be a whole number from 0 to 4.29497e"),
+        ("ee_speed", "inf", "it must be a number from 0.01 to 3 m/s"),
         ("position_range", "wide", "or normal, or dense"),
-        ("position_range", "0.3 0.5", "it is 4 numbers, each lower bound before its upper one, from -2 to 2 m"),
+        ("position_range", "0.3 0.5", "it must be 4 numbers, each lower bound before its upper one, from -2 to 2 m"),
         ("position_range", "0.5 0.3 -0.1 0.1", "each lower bound before its upper one"),
     ],
 )

@@ -99,7 +99,7 @@ def test_a_finding_stands_at_the_node_and_names_it() -> None:
             line_of(text, "ex:moving-scenario a"),
             "shacl-scenario-task",
             "'ex:moving-scenario': the template does not say which task its scenario belongs to: "
-            "write 'task: <task>' behind the duration",
+            "write 'task: <task>' after the duration",
         )
     ]
 

@@ -37,12 +37,12 @@ LOOP = "    for all ( var one in <parts> ) { When: <robot> picks <one> }\n"
 @pytest.mark.parametrize(
     ("parts", "word", "message"),
     [
-        (GIVEN + THEN, "Then", "'Then:' must come behind 'When:' or 'for all'"),
-        (GIVEN + THEN + LOOP, "Then", "'Then:' must come behind 'When:' or 'for all'"),
+        (GIVEN + THEN, "Then", "'Then:' must come after 'When:' or 'for all'"),
+        (GIVEN + THEN + LOOP, "Then", "'Then:' must come after 'When:' or 'for all'"),
         (WHEN + THEN + GIVEN, "Given", "'Given:' must come before 'When:', 'for all' and 'Then:'"),
-        (GIVEN + WHEN + THEN + LOOP, "for", "'for all' must come behind 'Given:' and before 'Then:'"),
-        (GIVEN + WHEN + LOOP + THEN, "for", "'for all' must come behind 'Given:' and before 'Then:'"),
-        (GIVEN + LOOP + WHEN + THEN, "When", "'When:' must come behind 'Given:' and before 'Then:'"),
+        (GIVEN + WHEN + THEN + LOOP, "for", "'for all' must come after 'Given:' and before 'Then:'"),
+        (GIVEN + WHEN + LOOP + THEN, "for", "'for all' must come after 'Given:' and before 'Then:'"),
+        (GIVEN + LOOP + WHEN + THEN, "When", "'When:' must come after 'Given:' and before 'Then:'"),
     ],
 )
 def test_a_part_of_a_scenario_that_is_out_of_order_is_told_its_place(parts: str, word: str, message: str) -> None:

@@ -95,7 +95,7 @@ def test_a_trace_of_a_version_without_contacts_is_read_and_tells_what_is_fixed()
 @pytest.mark.parametrize("missing", ["times", "names"])
 def test_a_trace_that_lacks_what_every_version_wrote_is_refused(missing: str) -> None:
     trace = Trace(NAMES, np.zeros(0), np.zeros((0, 2, 3)), np.zeros((0, 2, 4)))
-    with pytest.raises(TypeError, match="another version wrote this Trace"):
+    with pytest.raises(TypeError, match="this Trace was written by another version"):
         unpack(older(pack(Evidence(trace, REGIONS)), missing))
 
 

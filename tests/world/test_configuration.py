@@ -162,7 +162,7 @@ def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
             [(CUBE, "colour", "red")],
             "there is no configuration 'colour'; the known ones are approach_speed, belt_speed,",
         ),
-        ([(CUBE, "mass", "heavy")], "'env:cube1' cannot be configured: 'mass' cannot be 'heavy': it is a number"),
+        ([(CUBE, "mass", "heavy")], "'env:cube1' cannot be configured: 'mass' cannot be 'heavy': it must be a number"),
         ([(CUBE, "ee_speed", "1")], "'env:cube1' has no ee_speed: that is of an agent"),
         ([(PANDA, "mass", "1")], "'env:panda' has no mass: that is of a loose object"),
         ([("env:bench", "height_scale", "1")], "'env:bench' has no height_scale: that is of a bin, tray or shelf"),

@@ -1,1 +1,1 @@
-"""What the language can talk about: one file per predicate, behaviour, robot, object and simulator."""
+"""The words of the language: one file per predicate, behaviour, robot and object model."""

@@ -1,7 +1,7 @@
-"""The types that a word of the language is described with.
+"""Types that describe the words of the language.
 
-Plain data and protocols only: no simulator, no graph library and no numpy is imported here, so that an editor
-can load the whole catalog in a few milliseconds.
+Plain data and protocols only: no simulator, graph library or numpy is imported here, so an editor can load the whole
+catalog in a few milliseconds.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Vector = tuple[float, float, float]
 
 
 class Kind(StrEnum):
-    """What a slot of a phrase may stand for."""
+    """Kind of element that a slot of a phrase refers to."""
 
     OBJECT = "object"
     WORKSPACE = "workspace"
@@ -36,7 +36,7 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """One argument of a phrase: its name there, what it may be, and the RDF property (CURIE) that carries it."""
+    """One argument of a phrase: its name, its kinds, and the RDF property (CURIE) that carries it."""
 
     name: str
     kind: Kind
@@ -47,8 +47,8 @@ class Slot:
 class Region:
     """An axis-aligned box in the frame of the object that carries a workspace.
 
-    ``center`` and ``half`` (half edges) in metres. A bin's region is its inside, ``walled``; a table's the space above
-    its top. ``name`` tells one part of an object (a shelf's board) from the others.
+    ``center`` and ``half`` (half edges) in metres. A bin's region is its inside, ``walled``; a table's is the space
+    above its top. ``name`` identifies a part of an object (a shelf's board).
     """
 
     center: Vector
@@ -58,14 +58,14 @@ class Region:
 
 
 Outline = tuple[tuple[Vector, float], ...]
-"""Balls (centre and radius, m, in the object's frame) that touch every side of an object from within."""
+"""Balls (centre and radius, m, in the object's frame) inscribed in an object that touch each of its sides."""
 
 
 class Evidence(Protocol):
-    """What an evaluator sees: the samples of one window, in order, and the scene they were taken in.
+    """The data that an evaluator reads: the samples of one window, in order, and their scene.
 
-    ``n`` samples; positions in metres in the world frame, orientations as unit quaternions (w, x, y, z).
-    A name the trace does not know raises ``KeyError``, which the monitor turns into *unknown*.
+    ``n`` samples; positions in metres in the world frame, orientations as unit quaternions (w, x, y, z). An unknown
+    name raises ``KeyError``, which the monitor turns into *unknown*.
     """
 
     @property
@@ -74,7 +74,7 @@ class Evidence(Protocol):
         ...
 
     def position(self, name: str) -> FloatArray:
-        """Position of the middle of an object or an agent's tool centre point, shape (n, 3)."""
+        """Position of an object's middle or of an agent's tool centre point, shape (n, 3)."""
         ...
 
     def orientation(self, name: str) -> FloatArray:
@@ -82,32 +82,32 @@ class Evidence(Protocol):
         ...
 
     def velocity(self, name: str) -> FloatArray:
-        """Mean velocity of that position since the sample before, m/s, shape (n, 3)."""
+        """Mean velocity of that position since the previous sample, m/s, shape (n, 3)."""
         ...
 
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Position at the last sample at or before each of some times (n,), within the window or before it, (n, 3)."""
+        """Position at the last sample at or before each of ``times`` (n,), within the window or before it, (n, 3)."""
         ...
 
     def orientation_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Orientation at the last sample at or before each of some times (n,), (n, 4)."""
+        """Orientation at the last sample at or before each of ``times`` (n,), (n, 4)."""
         ...
 
     def outline(self, name: str) -> Outline:
-        """How far an object reaches around its position."""
+        """Extent of an object around its position."""
         ...
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
-        """The regions of the objects that carry a workspace, each with the object whose frame it is given in."""
+        """The regions of the objects that carry a workspace, each with the object whose frame it is in."""
         ...
 
     def contents(self, workspace: str) -> Sequence[str]:
-        """The workspaces that are composed into one, at any depth."""
+        """The workspaces composed into this one, at any depth."""
         ...
 
     @property
     def workspaces(self) -> Sequence[str]:
-        """The workspaces of the scene that something carries."""
+        """The workspaces of the scene that some object carries."""
         ...
 
     def gripped(self, agent: str, name: str) -> FloatArray:
@@ -119,18 +119,19 @@ class Evidence(Protocol):
         ...
 
     def force(self, agent: str, name: str) -> FloatArray:
-        """Largest force (N) since the sample before between an element and the agent or what it grips, shape (n,).
+        """Largest force (N) since the previous sample between an element and the agent or the object that it grips,
+        shape (n,).
 
-        The weight of what the agent grips is not counted.
+        The weight of the gripped object is not counted.
         """
         ...
 
     def is_immovable(self, name: str) -> bool:
-        """Whether an element is not pushed when it is hit: a fixed object, or an agent."""
+        """Whether a hit does not push an element: a fixed object, or an agent."""
         ...
 
     def setting(self, target: str, name: str) -> str:
-        """A configuration value of an element as the world that was set up has it."""
+        """A configuration value of an element, as set up in the world."""
         ...
 
 
@@ -141,21 +142,20 @@ Evaluator = Callable[[Evidence, Arguments], "FloatArray"]
 """Signed margin of the predicate at each sample, SI units, positive where it holds, shape (n,)."""
 
 UnitChoice = Callable[[Evidence, Arguments], str]
-"""SI unit of a predicate's margin where it depends on configuration."""
+"""SI unit of a predicate's margin, if it depends on configuration."""
 
 
 @dataclass(frozen=True, slots=True)
 class Predicate:
     """A predicate of fluents.
 
-    ``phrase`` is the surface form, slots in ``<…>`` (a reference), ``$…`` (a bare name) or as words; ``aliases``
-    are other surface forms that are read as the same, with the same slots; ``sentence`` the Gherkin form with
-    ``{slot}`` placeholders. ``unit`` is the SI unit of the margin (``""`` when the margin is ±1), unless ``unit_for``
-    says otherwise for a variant that was configured. ``evaluate`` is
-    ``None`` for what this installation can state but not judge yet: such a clause is *unknown*, never a pass.
-    ``quantities`` are those that the evaluator needs beside poses and grips
-    (``reach``): they cost time and are sampled only in the windows of clauses that ask. ``set_up`` tells that it is
-    made true before the scenario starts, not observed.
+    ``phrase`` is the surface form, slots in ``<…>`` (a reference), ``$…`` (a bare name) or as words; ``aliases`` are
+    other surface forms with the same meaning and slots; ``sentence`` is the Gherkin form with ``{slot}`` placeholders.
+    ``unit`` is the SI unit of the margin (``""`` for a margin of ±1); ``unit_for`` overrides it for a configured
+    variant. ``evaluate`` is ``None`` for a predicate that this installation cannot judge: its clauses are *unknown*,
+    never a pass. ``quantities`` are those that the evaluator needs besides poses and grips (``reach``): they are
+    expensive and sampled only in the windows of clauses that need them. ``set_up`` marks a predicate that is set up
+    before the scenario starts instead of observed.
     """
 
     name: str
@@ -176,7 +176,7 @@ class Predicate:
 class Behaviour:
     """A behaviour that an agent executes in ``When``.
 
-    ``events`` are the names of the events it emits, in order; the first and the last delimit its duration.
+    ``events`` are the names of the events that it emits, in order; the first and the last delimit its duration.
     ``aliases`` are other surface forms of ``phrase``, with the same slots.
     """
 
@@ -202,9 +202,9 @@ class ShapeKind(StrEnum):
 class Shape:
     """A primitive in the object's frame.
 
-    ``size`` in metres: half edges of a box; (radius, 0, 0) of a sphere; (radius, half length, 0) of a cylinder
-    along z. ``position`` is its centre. ``surface`` is the velocity (m/s, along one axis) at which the surface of a
-    driven belt runs, ``None`` for a shape that is at rest in its object.
+    ``size`` in metres: half edges of a box; (radius, 0, 0) of a sphere; (radius, half length, 0) of a cylinder along z.
+    ``position`` is its centre. ``surface`` is the surface velocity (m/s, along one axis) of a driven belt, ``None`` for
+    other shapes.
     """
 
     kind: ShapeKind
@@ -215,13 +215,13 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class ObjectModel:
-    """A thing of the simulated world.
+    """A kind of object of the simulated world.
 
-    Chosen for a scene object in whose name, or that of its set, one of ``prefixes`` occurs. ``mass`` in kg,
-    ``friction`` the sliding coefficient. A ``free`` object can move (a bin can be pushed), any other is fixed where it
-    stands; a ``graspable`` one is small enough for a gripper and is placed at random unless the scene says where.
-    ``rest_height`` is the height (m) of its origin above the surface it stands on. ``region`` is the workspace it
-    carries, if any. ``color`` is RGBA in [0, 1].
+    Used for a scene object if one of ``prefixes`` occurs in its name, or in that of its set. ``mass`` in kg,
+    ``friction`` the sliding coefficient. A ``free`` object can move (a bin can be pushed); any other is fixed. A
+    ``graspable`` one fits into a gripper and is placed at random unless the scene places it. ``rest_height`` is the
+    height (m) of its origin above the surface below it. ``region`` is the workspace that it carries, if any. ``color``
+    is RGBA in [0, 1].
     """
 
     name: str
@@ -236,22 +236,24 @@ class ObjectModel:
     doc: str
     region: Region | None = None
     places: tuple[Vector, ...] = ()
-    """Standard places (m; x, y on the surface below, z ignored for what stands on a table), best first."""
+    """Standard places (m; x, y on the surface below; z is ignored for an object on a table), best first."""
     parts: tuple[Region, ...] = ()
     """Parts of the object that are workspaces of their own, such as the boards of a shelf."""
     frame: Vector = (0.0, 0.0, 0.0)
-    """Where (m) the frame that poses in a scene place lies: the body frame of its file, which may be anywhere."""
+    """Position (m) of the frame that poses in a scene refer to: the body frame of its file, which is arbitrary."""
 
     def spaces(self, workspace: str) -> tuple[Region, ...]:
-        """Return the regions of a workspace that the object carries: the parts that its local name speaks of
-        (``shelf_upper`` of the part ``upper``), otherwise all parts, otherwise the whole region.
+        """Return the regions of a workspace that the object carries.
+
+        These are the parts that the workspace's local name contains (``shelf_upper``: the part ``upper``), otherwise
+        all parts, otherwise the whole region.
         """
         named = tuple(part for part in self.parts if part.name in workspace.lower())
         return named or self.parts or (() if self.region is None else (self.region,))
 
 
 class GripperKind(StrEnum):
-    """How a tool takes hold: between two fingers that close, or by a cup that sucks."""
+    """How a tool grips: with two closing fingers, or with a suction cup."""
 
     PARALLEL = "parallel"
     SUCTION = "suction"
@@ -261,13 +263,12 @@ class GripperKind(StrEnum):
 class RobotModel:
     """A robot arm with its tool.
 
-    Chosen for a scene agent in whose name, or that of its set, one of ``prefixes`` occurs. ``mjcf`` is a file beside
-    the catalog file. ``home`` are the joint positions (rad) at the start; ``velocity_limits`` rad/s and
-    ``torque_limits`` N m per arm joint, as published. ``joints``, ``tool_site`` and ``gripper_actuator`` are names
-    inside the MJCF; ``gripper_open`` and ``gripper_closed`` its control values. ``pads`` are the geoms of the
-    gripping faces. ``mount`` is where the base of the first such robot stands (m, world frame) and ``stroke`` the
-    widest opening between the gripping faces, or the diameter of the suction cup (m). ``source`` names the
-    publications the numbers come from.
+    Used for a scene agent if one of ``prefixes`` occurs in its name, or in that of its set. ``mjcf`` is a file next to
+    the catalog file. ``home`` are the initial joint positions (rad); ``velocity_limits`` (rad/s) and ``torque_limits``
+    (N m) per arm joint, as published. ``joints``, ``tool_site`` and ``gripper_actuator`` are names in the MJCF;
+    ``gripper_open`` and ``gripper_closed`` its control values. ``pads`` are the geoms of the gripping faces. ``mount``
+    is the base position of the first such robot (m, world frame); ``stroke`` is the widest opening between the gripping
+    faces, or the diameter of the suction cup (m). ``source`` names the publications of the numbers.
     """
 
     name: str
@@ -287,13 +288,13 @@ class RobotModel:
     doc: str
     source: str
     tool_speed: float = 0.5
-    """Largest speed of the tool along a planned path, m/s (paper: what the Panda typically reached)."""
+    """Largest speed of the tool along a planned path, m/s (paper: typically reached by the Panda)."""
     approach_speed: float | None = None
-    """Largest speed of the tool while it descends to a thing or lowers one, m/s; ``None``: ``tool_speed``."""
+    """Largest speed of the tool while it descends to an object or lowers one, m/s; ``None``: ``tool_speed``."""
     travel_height: float = 0.30
     """Height in the world frame at which the tool travels, m (paper)."""
     grip_time: float = 0.16
-    """How long a grip must last, and is then waited for, before the arm moves, s."""
+    """How long the agent checks a grip before the arm moves, s."""
     release_time: float = 0.32
-    """How long the open gripper waits before it leaves, s."""
+    """How long the open gripper waits before it retracts, s."""
     gripper: GripperKind = GripperKind.PARALLEL

@@ -1,4 +1,4 @@
-"""Behaviour trees as they are executed, as plain data: what each node does in one execution."""
+"""Executed behaviour trees as plain data: what each node does in one execution."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from dataclasses import dataclass, field
 from robbdd_tools.catalog.executable import Implementation
 
 START, END = "start", "end"
-"""What a node emits when it is ticked for the first time, and when it has succeeded."""
+"""Events that a node emits at its first tick, and on success."""
 
 
 def emitter(node: str, event: str) -> str:
-    """Return what emits an event inside a node: one of the node's own, or of a behaviour at work in it."""
+    """Return the emitter of an event inside a node: the node itself, or the behaviour that it executes."""
     return f"{node} {event}"
 
 
 @dataclass(frozen=True, slots=True)
 class NodeSpec:
-    """A node of a behaviour tree, by its IRI, with the ``name`` that people read.
+    """A node of a behaviour tree, by its IRI, with a readable ``name``.
 
     ``kind`` is ``sequence``, ``selector`` or ``leaf``. A leaf executes ``behaviour`` (a catalog name) with
-    ``arguments`` (slot to CURIE, a place also to several); where it cannot, ``problem`` says why.
+    ``arguments`` (slot to CURIE, or to several CURIEs for a place); ``problem`` is the reason if it cannot.
     """
 
     iri: str
@@ -33,7 +33,7 @@ class NodeSpec:
     problem: str = ""
 
     def leaves(self) -> Iterator[NodeSpec]:
-        """Yield the leaves from here on, in the order in which they are ticked."""
+        """Yield the leaves below this node in tick order."""
         if self.kind == "leaf":
             yield self
         for child in self.children:
@@ -42,11 +42,11 @@ class NodeSpec:
 
 @dataclass(frozen=True, slots=True)
 class TreeSpec:
-    """One execution of a behaviour tree, which all scenarios that are linked to its nodes are judged from.
+    """One execution of a behaviour tree; all scenarios linked to its nodes are judged from it.
 
-    ``name`` tells it from the other executions of a run, ``tree`` is the IRI. ``nodes`` is the root alone or, where
-    Python code (``source``) makes the tree, the nodes that it is to have. ``lead`` and ``tail`` (s) are what must be
-    recorded before the tree starts and after its end.
+    ``name`` identifies it within a run, ``tree`` is the IRI. ``nodes`` is the root alone or, if Python code
+    (``source``) makes the tree, the expected nodes. ``lead`` and ``tail`` (s) are the durations to record before the
+    tree's start and after its end.
     """
 
     name: str
@@ -57,6 +57,6 @@ class TreeSpec:
     source: Implementation | None = None
 
     def leaves(self) -> Iterator[NodeSpec]:
-        """Yield the leaves in the order in which they are ticked."""
+        """Yield the leaves in tick order."""
         for node in self.nodes:
             yield from node.leaves()

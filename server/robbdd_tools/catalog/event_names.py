@@ -1,4 +1,4 @@
-"""Which event of a behaviour an event of a model stands for, by its name."""
+"""Map a model's event names to the events of a behaviour."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
 """A word of ``pick_end``, ``PickEnd``, ``EPickEnd`` or ``E_PICK_END``."""
 _DECORATION = frozenset({"e", "ev", "evt", "event", "on"})
-"""Words before or after a name that only say that it is an event."""
+"""Words before or after a name that only mark it as an event."""
 _FORMS: Mapping[str, str] = {"started": "start", "starts": "start", "ended": "end", "ends": "end"}
 
 
 def inner_event(name: str, events: Iterable[str]) -> str | None:
-    """Return the one of a behaviour's ``events`` that a name (CURIE, IRI or local name) means, ``None`` for no such.
+    """Return the event of a behaviour that a name (CURIE, IRI or local name) means, or ``None``.
 
-    Case, separators, the form of the verb and words such as ``evt`` do not matter: ``evt-pick-end``, ``E_PICK_END``,
-    ``pickEnd``, ``pick_ended`` and ``PickEnded`` all mean ``pick-end``.
+    Case, separators, verb form and words such as ``evt`` are ignored: ``evt-pick-end``, ``E_PICK_END``, ``pickEnd``,
+    ``pick_ended`` and ``PickEnded`` all mean ``pick-end``.
     """
     words = _words(name)
     return next((event for event in events if _words(event) == words), None)

@@ -1,7 +1,7 @@
-"""How scenes and behaviours are executed, as plain data: what a ``.scenex`` and a ``.bddx`` say.
+"""Executable scenes and behaviours as plain data: the content of a ``.scenex`` and a ``.bddx``.
 
-Names are IRIs where the graph is read and CURIEs in a run. Python code is named ``module:attribute``; nothing here
-imports it.
+Names are IRIs in the graph's data and CURIEs in a run. Python code is named ``module:attribute``; nothing here imports
+it.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where something is written: a file (an absolute path), line and column, both from 1.
+    """Source position: a file (an absolute path), line and column, both from 1.
 
-    Paths that a model names are relative to the file's folder, and user code may lie there.
+    Relative paths in a model are relative to the file's folder, which may also contain user code.
     """
 
     file: str
@@ -21,15 +21,15 @@ class Origin:
     column: int
 
     def __str__(self) -> str:
-        """Return ``file:line:column`` as messages have it."""
+        """Return ``file:line:column``, as in messages."""
         return f"{self.file}:{self.line}:{self.column}"
 
 
 @dataclass(frozen=True, slots=True)
 class Implementation:
-    """What executes a behaviour: ``kind`` is ``catalog``, ``python`` or ``ros-action``; ``name`` says which.
+    """What executes a behaviour: ``kind`` is ``catalog``, ``python`` or ``ros-action``; ``name`` is its name there.
 
-    ``origin`` is where that is written, ``None`` for a graph without source text.
+    ``origin`` is its source position, ``None`` for a graph without source text.
     """
 
     iri: str
@@ -42,8 +42,8 @@ class Implementation:
 class Law:
     """A distribution: ``kind`` is ``uniform``, ``normal`` or ``uniform-rotation``.
 
-    ``low`` and ``high`` bound each number of a uniform one; ``mean`` and ``covariance`` (rows behind one another)
-    are those of a normal one.
+    ``low`` and ``high`` bound each number of a uniform one; ``mean`` and ``covariance`` (row by row) belong to a normal
+    one.
     """
 
     iri: str
@@ -56,13 +56,13 @@ class Law:
 
 
 def spherical(deviation: float, size: int) -> tuple[float, ...]:
-    """Return the covariance of independent numbers of one standard deviation, rows behind one another."""
+    """Return the covariance of independent numbers with the same standard deviation, row by row."""
     return tuple(deviation**2 if row == column else 0.0 for row in range(size) for column in range(size))
 
 
 def law_fault(law: Law) -> str:
-    """Return why a distribution cannot be drawn from, as what is said of it; empty when it can."""
-    # Reading a model should not wait for numpy.
+    """Return why a distribution cannot be sampled, as a predicate of a sentence; empty if it can."""
+    # Import numpy here, so that reading a model does not wait for it.
     import numpy as np
 
     if law.kind == "uniform":
@@ -87,11 +87,11 @@ def law_fault(law: Law) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """What places a frame relative to another one, ``base`` (empty: the world).
+    """The placement of a frame relative to another one, ``base`` (empty: the world).
 
-    A ``pose`` has a position (m) and a rotation (unit quaternion, w first), or a law that they are drawn from: what
-    is drawn for a position is in units of ``scale`` m. A ``fixed`` joint holds its frames together, a ``revolute``
-    one has them ``position`` apart and its ``axes`` (those of ``base`` and ``frame``) in one line, at its zero.
+    A ``pose`` has a position (m) and a rotation (unit quaternion, w first), or a distribution to sample them from;
+    sampled positions are multiplied by ``scale`` (m). A ``fixed`` joint connects its frames rigidly; at the zero of a
+    ``revolute`` joint they are ``position`` apart and its ``axes`` (of ``base`` and ``frame``) coincide.
     """
 
     frame: str
@@ -108,7 +108,7 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A body of a kinematic tree or graph with its frames in written order; the first is the body's own."""
+    """A body of a kinematic tree or graph with its frames in written order; the first is the body frame."""
 
     iri: str
     frames: tuple[str, ...]
@@ -117,10 +117,10 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class ArmModel:
-    """What a model file does not say of an arm that is to pick: names are those in the file.
+    """Data on a picking arm that its model file lacks; names are those in the file.
 
     ``open`` and ``closed`` are values of the gripper's actuator, ``stroke`` (m) is the widest opening between the
-    ``pads``. ``home`` (rad) and ``velocity`` (rad/s), one number per joint, are empty where they are not written.
+    ``pads``. ``home`` (rad) and ``velocity`` (rad/s), one number per joint, are empty if not given.
     """
 
     tool: str
@@ -135,10 +135,10 @@ class ArmModel:
 
 @dataclass(frozen=True, slots=True)
 class ModelSource:
-    """Where a model comes from: ``kind`` is ``file``, ``ros``, ``python`` or ``catalog``.
+    """Source of a model: ``kind`` is ``file``, ``ros``, ``python`` or ``catalog``.
 
-    ``name`` is the path, the code or the catalog name, ``package`` that of ROS; ``format`` is ``mjcf``, ``urdf`` or
-    ``usd``. ``bodies`` tells for bodies of the scene's trees what the file calls them.
+    ``name`` is the path, the code or the catalog name, ``package`` the ROS package; ``format`` is ``mjcf``, ``urdf`` or
+    ``usd``. ``bodies`` maps bodies of the scene's trees to their names in the file.
     """
 
     iri: str
@@ -163,9 +163,9 @@ class Realisation:
 
 @dataclass(frozen=True, slots=True)
 class SceneInstance:
-    """An executable scene: models of the whole scene, those of its elements, and what places bodies.
+    """An executable scene: models of the whole scene, models of its elements, and the placements of bodies.
 
-    ``anchor`` is the frame that stands for the world, empty where nothing says which.
+    ``anchor`` is the frame that represents the world; empty if none is given.
     """
 
     iri: str

@@ -1,4 +1,4 @@
-"""Geometry that several evaluators share; numpy is imported when the first of them runs."""
+"""Geometry shared by several evaluators; numpy is imported at the first evaluation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 CONTACT = 1e-3
-"""How deep (m) a thing at rest may be in what carries it: the simulation keeps what settled below that."""
+"""Depth (m) to which an object at rest may penetrate its support: the simulation keeps settled contacts below it."""
 
 
 def into_frame(points: FloatArray, origin: FloatArray, orientation: FloatArray) -> FloatArray:
@@ -26,7 +26,7 @@ def into_frame(points: FloatArray, origin: FloatArray, orientation: FloatArray) 
 
 
 def out_of_frame(point: Vector, origin: FloatArray, orientation: FloatArray) -> FloatArray:
-    """Express a point of moving frames, given as in ``into_frame``, in the world, shape (n, 3)."""
+    """Express a point of moving frames (as in ``into_frame``) in the world, shape (n, 3)."""
     import numpy as np
 
     relative = np.tile(np.asarray(point), (len(origin), 1))
@@ -36,13 +36,13 @@ def out_of_frame(point: Vector, origin: FloatArray, orientation: FloatArray) -> 
 
 
 def inside_margin(evidence: Evidence, name: str, workspaces: Iterable[str]) -> FloatArray:
-    """Distance (m) of a body to the nearest face of the space of some workspaces, positive inside, shape (n,).
+    """Distance (m) from a body to the nearest face of the space of some workspaces, positive inside, shape (n,).
 
-    The space of a workspace is the union of the regions of its objects and of the workspaces composed into it, without
-    what other regions with a higher floor take of it: a thing on a shelf is on the shelf, not on the table below. The
-    body's position counts; with the configuration ``whole_object`` all of it does, but at the lowest face, which
-    carries it. What a body carries itself neither holds it nor is taken from where it is. Raises ``KeyError`` for a
-    workspace without regions, or with its own only.
+    The space of a workspace is the union of the regions of its objects and of the workspaces composed into it, minus
+    the parts that are inside other regions with a higher floor: an object on a shelf is on the shelf, not on the table
+    below. The body's position counts; with the configuration ``whole_object`` its whole outline does, except at the
+    lowest face, which carries it. Regions that the body itself carries are ignored. Raises ``KeyError`` for a workspace
+    without regions, or with the body's own only.
     """
     import numpy as np
 
@@ -71,7 +71,7 @@ def inside_margin(evidence: Evidence, name: str, workspaces: Iterable[str]) -> F
 
 
 def _without(carrier: str, places: Iterable[tuple[str, Region]]) -> dict[tuple[str, Region], None]:
-    """Return each region once, in order, but those of one carrier."""
+    """Return each region once, in order, without those of one carrier."""
     return dict.fromkeys(place for place in places if place[0] != carrier)
 
 
@@ -87,7 +87,7 @@ def _space(evidence: Evidence, workspace: str) -> Iterator[tuple[str, Region]]:
 def _into(evidence: Evidence, place: tuple[str, Region], position: FloatArray) -> FloatArray:
     """Distance (m) of points (n, 3) to the faces of a region in its carrier's frame, positive inside, shape (n,).
 
-    A point that is less than ``CONTACT`` below the bottom is on it.
+    A point less than ``CONTACT`` below the bottom counts as on it.
     """
     carrier, region = place
     local = into_frame(position, evidence.position(carrier), evidence.orientation(carrier))
@@ -106,7 +106,7 @@ def _floor(evidence: Evidence, place: tuple[str, Region]) -> FloatArray:
 
 
 def limit_of(evidence: Evidence, elements: Iterable[str], name: str) -> float | None:
-    """Return the smallest value of a configuration among elements, ``None`` when none of them has it."""
+    """Return the smallest value of a configuration among elements, ``None`` if none of them has it."""
     found: list[float] = []
     for element in elements:
         try:
@@ -117,12 +117,12 @@ def limit_of(evidence: Evidence, elements: Iterable[str], name: str) -> float | 
 
 
 def is_configured(evidence: Evidence, element: str, name: str) -> bool:
-    """Tell whether a yes-or-no configuration of an element says yes."""
+    """Return whether a Boolean configuration of an element is set."""
     return limit_of(evidence, (element,), name) == 1.0
 
 
 def carriers_of(evidence: Evidence, target: str) -> list[str]:
-    """Return the objects that a workspace stands for, for anything else the target itself."""
+    """Return the objects that carry a workspace; for any other target, the target itself."""
     try:
         return [carrier for carrier, _ in evidence.regions(target)]
     except KeyError:
@@ -138,14 +138,15 @@ def path_length(positions: FloatArray) -> FloatArray:
 
 
 def _outside(local: FloatArray, region: Region) -> FloatArray:
-    """How far points (n, 3) of a region's frame lie beyond each pair of its faces, m, negative within, (n, 3)."""
+    """Overhang of points (n, 3) of a region's frame beyond each pair of its faces, m, negative inside, (n, 3)."""
     import numpy as np
 
     return np.abs(local - np.asarray(region.center)) - np.asarray(region.half)
 
 
 def _signed_distance(outside: FloatArray) -> FloatArray:
-    """Margin of points whose overhang beyond each pair of faces is given (n, 3): inside > 0, Euclidean outside."""
+    """Margin of points from their overhang beyond each pair of faces (n, 3): positive inside, Euclidean distance
+    outside."""
     import numpy as np
 
     beyond = np.linalg.norm(np.maximum(outside, 0.0), axis=1)

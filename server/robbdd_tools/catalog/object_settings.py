@@ -1,4 +1,4 @@
-"""Which configurations (``has config``) an element can have, by its kind and, of an object, by its model."""
+"""The configurations (``has config``) that an element can have, by its kind and an object's model."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ OF_AGENTS = frozenset(
 
 
 def agent_has(name: str) -> bool:
-    """Tell whether agents have a configuration of the catalog."""
+    """Return whether agents have a configuration of the catalog."""
     return name in OF_AGENTS or setting_of(name).judges == "agent"
 
 
 def object_has(model: ObjectModel, name: str) -> bool:
-    """Tell whether an object of a model has a configuration of the catalog."""
+    """Return whether an object of a model has a configuration of the catalog."""
     match name:
         case "seed" | "friction":
             return True
@@ -38,11 +38,11 @@ def object_has(model: ObjectModel, name: str) -> bool:
 
 
 def is_scalable(model: ObjectModel) -> bool:
-    """Tell whether an object is a loose container. A sphere keeps its proportions."""
+    """Return whether an object is a loose container. A sphere keeps its proportions."""
     round_ones = any(shape.kind is ShapeKind.SPHERE for shape in model.shapes)
     return model.free and model.region is not None and not round_ones
 
 
 def has_belt(model: ObjectModel) -> bool:
-    """Tell whether an object has a moving surface."""
+    """Return whether an object has a moving surface."""
     return any(shape.surface is not None for shape in model.shapes)

@@ -1,8 +1,8 @@
-"""What a behaviour of a user's own has to do, and what it may ask for.
+"""Interface of users' own behaviours.
 
-A ``.bddx`` names a class, ``bhv impl (ns=x) mine { py { module: my_arm, attr: Pick } }``. The class is made without
-arguments for each behaviour of each execution; ``reset`` tells it what to do, then ``step`` is called once per control
-tick (16 ms of simulated time) until it returns ``True``.
+A ``.bddx`` names a class, ``bhv impl (ns=x) mine { py { module: my_arm, attr: Pick } }``. The class is instantiated
+without arguments for each behaviour of each execution; ``reset`` passes the task, then ``step`` is called once per
+control tick (16 ms of simulated time) until it returns ``True``.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 
 class BehaviourFailed(Exception):
-    """Raise this when the agent cannot go on: its behaviour has failed, and the message says why.
+    """Raise this if the agent cannot go on: its behaviour has failed, and the message gives the reason.
 
-    Any other exception is an error in the code: nothing can be concluded from the execution then.
+    Any other exception is an error in the code, and the execution's clauses are unknown.
     """
 
 
 class World(Protocol):
-    """The simulated world as one agent's behaviour sees and moves it; the frame is the world's, units are SI."""
+    """The simulated world as one agent's behaviour observes and moves it; world frame, SI units."""
 
     @property
     def time(self) -> float:
@@ -39,11 +39,11 @@ class World(Protocol):
         ...
 
     def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
-        """Position of an object's middle (3,) m, its rotation matrix (3, 3); raises ``KeyError`` for an unknown one."""
+        """Position of an object's middle (3,) m, and its rotation matrix (3, 3); raises ``KeyError`` if unknown."""
         ...
 
     def place(self, workspace: str) -> FloatArray:
-        """The middle (3,) m of a workspace's bottom; raises ``KeyError`` for an unknown one."""
+        """The middle (3,) m of a workspace's bottom; raises ``KeyError`` for an unknown name."""
         ...
 
     def holds(self, name: str) -> bool:
@@ -58,11 +58,11 @@ class World(Protocol):
         ...
 
     def command(self, joints: FloatArray, opening: float) -> None:
-        """Move the servos' targets to joint positions (n,) rad within one tick; ``opening`` from 0 closed to 1 open."""
+        """Set the servos' target joint positions (n,) rad within one tick; ``opening`` is 0 (closed) to 1 (open)."""
         ...
 
     def emit(self, event: str) -> None:
-        """Tell that an event of the behaviour occurs now: ``pick-start``, ``pick-end`` …"""
+        """Report that an event of the behaviour occurs now: ``pick-start``, ``pick-end`` …"""
         ...
 
 
@@ -72,10 +72,10 @@ class UserBehaviour(Protocol):
     def reset(self, world: World, behaviour: str, arguments: Arguments) -> None:
         """Begin: ``behaviour`` is a catalog name, ``arguments`` maps ``agent``, ``object`` … to names.
 
-        Where the model has a set as a place, ``workspace`` is a tuple of names: the behaviour chooses one.
+        If the model gives a set as the place, ``workspace`` is a tuple of names: the behaviour chooses one.
         """
         ...
 
     def step(self) -> bool:
-        """Command the next tick; return ``True`` when the behaviour is over."""
+        """Command the next tick; return ``True`` when the behaviour is done."""
         ...

@@ -1,7 +1,7 @@
-"""Collects the words of the language: a scan of our own folders, then the entry points of other packages.
+"""Collect the words of the language: scan our own folders, then the entry points of other packages.
 
-A third-party package adds a word by an entry point of the group ``robbdd_tools.catalog`` that names a
-module-level ``Predicate``, ``Behaviour``, ``ObjectModel`` or ``RobotModel``.
+A third-party package adds a word by an entry point of the group ``robbdd_tools.catalog`` that names a module-level
+``Predicate``, ``Behaviour``, ``ObjectModel`` or ``RobotModel``.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 GROUP = "robbdd_tools.catalog"
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
-"""Where a word begins inside a name like ``redCube``."""
+"""Word boundary inside a name like ``redCube``."""
 FOLDERS = ("predicates", "behaviours", "objects", "robots")
 Model = TypeVar("Model", ObjectModel, RobotModel)
 Entry = TypeVar("Entry", Predicate, Behaviour, ObjectModel, RobotModel)
 
 
 class DuplicateWord(Exception):
-    """Two catalog files claim the same name; the message names both."""
+    """Two catalog files define the same name; the message names both."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,17 +44,17 @@ class Catalog:
     robots: Mapping[str, RobotModel]
 
     def object_for(self, local_name: str, sets: Iterable[str] = ()) -> ObjectModel | None:
-        """Return the object model that a scene object of this name stands for, else one of its ``sets`` by name."""
+        """Return the object model for a scene object by its name, else by the names of its ``sets``."""
         return _by_names(self.objects, local_name, sets)
 
     def robot_for(self, local_name: str, sets: Iterable[str] = ()) -> RobotModel | None:
-        """Return the robot model that a scene agent of this name stands for, else one of its ``sets`` by name."""
+        """Return the robot model for a scene agent by its name, else by the names of its ``sets``."""
         return _by_names(self.robots, local_name, sets)
 
 
 @cache
 def load_catalog() -> Catalog:
-    """Return the catalog of this installation; raises ``DuplicateWord`` when two files claim one name."""
+    """Return the catalog of this installation; raises ``DuplicateWord`` if two files define one name."""
     return build_catalog([*_own_words(), *_foreign_words()])
 
 
@@ -109,10 +109,10 @@ def _by_name(models: Mapping[str, Model], name: str) -> Model | None:
 
 
 def _rank(prefix: str, words: list[str]) -> tuple[bool, bool, int] | None:
-    """Return how well a model's word fits the words of a name, ``None`` where it does not.
+    """Return how well a model's prefix fits the words of a name, ``None`` if it does not.
 
-    Whole words come first, then words at the beginning of the name, then longer ones. A part of a word counts at its
-    beginning or end only: a cabinet is no bin.
+    Whole words rank first, then words at the beginning of the name, then longer ones. A part of a word counts only at
+    its beginning or end: a cabinet is not a bin.
     """
     wanted = re.findall(r"[a-z]+|[0-9]+", prefix)
     count, joined = len(wanted), "".join(wanted)

@@ -1,4 +1,4 @@
-"""The configurations that ``has config`` can set, with their units, and what their values may be."""
+"""The configurations that ``has config`` can set, their units and permitted values."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ Numbers = tuple[float, ...]
 
 
 class SettingError(ValueError):
-    """A configuration that does not exist or a value that it cannot have; the message names what there is."""
+    """An unknown configuration or an invalid value; the message lists the valid ones."""
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One configuration: ``unit`` of its numbers, what it is of (``target``), the bounds of each number.
+    """One configuration: ``unit`` of its numbers, ``target`` (what it applies to), the bounds of each number.
 
     ``words`` are names for common values; ``count`` is how many numbers a value has; ``whole`` allows no fractions.
-    ``judges`` is the kind of element (agent or object) of a configuration that changes not the world but how an
-    evaluator judges it.
+    ``judges`` is the kind of element (agent or object) if the configuration changes how an evaluator judges it instead
+    of the world.
     """
 
     name: str
@@ -38,7 +38,7 @@ class Setting:
     judges: str = ""
 
     def read(self, text: str) -> Numbers:
-        """Return the value that a text states; raises ``SettingError``."""
+        """Return the value written as a text; raises ``SettingError``."""
         named = dict(self.words).get(text.strip())
         if named is not None:
             return named
@@ -49,12 +49,12 @@ class Setting:
         fits = all(self.low <= number <= self.high and not (self.whole and number % 1) for number in numbers)
         ordered = all(low < high for low, high in zip(numbers[::2], numbers[1::2], strict=False))
         if len(numbers) != self.count or not fits or not ordered:
-            raise SettingError(f"'{self.name}' cannot be '{text}': it is {self.wanted}")
+            raise SettingError(f"'{self.name}' cannot be '{text}': it must be {self.wanted}")
         return numbers
 
     @property
     def wanted(self) -> str:
-        """What a value is, in words."""
+        """The permitted values, in words."""
         kind = "a whole number" if self.whole else "a number"
         if self.count > 1:
             kind = f"{self.count} numbers, each lower bound before its upper one,"
@@ -65,16 +65,16 @@ class Setting:
 
 NORMAL: Numbers = (0.25, 0.60, -0.40, 0.40)
 DENSE: Numbers = (0.35, 0.60, -0.30, 0.30)
-"""Ranges of the paper's experiment: ahead of the robot from, to; to its left from, to, m."""
+"""Ranges of the paper's experiment, m: ahead of the robot from, to; to its left from, to."""
 YES_NO: tuple[tuple[str, Numbers], ...] = (("yes", (1.0,)), ("no", (0.0,)))
 _EVERY = (
     Setting(
         name="position_range",
         unit="m",
-        target="an object, or an agent for all objects laid out before it",
+        target="an object, or an agent for all objects placed in front of it",
         low=-2.0,
         high=2.0,
-        doc="where a thing lies at the start, before the base of the acting robot: x from, x to, y from, y to",
+        doc="initial position of the object relative to the base of the acting robot: x from, x to, y from, y to",
         count=4,
         words=(("normal", NORMAL), ("dense", DENSE)),
     ),
@@ -83,8 +83,8 @@ _EVERY = (
     Setting("ee_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool along its planned path"),
     Setting("approach_speed", "m/s", "an agent", 0.01, 3.0, "largest speed of the tool as it descends or lowers"),
     Setting("travel_height", "m", "an agent", 0.15, 1.0, "height in the world frame at which the tool travels"),
-    Setting("grip_time", "s", "an agent", 0.016, 5.0, "how long a grip is watched before the arm moves"),
-    Setting("release_time", "s", "an agent", 0.0, 5.0, "how long the open gripper waits before it leaves"),
+    Setting("grip_time", "s", "an agent", 0.016, 5.0, "how long a grip is checked before the arm moves"),
+    Setting("release_time", "s", "an agent", 0.0, 5.0, "how long the open gripper waits before it retracts"),
     Setting("mass", "kg", "a loose object", 0.001, 50.0, "mass of the whole object"),
     Setting(
         "friction",
@@ -92,7 +92,7 @@ _EVERY = (
         "an object",
         0.01,
         2.0,
-        "coefficient of sliding friction; of two surfaces the smaller one counts",
+        "coefficient of sliding friction; the smaller one of two surfaces counts",
     ),
     Setting(
         "max_speed",
@@ -109,7 +109,7 @@ _EVERY = (
         "an object or a workspace",
         0.001,
         10.0,
-        "way that it may be pushed before it counts as collided with",
+        "path length that it may be pushed before it counts as collided with",
         judges="object",
     ),
     Setting(
@@ -118,8 +118,8 @@ _EVERY = (
         "an object or a workspace",
         0.1,
         10000.0,
-        "contact force up to which it does not count as collided with; takes the place of displacement_limit; 140 for "
-        "what is fixed",
+        "contact force up to which it does not count as collided with; replaces displacement_limit; 140 for "
+        "fixed objects",
         judges="object",
     ),
     Setting(
@@ -128,7 +128,7 @@ _EVERY = (
         "an object",
         0,
         1,
-        "whether all of it, not its position alone, must lie within the sides and below the top of a workspace",
+        "whether the whole object, not only its position, must lie within the sides and below the top of a workspace",
         whole=True,
         words=YES_NO,
         judges="object",
@@ -139,12 +139,12 @@ _EVERY = (
         "an object or a workspace",
         0,
         1,
-        "whether it is sorted only when it lies in (or, as a workspace, its objects lie in) no second workspace",
+        "whether it counts as sorted only if it (or, for a workspace, its objects) lies in no second workspace",
         whole=True,
         words=YES_NO,
         judges="object",
     ),
-    Setting("seed", "", "any element", 0, 2**32 - 1, "decides everything random in the scenario", whole=True),
+    Setting("seed", "", "any element", 0, 2**32 - 1, "seed of all randomness in the scenario", whole=True),
 )
 SETTINGS: Mapping[str, Setting] = MappingProxyType(
     {setting.name: setting for setting in sorted(_EVERY, key=lambda s: s.name)}
@@ -152,12 +152,12 @@ SETTINGS: Mapping[str, Setting] = MappingProxyType(
 
 
 def setting_of(name: str) -> Setting:
-    """Return a configuration by name; raises ``SettingError`` that lists the known ones."""
+    """Return a configuration by name; raises ``SettingError`` with the known names."""
     if name not in SETTINGS:
         raise SettingError(f"there is no configuration '{name}'; the known ones are {', '.join(SETTINGS)}")
     return SETTINGS[name]
 
 
 def written(numbers: Numbers) -> str:
-    """Return a value as a text that reads back to the same numbers."""
+    """Return a value as text that parses back to the same numbers."""
     return " ".join(repr(int(number)) if number.is_integer() else repr(number) for number in numbers)

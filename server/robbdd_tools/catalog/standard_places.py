@@ -1,4 +1,4 @@
-"""Where the models of the catalog stand when no executable scene places them, and how many find room."""
+"""Standard places of the catalog's models if no executable scene places them, and how many objects have room."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import ObjectModel, Vector
 
 SIDES = 4
-"""Sides of a table, at each of which one agent has room."""
+"""Sides of a table; one agent has room at each."""
 
 
 class NoRoom(ValueError):
-    """An element has no place; the message says where the room ended. ``name`` is the element."""
+    """An element has no place; the message says where room ran out. ``name`` is the element."""
 
     def __init__(self, name: str, message: str) -> None:
         super().__init__(message)
@@ -21,17 +21,19 @@ class NoRoom(ValueError):
 
 
 def at_places(models: Mapping[str, ObjectModel], names: Iterable[str], where: str) -> Iterator[tuple[str, Vector]]:
-    """Yield each object with the first standard place of its kind that nothing stands at; raises ``NoRoom``."""
+    """Yield each object with the first free standard place of its kind; raises ``NoRoom``."""
     used: list[tuple[Vector, ObjectModel]] = []
     for name in names:
         model = models[name]
         if not model.places:
-            raise NoRoom(name, f"'{name}' has no pose: place it in the .scenex, as its model ({model.doc}) has none")
+            raise NoRoom(
+                name, f"'{name}' has no pose: place it in the .scenex; its model ({model.doc}) has no standard place"
+            )
         free = (place for place in model.places if not any(_overlapping(place, model, *one) for one in used))
         place = next(free, None)
         if place is None:
             room = f"there is room for {len(model.places)} objects of the kind '{model.name}' on {where}"
-            raise NoRoom(name, f"{room}, less where others stand; '{name}' has no place")
+            raise NoRoom(name, f"{room}, minus the occupied places; '{name}' has no place")
         used.append((place, model))
         yield name, place
 

@@ -1,4 +1,4 @@
-"""Contacts of an agent with what it was not to touch, or what no clause speaks of."""
+"""Contacts of an agent that a clause forbids, or that no clause mentions."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A contact of an agent, or of the ``part`` that it gripped (empty: of the agent itself), with something else.
+    """A contact of an agent (or of ``part``, the object in its grip, if not empty) with something else.
 
-    ``time`` (s) is that of the sample after it began, ``peak`` (N) its largest force and ``peak_time`` (s) the sample
-    after that, ``impulse`` (N s) the force over all the time that it lasted.
+    ``time`` (s) is the first sample after it began, ``peak`` (N) its largest force, ``peak_time`` (s) the first sample
+    after the peak, ``impulse`` (N s) the force integrated over the whole contact.
     """
 
     agent: str

@@ -1,4 +1,4 @@
-"""How the margin of a predicate went over time, for plots."""
+"""The margin of a predicate over time, for plots."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
 
     Margins = Callable[[Window], FloatArray | None]
-    """Tells the margin at each sample of a window, shape (n,), nothing where it is not known."""
+    """Returns the margin at each sample of a window, shape (n,), or ``None`` if it is unknown."""
 
 POINTS = 400
-"""Points of a curve, about: as many as a screen shows. More are thinned out; extremes and what decides stay."""
+"""Approximate number of points of a curve, enough for a screen. Longer curves are thinned; extremes and the deciding
+samples stay."""
 DIGITS = 6
-"""Decimals of what is only looked at."""
+"""Decimals of plotted numbers."""
 DIGIT = 10**-DIGITS
 
 
@@ -29,9 +30,8 @@ DIGIT = 10**-DIGITS
 class Curve:
     """The margin of one fluent.
 
-    ``start`` and ``end`` (s) are its window, ``None`` without one, for a ``reason``. ``margins`` in the SI unit
-    ``unit`` at ``times`` (s); there are none where nothing is recorded. ``negated`` tells that the clause wants the
-    opposite of the fluent.
+    ``start`` and ``end`` (s) are its window, ``None`` if it has none, for the ``reason`` given. ``margins`` are in the
+    SI unit ``unit`` at ``times`` (s); both are empty without a recording. ``negated``: the clause negates the fluent.
     """
 
     start: float | None = None
@@ -46,7 +46,7 @@ class Curve:
 def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margins) -> Curve:
     """Return a curve with its window and points.
 
-    Beyond the window it goes only where the margin does not depend on when that opens.
+    It extends beyond the window only if the margin does not depend on the window's start.
     """
     whole = margins(Window(0, len(trace.times) - 1)) if len(trace.times) else None
     selected = window(constraint, trace)
@@ -72,7 +72,7 @@ def _drawn(found: Curve, times: FloatArray, margins: FloatArray | None) -> Curve
 
 
 def _extremes(margins: FloatArray) -> Iterator[int]:
-    """Yield the rows of the least and the largest margin of each of ``POINTS / 2`` parts."""
+    """Yield the rows of the smallest and the largest margin in each of ``POINTS / 2`` parts."""
     bounds = np.linspace(0, len(margins), POINTS // 2 + 1).astype(int).tolist()
     for first, after in pairwise(bounds):
         part = margins[first:after]
@@ -80,7 +80,7 @@ def _extremes(margins: FloatArray) -> Iterator[int]:
 
 
 def _judged(found: Curve, times: FloatArray, margins: FloatArray) -> Iterator[int]:
-    """Yield the rows that decide: the window's first and last, and that of the least margin in between."""
+    """Yield the deciding rows: the window's first and last, and the smallest margin in between."""
     if found.start is None or found.end is None:
         return
     first, after = np.searchsorted(times, [found.start - DIGIT, found.end + DIGIT]).tolist()

@@ -1,4 +1,4 @@
-"""Errors in users' code, as plain data: why the evidence for a clause is missing."""
+"""Errors in users' code as plain data."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One call of a traceback: an absolute path, a line from 1, the function and the line's text without indent.
+    """One call of a traceback: an absolute path, a line from 1, the function and the line's text without indentation.
 
-    ``own`` is false for a library that the user's code calls.
+    ``own`` is false for a library called by the user's code.
     """
 
     file: str
@@ -23,12 +23,12 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """An exception that users' code raised, or an answer that it must not give.
+    """An exception raised by users' code, or an invalid return value.
 
-    ``exception`` is the type's name and ``message`` its words; ``code`` names what was called (``module:attribute`` or
-    a step's sentence); ``frames`` are the calls outside of this package, outermost first. ``origin`` is the IRI of the
-    behaviour, policy, tree or model that names the code, empty for steps. ``digest`` is the SHA-256 of the file that
-    ``place`` is in, empty where it cannot be read.
+    ``exception`` is the type's name and ``message`` its text; ``code`` is the called code (``module:attribute`` or a
+    step's sentence); ``frames`` are the calls outside of this package, outermost first. ``origin`` is the IRI of the
+    behaviour, policy, tree or model that names the code, empty for steps. ``digest`` is the SHA-256 of the file of
+    ``place``, empty if it cannot be read.
     """
 
     exception: str
@@ -40,13 +40,13 @@ class Fault:
 
     @property
     def place(self) -> Frame | None:
-        """The innermost call in the user's own files, or in any file when none is the user's."""
+        """The innermost call in the user's own files, or in any file if none is the user's."""
         own = [frame for frame in self.frames if frame.own]
         return (own or list(self.frames) or [None])[-1]
 
     @property
     def id(self) -> str:
-        """The same for the same error in several scenarios and processes, whatever values its message holds."""
+        """Identifier of an error: equal across scenarios and processes, whatever values its message contains."""
         calls = [f"{frame.file}:{frame.line}" for frame in self.frames]
         return hashlib.sha256("\0".join((self.exception, self.code, self.origin, *calls)).encode()).hexdigest()[:12]
 
@@ -56,7 +56,7 @@ class Fault:
         return ": ".join(part for part in (self.exception, " ".join(self.message.split())) if part)
 
     def traceback(self) -> Iterator[str]:
-        """Yield the lines of the traceback in Python's own form, which terminals turn into links."""
+        """Yield the lines of the traceback in Python's format, which terminals turn into links."""
         for frame in self.frames:
             within = f", in {frame.function}" if frame.function else ""
             yield f'  File "{frame.file}", line {frame.line}{within}'

@@ -1,4 +1,4 @@
-"""Judges a predicate under a time constraint on a trace: robustness is the smallest margin in the window."""
+"""Judge a predicate under a time constraint on a trace: robustness is the smallest margin in the window."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 Regions = Mapping[str, Sequence[tuple[str, "Region"]]]
-"""Workspace → the regions that make it up, each with the object whose frame it is given in."""
+"""Workspace → its regions, each with the object whose frame it is in."""
 
 
 @dataclass(frozen=True)
 class WindowEvidence:
-    """The samples of one window, as ``catalog.api.Evidence`` wants them."""
+    """The samples of one window, as ``catalog.api.Evidence``."""
 
     trace: Trace
     window: Window
@@ -49,9 +49,10 @@ class WindowEvidence:
         return self.trace.orientations[self._rows, self.trace.column(name)]
 
     def velocity(self, name: str) -> FloatArray:
-        """Mean velocity since the sample before (at the first one: until the next), m/s, (n, 3); raises ``KeyError``.
+        """Mean velocity since the previous sample (at the first sample: until the next), m/s, (n, 3); raises
+        ``KeyError``.
 
-        Not a number in a trace of one sample.
+        NaN in a trace of one sample.
         """
         path, times = self.trace.positions[:, self.trace.column(name)], self.trace.times
         if len(times) < 2:
@@ -60,22 +61,22 @@ class WindowEvidence:
         return np.concatenate([steps[:1], steps])[self._rows]
 
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Positions at the last samples at or before some times, m, shape (n, 3); raises ``KeyError``."""
+        """Positions at the last samples at or before each of ``times``, m, shape (n, 3); raises ``KeyError``."""
         return self.trace.positions[self._rows_at(times), self.trace.column(name)]
 
     def orientation_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Orientations at the last samples at or before some times, shape (n, 4); raises ``KeyError``."""
+        """Orientations at the last samples at or before each of ``times``, shape (n, 4); raises ``KeyError``."""
         return self.trace.orientations[self._rows_at(times), self.trace.column(name)]
 
     def _rows_at(self, times: FloatArray) -> NDArray[np.intp]:
         return np.maximum(np.searchsorted(self.trace.times, times + TOLERANCE, side="right") - 1, 0)
 
     def outline(self, name: str) -> Outline:
-        """How far an object reaches around its position; raises ``KeyError``."""
+        """Extent of an object around its position; raises ``KeyError``."""
         return self.trace.outlines[name]
 
     def force(self, agent: str, name: str) -> FloatArray:
-        """Largest force since the sample before, N, shape (n,); raises ``KeyError``."""
+        """Largest force since the previous sample, N, shape (n,); raises ``KeyError``."""
         trace, pair = self.trace, (agent, name)
         if pair in trace.forces:
             return trace.forces[pair][self._rows]
@@ -84,15 +85,15 @@ class WindowEvidence:
         raise KeyError(f"contact forces of {agent} on {name}")
 
     def is_immovable(self, name: str) -> bool:
-        """Whether an element is not pushed when it is hit: a fixed object, or an agent."""
+        """Whether a hit does not push an element: a fixed object, or an agent."""
         return name in self.trace.immovable
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
-        """Regions of a workspace; raises ``KeyError`` when the scene gives it none."""
+        """Regions of a workspace; raises ``KeyError`` if it has none in the scene."""
         return self.regions_of[workspace]
 
     def contents(self, workspace: str) -> Sequence[str]:
-        """Names of the workspaces composed into one, at any depth."""
+        """Names of the workspaces composed into this one, at any depth."""
         return self.trace.contents.get(workspace, ())
 
     @property
@@ -105,11 +106,11 @@ class WindowEvidence:
         return self.trace.grips[agent][self._rows, self.trace.column(name)]
 
     def reach(self, agent: str, name: str) -> FloatArray:
-        """Reach margins, rad, shape (n,), not a number where none was sampled; raises ``KeyError``."""
+        """Reach margins, rad, shape (n,), NaN where none was sampled; raises ``KeyError``."""
         return self._of_pair(self.trace.reaches, agent, name)[self._rows]
 
     def setting(self, target: str, name: str) -> str:
-        """Return a configuration value that was read back; raises ``KeyError``."""
+        """Return a configuration value as read back from the world; raises ``KeyError``."""
         return self._of_pair(self.trace.settings, target, name)
 
     @staticmethod
@@ -147,8 +148,8 @@ def judge(
 def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> Range | None:
     """Return the range of a predicate's margin over all samples of a trace.
 
-    ``None`` without evaluator or record, with fewer than two samples, for a quantity that is measured within windows
-    only, and for what is set up rather than observed: there nothing tells whether it could have been otherwise.
+    ``None`` without evaluator or record, with fewer than two samples, for quantities measured only within windows, and
+    for conditions that are set up instead of observed: the trace then cannot show that the margin could vary.
     """
     if predicate.evaluate is None or predicate.quantities or predicate.set_up or len(trace.times) < 2:
         return None

@@ -1,7 +1,7 @@
-"""How a clause is to be observed, as plain data: policies, their observations and where these come from.
+"""Policies, their observations and the sources of these, as plain data: how a clause is observed.
 
-Names are IRIs where the graph is read and CURIEs in a run. Python code is named ``module:attribute``; nothing here
-imports it.
+Names are IRIs in the graph's data and CURIEs in a run. Python code is named ``module:attribute``; nothing here imports
+it.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Provider:
-    """Where observations come from.
+    """A source of observations.
 
     ``kind`` is ``ground-truth``, ``entity-state``, ``transforms`` or ``topic``; ``rate`` in Hz. ``noise`` (m) is the
-    standard deviation of a position by axis and ``latency`` (s) the age of what is seen, both of the ground truth.
+    standard deviation of a position by axis and ``latency`` (s) the age of an observation; both apply to ground truth.
     ``source`` is the topic or the reference frame, ``type`` the topic's message type.
     """
 
@@ -29,9 +29,9 @@ class Provider:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """What of a scene is observed: variables and elements, in written order.
+    """The observed part of a scene: variables and elements, in written order.
 
-    ``mapped`` tells for names in a message what they stand for; ``entity_mapper`` and ``time_extractor`` are code.
+    ``mapped`` maps names in a message to elements; ``entity_mapper`` and ``time_extractor`` are code.
     """
 
     iri: str
@@ -44,11 +44,11 @@ class Observation:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """How observations become a verdict.
+    """How observations are turned into a verdict.
 
     ``kind`` is ``distance`` (``form`` is ``less-than``, ``greater-than``, ``between`` or ``equals``; ``bounds`` in m:
-    one bound, two, or value and tolerance; ``max_time_offset`` in s between two observations), ``python`` (``name``
-    is the code) or ``topic`` (``name`` is the topic of verdicts).
+    one bound, two, or value and tolerance; ``max_time_offset`` in s between two observations), ``python`` (``name`` is
+    the code) or ``topic`` (``name`` is the topic of verdicts).
     """
 
     kind: str
@@ -60,9 +60,9 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """The rule by which a clause is judged, and on what; ``horizon`` in s, ``None`` where none is written.
+    """The rule that judges a clause, and its observations; ``horizon`` in s, ``None`` if not given.
 
-    ``origin`` is where the policy is written, ``file:line:column``; empty for a graph without source text.
+    ``origin`` is the policy's source position, ``file:line:column``; empty for a graph without source text.
     """
 
     iri: str

@@ -1,4 +1,4 @@
-"""Time constraints of fluents and the window of a trace that each selects (paper, section on fluents)."""
+"""Time constraints of fluents, and the window of a trace that each selects (paper, section on fluents)."""
 
 from __future__ import annotations
 
@@ -61,9 +61,9 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class NoWindow:
-    """The window cannot be had: ``reason`` says why; ``open`` while a longer trace may still close it.
+    """The constraint has no window: ``reason`` says why; ``open``: a longer trace may still close it.
 
-    ``empty`` tells that it is closed and holds no sample.
+    ``empty``: the window is closed and contains no sample.
     """
 
     reason: str
@@ -72,13 +72,13 @@ class NoWindow:
 
 
 def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
-    """Select the samples that a constraint speaks of.
+    """Select the samples of a constraint.
 
     docs/semantics.md is its definition.
 
     With ``t_e`` the time of the selected occurrence of an event and ``h`` the horizon: ``before``: the last sample in
-    ``[0, t_e]``, or all in ``[t_e - h, t_e]``; ``after``: the first sample in ``[t_e, ∞)``, or all in
-    ``[t_e, t_e + h]``; ``from a until b``: all in ``[t_a, t_b]``.
+    ``[0, t_e]``, or all in ``[t_e - h, t_e]``; ``after``: the first sample in ``[t_e, ∞)``, or all in ``[t_e, t_e +
+    h]``; ``from a until b``: all in ``[t_a, t_b]``.
     """
     match constraint:
         case Before(event, horizon, iteration):
@@ -101,8 +101,8 @@ def occurrences(constraint: TimeConstraint) -> tuple[tuple[str, int], ...]:
 def in_iterations(constraint: TimeConstraint, role: str, iterations: tuple[int, ...]) -> TimeConstraint:
     """Return a constraint with the occurrences that a clause refers to (docs/semantics.md, "Occurrences").
 
-    ``iterations`` are the first and the last iteration of the clause's scope, nothing without a loop. An interval
-    spans the scope; else a Given or When clause (``role``) refers to its first iteration, a Then clause to its last.
+    ``iterations`` are the first and the last iteration of the clause's scope, empty without a loop. An interval spans
+    the scope; otherwise a Given or When clause (``role``) refers to its first iteration, a Then clause to its last.
     """
     if not iterations:
         return constraint
@@ -162,7 +162,7 @@ def _missing(trace: Trace, event: str, iteration: int) -> NoWindow:
 
 
 def never_occurred(trace: Trace, event: str, iteration: int = 0) -> str:
-    """Return the reason why a clause is unknown that needs an event which is missing."""
+    """Return why a clause is unknown if an event that it needs is missing."""
     where = f" in iteration {iteration}" if iteration else ""
     why = f": {trace.remark}" if trace.remark else ""
     return f"event {event} never occurred{where}{why}"

@@ -40,19 +40,17 @@ class Sample:
 class Trace:
     """A finite sequence of samples and events.
 
-    ``names`` are the recorded bodies (objects by name, an agent's tool by the agent's name);
-    ``times`` (n,) s, increasing; ``positions`` (n, len(names), 3) m in the world frame; ``orientations``
-    (n, len(names), 4) unit quaternions (w, x, y, z); ``grips`` maps an agent to an (n, len(names)) array with 1
-    where its gripping faces hold that body. ``finished``: nothing will be appended; ``remark`` is the
-    execution's own last word on what went wrong ("gripper lost env:cube1 at 3.42 s"). ``reaches`` maps agent and
-    object to reach margins (n,) rad, not a number where none was sampled; ``settings`` maps an element and the name
-    of a configuration to its value. ``forces`` maps an agent and what it touched to the largest contact force (N) in
-    any physics step since the sample before (n,), ``impulses`` to the impulse (N s) since then; of the agents
-    ``watched`` everything that they touched is there. ``contacts`` are those contacts one by one. ``immovable`` are
-    the elements that are not pushed when they are hit: fixed objects, and agents. ``outlines`` is how far objects
-    reach around their position. ``unreached``
-    says why the scenario, a part of a behaviour tree, was never begun, if so: nothing is known of it then.
-    ``contents`` maps a workspace to those that are composed into it, at any depth.
+    ``names`` are the recorded bodies (objects by name, an agent's tool by the agent's name); ``times`` (n,) s,
+    increasing; ``positions`` (n, len(names), 3) m in the world frame; ``orientations`` (n, len(names), 4) unit
+    quaternions (w, x, y, z); ``grips`` maps an agent to an (n, len(names)) array with 1 where its gripping faces hold
+    that body. ``finished``: nothing will be appended; ``remark`` is the execution's final message about a failure
+    ("gripper lost env:cube1 at 3.42 s"). ``reaches`` maps agent and object to reach margins (n,) rad, NaN where none
+    was sampled; ``settings`` maps an element and the name of a configuration to its value. ``forces`` maps an agent and
+    a touched element to the largest contact force (N) in any physics step since the previous sample (n,), ``impulses``
+    to the impulse (N s) since then; for the agents in ``watched`` all touched elements are included. ``contacts`` lists
+    those contacts. ``immovable`` are the elements that a hit does not push: fixed objects, and agents. ``outlines`` is
+    the extent of objects around their position. ``unreached`` is the reason if the scenario, a part of a behaviour
+    tree, never began: it is then not judged. ``contents`` maps a workspace to those composed into it, at any depth.
     """
 
     names: tuple[str, ...]
@@ -76,7 +74,7 @@ class Trace:
 
     @property
     def end(self) -> float:
-        """Time of the last sample, s; 0 without any."""
+        """Time of the last sample, s; 0 if there is none."""
         return float(self.times[-1]) if len(self.times) else 0.0
 
     @cached_property
@@ -84,28 +82,28 @@ class Trace:
         return {name: index for index, name in enumerate(self.names)}
 
     def column(self, name: str) -> int:
-        """Return the index of a body in ``names``; raises ``KeyError`` when the trace does not hold it."""
+        """Return the index of a body in ``names``; raises ``KeyError`` if the trace lacks it."""
         return self._index[name]
 
     def event_time(self, name: str, iteration: int = 0) -> float | None:
         """Return when an event first occurred, or ``None``.
 
-        With an ``iteration``, only that one and what belongs to none count.
+        With an ``iteration``, only occurrences of that iteration and outside of all iterations count.
         """
         counted = (0, iteration)
         stamps = (stamp for stamp in self.events if stamp.name == name)
         return min((stamp.time for stamp in stamps if not iteration or stamp.iteration in counted), default=None)
 
     def first_at_or_after(self, time: float) -> int:
-        """Return the index of the first sample in ``[time, ∞)``; ``len(times)`` when there is none."""
+        """Return the index of the first sample in ``[time, ∞)``; ``len(times)`` if there is none."""
         return int(np.searchsorted(self.times, time, side="left"))
 
     def last_at_or_before(self, time: float) -> int:
-        """Return the index of the last sample in ``(-∞, time]``; -1 when there is none."""
+        """Return the index of the last sample in ``(-∞, time]``; -1 if there is none."""
         return int(np.searchsorted(self.times, time, side="right")) - 1
 
     def sample(self, index: int) -> Sample:
-        """Return one world state by itself."""
+        """Return one world state."""
         positions: list[list[float]] = self.positions[index].tolist()
         orientations: list[list[float]] = self.orientations[index].tolist()
         return Sample(

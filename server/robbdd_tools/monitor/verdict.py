@@ -1,4 +1,4 @@
-"""Three-valued verdicts with signed robustness, and how they combine."""
+"""Three-valued verdicts with signed robustness, and their logical connectives."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from enum import StrEnum
 
 from robbdd_tools.monitor.fault import Fault
 
-EMPTY_WINDOW = "its window holds no sample"
+EMPTY_WINDOW = "its window contains no sample"
 EMPTY_SET = "a set that it quantifies over is empty"
 """Why a clause could not have been violated."""
 
 
 class Outcome(StrEnum):
-    """What is known of a clause."""
+    """The judgement on a clause."""
 
     HOLDS = "holds"
     VIOLATED = "violated"
@@ -22,7 +22,7 @@ class Outcome(StrEnum):
 
 
 class Cause(StrEnum):
-    """Why a clause is unknown; the reason beside it is for people."""
+    """Why a clause is unknown; the verdict's reason says it in words."""
 
     CANCELLED = "cancelled"
     """The run was cancelled before the clause was judged."""
@@ -31,33 +31,33 @@ class Cause(StrEnum):
     NOT_EXECUTED = "not-executed"
     """The run ended, or could not begin, before the clause was judged."""
     TIMED_OUT = "timed-out"
-    """The execution took more wall time than it may."""
+    """The execution exceeded its wall-time limit."""
     PROCESS_ENDED = "process-ended"
     """The process that executed the scenario ended by itself."""
     TIME_LIMIT = "time-limit"
-    """The execution took more simulated time than it may."""
+    """The execution exceeded its limit of simulated time."""
     SIMULATION = "simulation"
-    """The simulation broke down."""
+    """The simulation failed."""
     SCENE = "scene"
     """The scene cannot be set up."""
     USER_CODE = "user-code"
     """Code of the user failed."""
     NO_STEP = "no-step"
-    """Nothing judges the words of the clause."""
+    """No step and no evaluator judges the clause."""
     SKIPPED = "skipped"
     """behave did not execute the step."""
     UNREACHED = "unreached"
-    """What the clause speaks of was never reached."""
+    """The execution never reached the clause's subject."""
     NO_EMITTER = "no-emitter"
     """Nothing in the scenario emits an event that the clause names."""
     NO_EVENT = "no-event"
     """An event that the clause names did not occur."""
     NO_RECORD = "no-record"
-    """The trace lacks what the clause is judged by."""
+    """The trace lacks the data that the clause is judged on."""
     UNOBSERVED = "unobserved"
-    """What the clause observes is not observed in a simulation."""
+    """The simulation does not provide the clause's observations."""
     EMPTY = "empty"
-    """The clause quantifies over an empty set, or its window holds no sample."""
+    """The clause quantifies over an empty set, or its window contains no sample."""
     CHANGED = "changed"
     """The model has changed since the trace was recorded."""
 
@@ -66,12 +66,12 @@ class Cause(StrEnum):
 class Verdict:
     """The judgement of one clause on one trace.
 
-    ``robustness`` is the signed margin in ``unit`` (positive: holds), ``None`` when unknown. ``at`` (s) is the
-    instant of violation (the first sample with a negative margin), of the worst margin when it holds, ``None``
-    when unknown; ``worst_at`` (s) is that of the worst margin in any case. ``reason`` says in words why it is
-    violated or unknown, ``cause`` is the type of the reason of an unknown one; ``vacuous`` why it could not have
-    been violated, nothing where it could. ``fault`` is the error in users' code that kept the evidence away.
-    ``operand`` is the number (from 0, in the order of the sentence) of the fluent that decides the clause.
+    ``robustness`` is the signed margin in ``unit`` (positive: holds), ``None`` when unknown. ``at`` (s) is the instant
+    of violation (the first sample with a negative margin), or of the smallest margin when it holds, ``None`` when
+    unknown; ``worst_at`` (s) is always that of the smallest margin. ``reason`` says in words why it is violated or
+    unknown, ``cause`` is the type of an unknown verdict's reason; ``vacuous`` says why it could not have been violated,
+    empty if it could. ``fault`` is the error in users' code that prevented the evidence. ``operand`` is the number
+    (from 0, in the order of the sentence) of the fluent that decides the clause.
     """
 
     outcome: Outcome
@@ -92,7 +92,7 @@ def unknown(reason: str, cause: Cause, vacuous: str = "", fault: Fault | None = 
 
 
 def negation(verdict: Verdict) -> Verdict:
-    """Strong Kleene negation; the margin changes its sign, the instant is that of the worst one."""
+    """Strong Kleene negation; the margin changes its sign, the instant is that of the smallest margin."""
     if verdict.robustness is None:
         return verdict
     outcome = Outcome.VIOLATED if verdict.outcome is Outcome.HOLDS else Outcome.HOLDS

@@ -1,1 +1,1 @@
-"""What a run and its agent processes share: the manifest, the messages, the names of files in a run folder."""
+"""Data shared by a run and its agent processes: the manifest, the messages, the names of files in a run folder."""

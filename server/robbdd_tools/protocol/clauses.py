@@ -1,7 +1,7 @@
-"""What the clauses of one scenario state, as data: every variable is filled in, names are CURIEs.
+"""Clauses of one scenario as data: every variable is replaced by its value, names are CURIEs.
 
-The parent process makes them of the model and writes the sentences of features from them; the agent takes them from
-the manifest and reads a sentence only where a person has written it.
+The parent process makes them from the model and writes the sentences of features from them; the agent takes them from
+the manifest and parses a sentence only if a person wrote it.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class AnyOf:
-    """Some element of these: what an existential variable, or a set as a place, stands for."""
+    """Any element of a set: the value of an existential variable, or of a set used as a place."""
 
     elements: tuple[str, ...]
 
 
 Filler = str | tuple[str, ...] | AnyOf
-"""What fills a slot: an element or a value, a set, or any element of a set."""
+"""Value of a slot: an element or a value, a set, or any element of a set."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fluent:
-    """``holds(predicate, time)`` with what fills the predicate's slots.
+    """``holds(predicate, time)`` with the values of the predicate's slots.
 
-    ``iri`` is that of the model's clause. ``named`` are, for users' code that judges it, the values of its slots and
-    quantified variables by name.
+    ``iri`` is that of the model's clause. ``named`` are the values of its slots and quantified variables by name, for
+    users' code that judges it.
     """
 
     predicate: Predicate
@@ -45,9 +45,9 @@ class Fluent:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """Words that nothing in the catalog states, as they stand in the step; ``time`` is ``None`` where they have none.
+    """Text of a step that no catalog word matches; ``time`` is ``None`` if it has none.
 
-    ``iri`` and ``named`` are as those of a fluent.
+    ``iri`` and ``named`` are as for a fluent.
     """
 
     words: str
@@ -66,7 +66,7 @@ class Junction:
 
 @dataclass(frozen=True, slots=True)
 class BehaviourCall:
-    """A behaviour with what fills its slots."""
+    """A behaviour with the values of its slots."""
 
     behaviour: Behaviour
     arguments: Mapping[str, Filler]
@@ -80,9 +80,9 @@ class EventOccurrence:
 
 
 Clause = Fluent | Text | Junction
-"""What a Given or Then clause states."""
+"""Content of a Given or Then clause."""
 Statement = Clause | BehaviourCall | EventOccurrence
-"""What any clause states."""
+"""Content of any clause."""
 
 
 def leaves_of(clause: Clause) -> Iterator[Fluent | Text]:
@@ -100,7 +100,7 @@ def fluents_of(clause: Clause) -> Iterator[Fluent]:
 
 
 def to_plain(statement: Statement) -> dict[str, Any]:
-    """Return a statement as it is written to JSON."""
+    """Return a statement as its JSON form."""
     match statement:
         case Fluent(predicate, arguments):
             return {"predicate": predicate.name, "arguments": _plain_arguments(arguments), **_leaf(statement)}
@@ -115,7 +115,8 @@ def to_plain(statement: Statement) -> dict[str, Any]:
 
 
 def from_plain(data: Mapping[str, Any]) -> Statement:
-    """Return the statement that ``to_plain`` has written; raises ``KeyError``, ``TypeError`` or ``ValueError``."""
+    """Return the statement of the JSON form that ``to_plain`` returns; raises ``KeyError``, ``TypeError`` or
+    ``ValueError``."""
     match data:
         case {"behaviour": str(name), "arguments": arguments}:
             return BehaviourCall(load_catalog().behaviours[name], _arguments(arguments))
@@ -186,4 +187,4 @@ def _time(data: Mapping[str, Any] | None) -> TimeConstraint | None:
         case {"after": str(event), "horizon": horizon}:
             return After(event, horizon)
         case _:
-            raise ValueError(f"{data!r} is no time constraint")
+            raise ValueError(f"{data!r} is not a time constraint")

@@ -1,6 +1,6 @@
-"""The manifest in a run folder: what the agent is to execute.
+"""The manifest in a run folder: the scenarios that the agent executes.
 
-Scenarios name their execution by its IRI and their behaviour tree by its name; these are beside them, each once.
+Scenarios refer to their execution by its IRI and to their behaviour tree by its name; each of these is written once.
 """
 
 from __future__ import annotations
@@ -23,11 +23,12 @@ from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, M
 
 MANIFEST = "manifest.json"
 STORED_RESULTS = "stored-results.json"
-"""File beside a manifest with the results of the stored run that is judged again."""
+"""Results of the stored run that is judged again, next to a manifest."""
 
 
 def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioSpec]) -> Iterator[ScenarioSpec]:
-    """Write a manifest into a run folder, as ``head`` but with these scenarios, and yield them as they are written.
+    """Write a manifest into a run folder, with the head of ``head`` and these scenarios, and yield each scenario once
+    written.
 
     Raises ``OSError``.
     """
@@ -84,7 +85,7 @@ def _scenario(
 
 
 def _clause(entry: dict[str, Any]) -> ClauseSpec:
-    # Earlier versions wrote the values for users' code beside the sentence.
+    # Earlier versions wrote the values for users' code next to the sentence.
     entry.pop("arguments", None)
     statement = entry.pop("statement", None)
     found = from_plain(ClauseSpec, entry)
@@ -96,7 +97,8 @@ def _json(value: object) -> str:
 
 
 def _plain(value: Any) -> object:
-    """Return the fields of a dataclass; unlike ``asdict`` it copies nothing. Executions and trees are named."""
+    """Return the fields of a dataclass without copying, unlike ``asdict``. Executions and trees are replaced by their
+    names."""
     if isinstance(value, ExecutionSpec):
         return value.iri
     if isinstance(value, TreeSpec):

@@ -1,6 +1,6 @@
-"""The messages between a run and its agent processes: one JSON object per line in both directions.
+"""Messages between a run and its agent processes: one JSON object per line in both directions.
 
-The agent reads orders (``Execute``) on its standard input, ends at its end, and writes ``RunMessage``s. Every message
+The agent reads orders (``Execute``) on its standard input, exits at its end, and writes ``RunMessage``s. Every message
 is a frozen dataclass; ``encode`` and ``decode`` are inverse.
 """
 
@@ -15,7 +15,7 @@ from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 
 VIEWER = "ROBBDD_VIEWER"
-"""Environment variable of the agent: when it is set, a window shows each scenario in real time."""
+"""Environment variable of the agent: if set, a window shows each scenario in real time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class Execute:
 
 @dataclass(frozen=True, slots=True)
 class RunStarted:
-    """The agent is up; the manifest has ``total`` scenarios."""
+    """The agent is ready; the manifest has ``total`` scenarios."""
 
     total: int
     simulator: str
@@ -52,8 +52,8 @@ class ClauseStarted:
 class ClauseJudged:
     """A clause has its verdict (``holds``, ``violated``, ``unknown``); see ``monitor.verdict.Verdict``.
 
-    ``fault`` is the ``id`` of the error in users' code that it is unknown for, as a ``UserCodeFailed`` has it.
-    ``cause`` is a ``monitor.verdict.Cause``, empty where the verdict is known.
+    ``fault`` is the ``id`` of the error in users' code that makes it unknown, as in ``UserCodeFailed``. ``cause`` is a
+    ``monitor.verdict.Cause``, empty if the verdict is known.
     """
 
     index: int
@@ -72,10 +72,10 @@ class ClauseJudged:
 
 @dataclass(frozen=True, slots=True)
 class MarginRanges:
-    """How far the margin of each fluent of the clause on ``line`` varied over the whole execution: least, largest.
+    """Smallest and largest margin of each fluent of the clause on ``line`` over the whole execution.
 
-    ``held_before`` tells of a Then clause whether it holds and its predicates held before the behaviour began as well,
-    ``None`` where that is not known.
+    ``held_before`` says whether a Then clause holds and its predicates also held before the behaviour began; ``None``
+    if unknown.
     """
 
     index: int
@@ -88,8 +88,8 @@ class MarginRanges:
 class ScenarioFinished:
     """All clauses of scenario ``index`` are judged; times in seconds (simulated, wall, wall inside mj_step).
 
-    ``resampled`` counts the random places that were drawn again because they overlapped or were out of reach.
-    ``contacts`` are those of agents with what no clause names as a target, what they grip and what this stands on.
+    ``resampled`` counts the random places that were sampled again because of overlap or lack of reach. ``contacts`` are
+    contacts of agents that no clause names as a target, except with gripped objects and the supports of these.
     """
 
     index: int
@@ -102,9 +102,9 @@ class ScenarioFinished:
 
 @dataclass(frozen=True, slots=True)
 class UserCodeFailed:
-    """Code of the user failed in scenario ``index``, or before any scenario when ``None``; once for each scenario.
+    """Users' code failed in scenario ``index``, or before any scenario if ``None``; once per scenario.
 
-    It comes before the verdicts that name ``fault``.
+    It precedes the verdicts that name ``fault``.
     """
 
     index: int | None
@@ -113,7 +113,7 @@ class UserCodeFailed:
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """Lines that users' code printed while scenario ``index`` was executed, or before any scenario when ``None``."""
+    """Lines that users' code printed during scenario ``index``, or before any scenario if ``None``."""
 
     index: int | None
     text: str
@@ -129,7 +129,7 @@ class LogLine:
 
 @dataclass(frozen=True, slots=True)
 class RunFinished:
-    """The agent ends by itself, not ``ok`` when it cannot work; anything else at the end of the stream is a crash."""
+    """The agent exits by itself; ``ok`` is false if it cannot work. A stream that ends otherwise means a crash."""
 
     ok: bool
 
@@ -164,7 +164,7 @@ _TYPES: dict[str, type[RunMessage]] = {
 
 
 def judged(index: int, line: int, verdict: Verdict) -> ClauseJudged:
-    """Return the message that a clause has a verdict."""
+    """Return the message of a clause's verdict."""
     return ClauseJudged(
         index,
         line,
@@ -182,7 +182,7 @@ def judged(index: int, line: int, verdict: Verdict) -> ClauseJudged:
 
 
 def never_judged(index: int, line: int, reason: str, cause: Cause) -> ClauseJudged:
-    """Return the message that a clause is unknown because nothing judged it."""
+    """Return the message for a clause that is unknown because nothing judged it."""
     return judged(index, line, unknown(reason, cause))
 
 
@@ -192,7 +192,7 @@ def encode(message: RunMessage | Execute) -> str:
 
 
 def decode(line: str) -> RunMessage:
-    """Return the message of a line; raises ``ValueError`` for anything that is not one, field by field."""
+    """Return the message of a line; raises ``ValueError`` if any field is invalid."""
     try:
         fields = json.loads(line, parse_float=finite, parse_constant=finite)
         message = from_plain(_TYPES[fields.pop("type")], fields)
@@ -208,7 +208,7 @@ def decode(line: str) -> RunMessage:
 
 
 def decode_order(line: str) -> Execute:
-    """Return the order of a line; raises ``ValueError`` for anything that is not one."""
+    """Return the order of a line; raises ``ValueError`` if it is invalid."""
     match json.loads(line):
         case {"type": "Execute", "index": int(index)}:
             return Execute(index)

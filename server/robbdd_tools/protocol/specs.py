@@ -1,4 +1,4 @@
-"""What an agent process is to execute, as plain data: scenarios with their scenes, events, clauses and executions."""
+"""The work of an agent process as plain data: scenarios with their scenes, events, clauses and executions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robbdd_tools.protocol.clauses import Statement
 
 @dataclass(frozen=True, slots=True)
 class ConfigSpec:
-    """A configuration that a Given clause wants: the element's CURIE, the name, the value as text."""
+    """A configuration that a Given clause sets: the element's CURIE, the name, the value as text."""
 
     target: str
     name: str
@@ -24,12 +24,12 @@ class ConfigSpec:
 
 @dataclass(frozen=True, slots=True)
 class SceneSpec:
-    """What a scenario's world holds; all names are CURIEs as in the feature text.
+    """Content of a scenario's world; all names are CURIEs as in the feature text.
 
-    ``workspaces`` maps a workspace to the objects that carry it; ``contains`` to the workspaces that lie within
-    (a bin's workspace within the table's); ``places`` an object to the workspace where the Given clauses want it.
-    ``config`` is how the Given clauses want it set up. ``unused`` are the objects and agents that no clause speaks of;
-    ``sets`` maps elements to the local names of the sets that hold them, where models are chosen by name.
+    ``workspaces`` maps a workspace to the objects that carry it; ``contains`` to the workspaces inside it (a bin's
+    workspace within the table's); ``places`` maps an object to the workspace where the Given clauses put it. ``config``
+    are the configurations that the Given clauses set. ``unused`` are the objects and agents that no clause mentions;
+    ``sets`` maps elements to the local names of their sets, where models are chosen by name.
     """
 
     objects: tuple[str, ...] = ()
@@ -44,11 +44,11 @@ class SceneSpec:
 
 @dataclass(frozen=True, slots=True)
 class ExecutionSpec:
-    """How scenarios are executed, as a ``.bddx`` says: ``name`` is the execution's CURIE.
+    """How scenarios are executed, as specified in a ``.bddx``: ``name`` is the execution's CURIE.
 
     ``implementation`` executes the behaviours in ``scene`` (elements by CURIE); ``policies`` judge the clauses that
-    they name (by IRI; what they observe are CURIEs). ``repeat`` is how often, ``timeout`` is in seconds of simulated
-    time.
+    they name (by IRI; their observations are CURIEs). ``repeat`` is the number of executions, ``timeout`` is in seconds
+    of simulated time.
     """
 
     iri: str
@@ -62,12 +62,12 @@ class ExecutionSpec:
 
 @dataclass(frozen=True, slots=True)
 class ClauseSpec:
-    """One clause of one scenario: the feature line of its step, the IRI it judges, its place in the scenario.
+    """One clause of one scenario: the feature line of its step, the IRI of the judged clause, its role.
 
-    ``statement`` is what it states; a run that an earlier version has stored has none, and its ``sentence`` is read.
-    ``parts`` are the IRIs of the fluents and texts of a group, in the order of the sentence. ``iterations``
-    are the first and the last behaviour of the clause's scope, counted from 1 within the scenario; nothing where the
-    scenario executes a single one.
+    ``statement`` is its content; in a run stored by an earlier version it is missing, and ``sentence`` is parsed.
+    ``parts`` are the IRIs of the fluents and texts of a group, in the order of the sentence. ``iterations`` are the
+    first and the last behaviour of the clause's scope, counted from 1 within the scenario; empty if the scenario
+    executes a single one.
     """
 
     line: int
@@ -84,12 +84,12 @@ class ClauseSpec:
 class ScenarioSpec:
     """One execution: a scenario of a feature, with its values and clauses in order.
 
-    ``events`` maps an event's CURIE to what emits it: ``scenario-start``, ``scenario-end`` or the name of an
-    event of the behaviour (``pick-start`` …); ``seed`` decides everything random in it. ``execution`` is how a
-    ``.bddx`` wants it executed, ``None`` for a scenario that is run as it is. Repetitions, counted from 1, share the
-    feature's scenario and differ in their seeds. ``model`` is the file's name in reports. ``tree`` is the execution
-    of a behaviour tree that scenarios with the same one are judged from together, ``node`` the IRI of the tree's node
-    that this one is linked to; scene and seed are those of that execution then.
+    ``events`` maps an event's CURIE to its emitter: ``scenario-start``, ``scenario-end`` or the name of an event of the
+    behaviour (``pick-start`` …); ``seed`` determines all its randomness. ``execution`` is the one of a ``.bddx``,
+    ``None`` for a scenario that is run without. Repetitions, counted from 1, share the feature's scenario and differ in
+    their seeds. ``model`` is the file's name in reports. ``tree`` is the execution of a behaviour tree from which all
+    scenarios with the same one are judged, ``node`` the IRI of the tree's node linked to this scenario; scene and seed
+    are then those of that execution.
     """
 
     feature: str
@@ -112,9 +112,9 @@ class ScenarioSpec:
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """Everything the agent needs beside the feature files; ``traces`` tells it to write ``trace_file``s.
+    """Everything that the agent needs besides the feature files; with ``traces`` it writes each ``trace_file``.
 
-    ``sources`` maps files of the users' steps, by their path in the run folder, to the files that they are copies of.
+    ``sources`` maps files of users' steps, by their path in the run folder, to the files that they are copies of.
     """
 
     model: str
@@ -125,11 +125,11 @@ class Manifest:
 
 
 def plain_name(curie: str) -> str:
-    """Return what users' code calls a variable: the end of its CURIE, without ``var-``."""
+    """Return the name of a variable in users' code: the end of its CURIE, without ``var-``."""
     return curie.replace("/", ":").rpartition(":")[2].removeprefix("var-")
 
 
 def scenario_key(spec: ScenarioSpec) -> str:
-    """Return what a scenario is found by in another run, of a model that may have been edited since."""
+    """Return the key that finds a scenario in another run, even of an edited model."""
     execution = None if spec.execution is None else spec.execution.iri
     return json.dumps([spec.variant, spec.values, execution, spec.repetition], sort_keys=True)

@@ -1,1 +1,1 @@
-"""Text to declarations: split into chunks, each parsed by textX into a tree with its errors."""
+"""Parse text into declarations: split it into chunks and parse each into a tree with its errors."""

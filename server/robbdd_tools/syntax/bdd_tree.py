@@ -1,6 +1,6 @@
-"""The syntax trees of acceptance criteria: one frozen class per grammar rule, fields named as in the grammar.
+"""Syntax trees of acceptance criteria: one frozen class per grammar rule, fields named as in the grammar.
 
-Spans count from the start of the chunk, so that a tree stays valid wherever its text moves to.
+Spans count from the start of the chunk, so a tree stays valid when its text moves.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Variable(Node):
 
 @dataclass(frozen=True, slots=True)
 class PhraseUse(Node):
-    """A catalog phrase with its slots filled: ``word`` is the predicate's or behaviour's name."""
+    """A catalog phrase with the values of its slots: ``word`` is the predicate's or behaviour's name."""
 
     word: str
     arguments: tuple[tuple[str, Ref | Name], ...]
@@ -100,7 +100,7 @@ class TextPredicate(Node):
 
 @dataclass(frozen=True, slots=True)
 class Fluent(Node):
-    """``name: holds(predicate, time constraint)``; one written without a name is given one (``published``)."""
+    """``name: holds(predicate, time constraint)``; a missing name is generated (``published``)."""
 
     name: Name
     predicate: PhraseUse | TextPredicate
@@ -149,7 +149,7 @@ Expression = Fluent | TextClause | Negation | Conjunction | Disjunction | Exists
 
 
 def bare(expression: Expression) -> Expression:
-    """Take off parentheses that hold a single expression."""
+    """Remove parentheses around a single expression."""
     while isinstance(expression, Conjunction | Disjunction) and len(expression.operands) == 1:
         expression = expression.operands[0]
     return expression
@@ -164,7 +164,7 @@ class Occurrence(Node):
 
 @dataclass(frozen=True, slots=True)
 class Emission(Node):
-    """``emits <moment> as <event>``: the behaviour's own event ``moment`` (``pick-end``) is this event of the model."""
+    """``emits <moment> as <event>``: maps the behaviour's event ``moment`` (``pick-end``) to an event of the model."""
 
     moment: Name
     event: Ref
@@ -174,8 +174,8 @@ class Emission(Node):
 class BehaviourUse(Node):
     """``Behaviour (ns=…) name { duration: … action emits … node: … }``.
 
-    ``duration`` is ``None`` where the published form gives none and the clauses do not tell it. ``node`` is that of
-    a behaviour tree to link to.
+    ``duration`` is ``None`` if the published form omits it and the clauses do not imply it. ``node`` is the linked node
+    of a behaviour tree.
     """
 
     namespace: NamespaceArgument | None
@@ -227,14 +227,14 @@ class Template(Node):
 
 @dataclass(frozen=True, slots=True)
 class TreeLeaf(Node):
-    """``node name`` inside a behaviour tree: executes the behaviour that is linked to it."""
+    """``node name`` inside a behaviour tree: executes the behaviour linked to it."""
 
     name: Name
 
 
 @dataclass(frozen=True, slots=True)
 class TreeComposite(Node):
-    """``sequence name { … }`` or ``selector name { … }`` inside a behaviour tree; ``kind`` is the first word."""
+    """``sequence name { … }`` or ``selector name { … }`` inside a behaviour tree; ``kind`` is the keyword."""
 
     kind: str
     name: Name
@@ -248,7 +248,7 @@ TreeNode = TreeComposite | TreeLeaf
 class BehaviourTree(Node):
     """``Behaviour Tree (ns=…) name { … }``: the nodes that behaviours can be linked to.
 
-    One root with all others below it or, with ``source``, the names of the nodes that Python code makes.
+    Either one root with all others below it or, with ``source``, the names of the nodes that Python code makes.
     """
 
     namespace: NamespaceArgument | None

@@ -1,6 +1,6 @@
-"""The syntax trees of executions: behaviour implementations, observations, policies, scenario executions.
+"""Syntax trees of executions: behaviour implementations, observations, policies, scenario executions.
 
-Numbers are kept as written, with their units beside them where the language leaves a choice.
+Numbers are kept as written; units are kept with them where the language offers a choice.
 """
 
 from __future__ import annotations

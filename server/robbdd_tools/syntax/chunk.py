@@ -1,7 +1,7 @@
-"""Parses one chunk with the grammar of its file kind, and says what was expected where it does not fit.
+"""Parse one chunk with the grammar of its file kind; on an error, report what was expected.
 
-The grammars are textX's. Their parser here is compiled from the same files (``peg``), for editors parse with every
-keystroke; a grammar whose notation it does not know goes to textX itself. Tests hold the two to the same results.
+The grammars are textX's. ``peg`` compiles them into a faster parser, because editors parse on every keystroke; a
+grammar with notation that ``peg`` does not know is parsed by textX itself. Tests hold the two to the same results.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from robbdd_tools.syntax.parsed import Expectation, Parsed, RawNode, Rejected
 from robbdd_tools.syntax.peg import Compiled, State
 from robbdd_tools.syntax.textx import parse_with_textx
 
-# Rules are compiled when they are first met; a second thread must not see one half done. What is done at a
+# Rules are compiled on first use; a second thread must not see one half compiled. Reentrant, because work at a
 # checkpoint in the middle of a text may parse another one.
 _COMPILING = RLock()
 
 
 def parse_chunk(language: str, text: str) -> Parsed | Rejected:
-    """Parse one chunk of a file whose name ends in ``language``; a ``scenario`` is parsed without its story."""
+    """Parse one chunk of a file with the extension ``language``; a ``scenario`` is parsed without its story."""
     parser = _parser(language)
     if parser is None:
         return parse_with_textx(language, text)

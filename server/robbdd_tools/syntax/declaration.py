@@ -1,4 +1,4 @@
-"""A declaration: what one chunk of text says, by itself (offsets count from the chunk's start)."""
+"""A declaration: the content of one chunk of text (offsets count from the chunk's start)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class SymbolKind(StrEnum):
-    """What a name stands for."""
+    """Kind of a declared name."""
 
     NAMESPACE = "namespace"
     EVENT = "event"
@@ -56,17 +56,17 @@ class SymbolKind(StrEnum):
 
 
 FILE_NAMESPACE = ""
-"""The namespace of a declaration that gives none where the language allows it: the only one of its file."""
+"""Namespace of a declaration that omits it where the language allows that: the only one of its file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
     """A declared name.
 
-    ``path`` is the qualified name (``parts.bolt``), ``span`` that of the name itself (empty where the text gives
-    none), ``extent`` that of the whole thing it names. ``namespace`` is the name given by the nearest enclosing
-    ``(ns=…)``, ``FILE_NAMESPACE`` where that is left out, ``None`` for what has no IRI of its own. ``target`` is a
-    qualified name whose parts are parts of this one too: the template of a kinematic tree instance.
+    ``path`` is the qualified name (``parts.bolt``), ``span`` that of the name itself (empty if the name is generated),
+    ``extent`` that of the whole declaration. ``namespace`` is the name in the nearest enclosing ``(ns=…)``,
+    ``FILE_NAMESPACE`` if that is omitted, ``None`` for a name without an IRI of its own. ``target`` is a qualified name
+    whose members are members of this one too: the template of a kinematic tree instance.
     """
 
     path: str
@@ -88,7 +88,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True)
 class SyntaxFix:
-    """Text that repairs a fault when it is written over ``span`` (empty: put in)."""
+    """Text that repairs a fault when it replaces ``span`` (empty: insertion)."""
 
     span: Span
     text: str
@@ -96,7 +96,7 @@ class SyntaxFix:
 
 @dataclass(frozen=True, slots=True)
 class SyntaxFault:
-    """A place where the text does not follow the grammar, with what would have been accepted there."""
+    """A place where the text violates the grammar, with what the grammar allows there."""
 
     span: Span
     message: str
@@ -105,13 +105,12 @@ class SyntaxFault:
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Declaration:
-    """One chunk: its tree (``None`` when broken), names, references and faults; a function of its text only.
+    """One chunk: its tree (``None`` if broken), names, references and faults; a function of its text only.
 
-    Compared by identity: the cache gives the same object for the same text, and a keystroke asks for hundreds.
+    Compared by identity: the cache returns the same object for the same text, and a keystroke looks up hundreds.
 
-    A long story is read in ``parts``, which follow one another through its text: what stands before its scenarios,
-    each scenario (its tree a variant) and what stands behind them. What is known of a part stays, wherever an edit of
-    another one moves it. Any other declaration has none.
+    A long story has ``parts`` in text order: the text before its scenarios, each scenario (its tree is a variant) and
+    the text after them. Data on a part is kept when an edit of another part moves it. Other declarations have no parts.
     """
 
     text: str
@@ -124,7 +123,7 @@ class Declaration:
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A declaration and where it stands: in a file, or as a part in a larger declaration."""
+    """A declaration and its offset in a file, or in a larger declaration as a part of it."""
 
     declaration: Declaration
     offset: int

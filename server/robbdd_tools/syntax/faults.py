@@ -1,4 +1,4 @@
-"""Puts syntax faults into words: where they stand, what was found there and what was expected."""
+"""Syntax fault messages: the position, the text found there and the expected text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robbdd_tools.syntax.parsed import Expectation, Rejected
 from robbdd_tools.syntax.recover import Fault
 
 LONGEST_WORD = 40
-"""Letters of the user's text that a message repeats."""
+"""Maximum number of characters of the user's text that a message repeats."""
 
 _RULE_WORDS = {
     "NameText": "a name",
@@ -33,13 +33,13 @@ _EMPTY_LINE = re.compile(r"[ \t\r]*\n([ \t]*)\r?\n")
 _STARTS = frozenset({"import", "ns"})
 _PLACES = {
     "Given": "'Given:' must come before 'When:', 'for all' and 'Then:'",
-    "When": "'When:' must come behind 'Given:' and before 'Then:'",
-    "for all": "'for all' must come behind 'Given:' and before 'Then:', in the place of 'When:'",
-    "Then": "'Then:' must come behind 'When:' or 'for all'",
+    "When": "'When:' must come after 'Given:' and before 'Then:'",
+    "for all": "'for all' must come after 'Given:' and before 'Then:', instead of 'When:'",
+    "Then": "'Then:' must come after 'When:' or 'for all'",
 }
-"""Where the parts of a scenario may stand: their order is easily mistaken."""
+"""Required order of the parts of a scenario, which users often get wrong."""
 _PART = re.compile(r"(?:Given|When|Then)(?=\s*:)|for(?=\s+all\b)")
-# The first word of a part that is out of order is read as the name of a clause; by what is missed behind it then.
+# The keyword of a part out of order is read as a clause name; these are the tokens then missing after it.
 _AS_NAMES = {
     "holds": re.compile(r"(?<![\w\-.])(Given|When|Then)\s*:\s*\Z"),
     ":": re.compile(r"(?<![\w\-.])(for)\s+all\Z"),
@@ -47,7 +47,7 @@ _AS_NAMES = {
 
 
 def fault_in(text: str, fault: Fault) -> SyntaxFault:
-    """Return an error that was found in a text as users see it."""
+    """Return an error as a fault for users."""
     found = _rejected(text, fault.rejected)
     if found.fix is not None or fault.repair is None or fault.repair.text is None:
         return found
@@ -55,7 +55,7 @@ def fault_in(text: str, fault: Fault) -> SyntaxFault:
 
 
 def expected_words(expectation: Expectation) -> list[str]:
-    """Say what could stand at a place, in words: keywords in quotes first, then names, strings and numbers."""
+    """Return what is allowed at a place, in words: keywords in quotes first, then names, strings and numbers."""
     literals = [f"'{literal}'" for literal in sorted(expectation.literals)]
     named = (rule for rule in expectation.rules if rule in _RULE_WORDS or rule.endswith("Path"))
     rules = sorted({_RULE_WORDS.get(rule) or _path_words(rule) for rule in named})
@@ -89,7 +89,7 @@ def _rejected(text: str, rejected: Rejected) -> SyntaxFault:
 
 
 def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
-    """Return what is wrong with a part of a scenario that stands where another one belongs."""
+    """Return the fault of a scenario part that is out of order."""
     part = _PART.match(text, rejected.offset)
     if part is None and len(rejected.expected.literals) == 1:
         (missed,) = rejected.expected.literals
@@ -104,7 +104,7 @@ def _misplaced(text: str, rejected: Rejected) -> SyntaxFault | None:
 
 
 def trailing_fault(text: str, offset: int) -> SyntaxFault:
-    """Return the fault of text that stands behind the end of what could be read."""
+    """Return the fault of text after the end of a declaration."""
     token = _token(text, offset)
     return SyntaxFault(token, f"unexpected '{_shown(text, token)}' after the end of the declaration")
 
@@ -115,7 +115,7 @@ def _shown(text: str, span: Span) -> str:
 
 
 def _token(text: str, offset: int) -> Span:
-    """Return the span of the word or sign at ``offset``."""
+    """Return the span of the word or symbol at ``offset``."""
     end = offset
     while end < len(text) and (text[end].isalnum() or text[end] in "_-"):
         end += 1
@@ -125,14 +125,14 @@ def _token(text: str, offset: int) -> Span:
 
 
 def _blank_line(text: str) -> Span | None:
-    """Return the empty line behind the last word of a text, which is where a closing brace would stand."""
+    """Return the empty line after the last word of a text, where a closing brace would be."""
     end = len(text.rstrip())
     match = _EMPTY_LINE.match(text, end)
     return None if match is None else Span(match.start(1), match.end(1))
 
 
 def last_token(text: str) -> Span:
-    """Return the span of the last word or sign of a text."""
+    """Return the span of the last word or symbol of a text."""
     end = len(text.rstrip())
     start = end
     while start > 0 and not text[start - 1].isspace():

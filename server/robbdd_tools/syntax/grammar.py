@@ -1,6 +1,6 @@
-"""Reads textX grammars into plain data: the part of textX's notation that ours use.
+"""Read textX grammars into plain data; supports the part of textX's notation that ours use.
 
-textX itself stays the reference for what the notation means; tests compare the two on random texts.
+textX stays the reference for the meaning of the notation; tests compare the two on random texts.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A keyword or sign."""
+    """A keyword or symbol."""
 
     text: str
 
@@ -33,28 +33,28 @@ class Pattern:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """Another rule by its name."""
+    """A reference to another rule."""
 
     rule: str
 
 
 @dataclass(frozen=True, slots=True)
 class Sequence:
-    """One part after the other."""
+    """Parts in a row."""
 
     parts: tuple[Expression, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The first alternative that fits."""
+    """The first alternative that matches."""
 
     options: tuple[Expression, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Optional:
-    """A part or nothing."""
+    """An optional part."""
 
     part: Expression
 
@@ -73,7 +73,7 @@ Expression = Literal | Pattern | Use | Sequence | Choice | Optional | Assignment
 
 
 class GrammarError(Exception):
-    """The grammar uses notation that is not understood here; the message shows where."""
+    """The grammar uses unsupported notation; the message shows where."""
 
 
 def read_grammar(text: str) -> dict[str, Expression]:
@@ -158,7 +158,7 @@ class _Reader:
             case "word":
                 return Use(text)
             case _:
-                raise GrammarError(f"'{text}' stands where a rule, a text or a pattern belongs")
+                raise GrammarError(f"'{text}' found where a rule, a text or a pattern belongs")
 
     def _sees(self, sign: str) -> bool:
         return self._next < len(self._tokens) and self._tokens[self._next] == ("sign", sign)

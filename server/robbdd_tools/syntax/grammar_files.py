@@ -1,4 +1,4 @@
-"""The grammar of each file kind, put together from the grammar files and the phrases of the catalog."""
+"""The grammar of each file kind, assembled from the grammar files and the phrases of the catalog."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.syntax.phrases import phrase_rules
 
 _GRAMMARS = {"ktree": "scenex", "scenario": "bdd"}
-"""File kinds, and parts of declarations, that share the grammar of another one."""
+"""File kinds, and parts of declarations, that use the grammar of another one."""
 ROOTS = {"scenario": "ScenarioChunk"}
-"""The rules of parts of declarations; a file kind has the first of its grammar."""
+"""Root rules of parts of declarations; the root of a file kind is the first rule of its grammar."""
 
 
 @cache
@@ -25,5 +25,5 @@ def grammar_text(language: str) -> str:
 
 
 def grammar_name(language: str) -> str:
-    """Return the name of the grammar that a file kind is read with."""
+    """Return the name of the grammar of a file kind."""
     return _GRAMMARS.get(language, language)

@@ -1,6 +1,6 @@
-"""The syntax trees of kinematics: vectors, poses, bodies, joints, trees and graphs.
+"""Syntax trees of kinematics: vectors, poses, bodies, joints, trees and graphs.
 
-Numbers are kept as written, with their units beside them; nothing is converted here.
+Numbers are kept as written, together with their units; nothing is converted here.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class Vector(Node):
 
 @dataclass(frozen=True, slots=True)
 class Sample(Node):
-    """``sample <distribution>`` in the place of a value."""
+    """``sample <distribution>`` instead of a value."""
 
     distribution: Ref
 
@@ -33,7 +33,7 @@ class Quaternion(Node):
 
 @dataclass(frozen=True, slots=True)
 class EulerAngles(Node):
-    """``axes: xyz extrinsic angles: … unit: …``; ``unit`` is ``None`` where none is written."""
+    """``axes: xyz extrinsic angles: … unit: …``; ``unit`` is ``None`` if omitted."""
 
     axes: str
     extrinsic: bool

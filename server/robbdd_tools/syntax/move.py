@@ -1,4 +1,4 @@
-"""Moves what was read of a piece of text to where that piece stands in a larger one."""
+"""Move parsed data of a piece of text to its place in a larger text."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Entry = TypeVar("Entry")
 
 
 class InPlace(Sequence[Entry]):
-    """What the parts of a text tell, one part after the other; each is moved to its place when it is first asked for.
+    """Concatenated entries of the parts of a text; each entry is moved to its place on first access.
 
     Equal to any sequence with the same entries; an entry is always the same object.
     """
@@ -57,7 +57,7 @@ class InPlace(Sequence[Entry]):
 
 
 def moved_node(node: Any, by: int) -> Any:
-    """Return a tree, or what stands in a field of one, with all its spans ``by`` code points further on."""
+    """Return a tree, or the value of one of its fields, with all its spans moved by ``by`` code points."""
     if isinstance(node, Node):
         kind = type(node)
         return kind(node.span.shifted(by), *[_moved(getattr(node, name), by) for name in _inner_fields(kind)])
@@ -74,14 +74,14 @@ def _moved(value: Any, by: int) -> Any:
 
 @cache
 def _inner_fields(kind: type[Node]) -> tuple[str, ...]:
-    """Return the fields of a kind of node behind its span, which is always the first."""
+    """Return the fields of a kind of node after its span, which is always the first."""
     return field_names(kind)[1:]
 
 
 def moved_symbol(symbol: Symbol, by: int) -> Symbol:
     """Return a symbol at its place in a larger text."""
     span, extent = symbol.span.shifted(by), symbol.extent.shifted(by)
-    # As ``replace`` would, several times as fast: the outline of a long story takes thousands.
+    # Same as ``replace``, but several times as fast: the outline of a long story makes thousands of these.
     return Symbol(symbol.path, symbol.name, symbol.kind, span, extent, symbol.namespace, symbol.target)
 
 
@@ -91,11 +91,11 @@ def moved_reference(reference: Reference, by: int) -> Reference:
 
 
 def moved_ref(ref: Ref, by: int) -> Ref:
-    """Return the name of a use at its place in a larger text."""
+    """Return the reference of a use at its place in a larger text."""
     return Ref(ref.span.shifted(by), ref.role, ref.path)
 
 
 def moved_fault(fault: SyntaxFault, by: int) -> SyntaxFault:
-    """Return a fault, with what repairs it, at its place in a larger text."""
+    """Return a fault and its repair at its place in a larger text."""
     fix = None if fault.fix is None else SyntaxFix(fault.fix.span.shifted(by), fault.fix.text)
     return SyntaxFault(fault.span.shifted(by), fault.message, fix)

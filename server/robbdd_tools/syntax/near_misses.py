@@ -1,4 +1,4 @@
-"""Mistakes that newcomers make, each with the text that is meant: what a list of expected words does not say."""
+"""Common mistakes of newcomers, each with the intended text, which a list of expected words does not convey."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _NAME = r"[^\W\d][\w\-]*"
 
 @dataclass(frozen=True, slots=True)
 class NearMiss:
-    """What stands before (``before``) and at (``at``) the place where the parser stopped, and what to write.
+    """A mistake, recognised by the text before (``before``) and at (``at``) the parser's error.
 
-    ``expected`` is a keyword or sign that the parser misses there. ``fix`` makes the text that replaces what stands
-    there; ``""`` removes it. ``rewrite`` gives another place and the text there.
+    ``expected`` is a keyword or symbol that the parser misses there. ``fix`` makes the text that replaces the match of
+    ``at``; ``""`` removes it. ``rewrite`` gives another span and its new text.
     """
 
     before: str
@@ -41,7 +41,7 @@ _NEAR_MISSES = (
     NearMiss(
         rf"\bset\s+var\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
         r"[<\d\"'+\-.]",
-        "'set var' takes sets of values: write '{ { … } }', or 'var' for one value in each scenario",
+        "'set var' takes sets of values: write '{ { … } }', or use 'var' for one value in each scenario",
         "{",
     ),
     NearMiss(
@@ -53,29 +53,29 @@ _NEAR_MISSES = (
     NearMiss(
         r"[\s)](?:and|or)\s+\Z",
         _NAME,
-        "clauses that are joined by 'and' or 'or' stand in parentheses: '( … and … )'",
+        "clauses joined by 'and' or 'or' need parentheses: '( … and … )'",
         ":",
     ),
-    NearMiss(r"\bnot\s+\Z", _NAME, "'not' stands in parentheses with its clause: '( not name: holds(…) )'", ":"),
-    NearMiss(r"\bholds\s*\(\s*\Z", r"not\b", "'not' stands before the whole clause: '( not name: holds(…) )'"),
+    NearMiss(r"\bnot\s+\Z", _NAME, "'not' and its clause need parentheses: '( not name: holds(…) )'", ":"),
+    NearMiss(r"\bholds\s*\(\s*\Z", r"not\b", "'not' must come before the whole clause: '( not name: holds(…) )'"),
     NearMiss(r"\b(?:before|after|from|until)\s+\Z", r"event\s+(?=<)", "leave out 'event' here", "<", lambda _: ""),
-    NearMiss(r"", rf"(?!not\b|pred\b){_NAME}(?:\.{_NAME})*", "names stand in angle brackets", "<", "<{}>".format),
+    NearMiss(r"", rf"(?!not\b|pred\b){_NAME}(?:\.{_NAME})*", "names must be in angle brackets", "<", "<{}>".format),
     NearMiss(r"\d\s*\Z", r"(?:s|sec|secs|second|ms)\b", "write the unit as 'seconds'", "seconds", lambda _: "seconds"),
     NearMiss(
-        r"", r"within\s+(?=\d)", "leave out 'within': '0.5 seconds after <event>' means the same", "after", lambda _: ""
+        r"", r"within\s+(?=\d)", "remove 'within': '0.5 seconds after <event>' means the same", "after", lambda _: ""
     ),
-    NearMiss(r"", r";", "nothing ends with ';': remove it", fix=lambda _: ""),
+    NearMiss(r"", r";", "no line ends with ';': remove it", fix=lambda _: ""),
     NearMiss(r"", r"=", "write ':' instead of '='", ":", lambda _: ":"),
-    NearMiss(rf"\bvar\s+{_NAME}\s*\Z", r":\s*[\w\-]+", "variables have no written type: remove it", fix=lambda _: ""),
-    NearMiss(rf"\bvar\s+{_NAME}\s*\Z", r",\s*", "each variable has a 'var' of its own", fix=lambda _: "\n    var "),
-    NearMiss(r"", r"#|/\*", "a comment begins with '//'"),
-    NearMiss(r"\b(?:Scenario|Template|Story)\s*\Z", r":\s*", "no ':' stands before the name", fix=lambda _: " "),
+    NearMiss(rf"\bvar\s+{_NAME}\s*\Z", r":\s*[\w\-]+", "variables have no declared type: remove it", fix=lambda _: ""),
+    NearMiss(rf"\bvar\s+{_NAME}\s*\Z", r",\s*", "each variable needs its own 'var'", fix=lambda _: "\n    var "),
+    NearMiss(r"", r"#|/\*", "a comment starts with '//'"),
+    NearMiss(r"\b(?:Scenario|Template|Story)\s*\Z", r":\s*", "no ':' is allowed before the name", fix=lambda _: " "),
 )
-"""The first that fits counts."""
+"""The first match wins."""
 
 
 def near_miss(text: str, rejected: Rejected) -> SyntaxFault | None:
-    """Return the mistake that an error is, ``None`` for any other error."""
+    """Return the common mistake that explains an error, or ``None``."""
     head = text[max(0, rejected.offset - 200) : rejected.offset]
     for miss in _NEAR_MISSES:
         if miss.expected and miss.expected not in rejected.expected.literals:
@@ -102,5 +102,5 @@ def _fix(miss: NearMiss, before: re.Match[str], at: re.Match[str], head: str) ->
 
 
 def _may_be_anything(rejected: Rejected) -> bool:
-    """Tell whether so much may stand at a place that what was meant is not certain."""
+    """Return whether so much is allowed at a place that the intended text is uncertain."""
     return len(rejected.expected.literals - {"pred"}) > 2

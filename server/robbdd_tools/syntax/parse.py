@@ -1,4 +1,4 @@
-"""Chunk text to ``Declaration``: the one place where a chunk is parsed, cached by its text."""
+"""Parse chunk text into a ``Declaration``, cached by text; the only place where chunks are parsed."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from robbdd_tools.syntax.story import cut_story, forget_scenarios, quotes_braces
 from robbdd_tools.syntax.symbols import references, symbols
 
 KEPT_LETTERS = 100_000
-"""Letters of text whose declarations are kept without being in use; a declaration takes about 100 bytes for each."""
+"""Characters of text whose declarations stay cached while unused; a declaration takes about 100 bytes per character."""
 LANGUAGES = ("bdd", "scene", "scenex", "ktree", "bddx")
 
 
 class _Kept:
-    """Declarations by language and text: all that are in use, and the latest of those that are not (for undoing)."""
+    """Declarations by language and text: all that are in use, and the latest unused ones (for undo)."""
 
     def __init__(self) -> None:
         self._in_use: WeakValueDictionary[tuple[str, str], Declaration] = WeakValueDictionary()
@@ -43,7 +43,7 @@ _kept = _Kept()
 
 
 def parse_declaration(language: str, text: str) -> Declaration:
-    """Parse one chunk. User text never raises: a broken chunk comes back with its faults and salvaged names."""
+    """Parse one chunk. User text never raises: a broken chunk is returned with its faults and salvaged names."""
     key = (language, text)
     found = _kept.get(key)
     if found is None:
@@ -53,7 +53,7 @@ def parse_declaration(language: str, text: str) -> Declaration:
 
 
 def forget_declarations() -> None:
-    """Parse everything afresh from now on."""
+    """Clear the cache of declarations."""
     _kept.clear()
     forget_scenarios()
 

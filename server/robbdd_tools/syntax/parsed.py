@@ -1,4 +1,4 @@
-"""What parsing a chunk results in: the object of a declaration, or where it does not follow the grammar."""
+"""Result of parsing a chunk: the object of a declaration, or the place where it violates the grammar."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ RawNode = Any
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """What the parser could have read at a position: keywords and signs as written, rules by name."""
+    """What the parser accepts at a position: keywords and symbols as written, rules by name."""
 
     literals: frozenset[str]
     rules: frozenset[str]
@@ -19,7 +19,7 @@ class Expectation:
 
 @dataclass(frozen=True, slots=True)
 class Rejected:
-    """The chunk does not follow the grammar: the furthest offset reached and what was expected there."""
+    """The chunk violates the grammar: the furthest offset reached and what was expected there."""
 
     offset: int
     expected: Expectation
@@ -27,7 +27,7 @@ class Rejected:
 
 @dataclass(frozen=True, slots=True)
 class Parsed:
-    """The object of a declaration, and the offset of text behind it that belongs to nothing."""
+    """The object of a declaration, and the offset of surplus text after it."""
 
     declaration: RawNode
     trailing: int | None

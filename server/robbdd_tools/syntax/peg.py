@@ -1,9 +1,9 @@
-"""Compiles a grammar into functions that parse: as textX does it, several times as fast.
+"""Compile a grammar into parsing functions, equivalent to textX but several times as fast.
 
-The objects look like textX's own (class name of the rule, attributes, ``_tx_position``, ``_tx_position_end``).
-Every function takes the state, a position and the attributes collected so far, and returns the position behind what
-it read, or -1; on failure the attributes are cut back to what they were. Rules that make objects are remembered by
-position, so that alternatives which begin alike cost their common part once.
+The objects look like textX's own (class name of the rule, attributes, ``_tx_position``, ``_tx_position_end``). Every
+function takes the state, a position and the attributes collected so far, and returns the position after the parsed
+text, or -1; on failure it truncates the attributes to their former length. Objects are memoised by rule and position,
+so alternatives with a common prefix parse it once.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.syntax import grammar
 
 DEEPEST = 6000
-"""Python calls within each other: some hundreds of brackets, far more than anybody writes. Calls of Python functions
-need no C stack."""
+"""Maximum depth of Python calls: some hundreds of nested brackets, far more than anybody writes. Calls between Python
+functions need no C stack."""
 _KEYWORD = re.compile(r"[^\d\W]\w*")
 _BLANK = re.compile(r"(?:[ \t\r\n]+|//[^\n]*)*")
 Log = list[tuple[str, Any]]
@@ -27,7 +27,7 @@ Make = Callable[["State", int], "tuple[int, Any] | None"]
 
 
 class State:
-    """One text being parsed: the furthest failure, what was expected there, and the rules' remembered results."""
+    """State of parsing one text: the furthest failure, what was expected there, and the memoised results."""
 
     __slots__ = ("_blank", "expected", "furthest", "results", "text")
 
@@ -39,7 +39,7 @@ class State:
         self._blank: dict[int, int] = {}
 
     def skip(self, position: int) -> int:
-        """Return the position behind white space and comments."""
+        """Return the position after white space and comments."""
         found = self._blank.get(position)
         if found is None:
             match = _BLANK.match(self.text, position)
@@ -47,7 +47,7 @@ class State:
         return found
 
     def fail(self, position: int, expected: tuple[str, str]) -> None:
-        """Take note of what could not be read at a position: a literal, or a rule by name."""
+        """Record what was expected at a position: a literal, or a rule by name."""
         if position > self.furthest:
             self.furthest = position
             self.expected = {expected}
@@ -63,7 +63,7 @@ class Node:
 
 
 class Compiled:
-    """A compiled grammar; its first rule is the root if no other is named."""
+    """A compiled grammar; its first rule is the root by default."""
 
     def __init__(self, rules: Mapping[str, grammar.Expression], root: str | None = None) -> None:
         self._rules = rules
@@ -72,14 +72,14 @@ class Compiled:
         self._makers: dict[str, Make] = {}
 
     def parse(self, text: str) -> tuple[Node | None, State]:
-        """Parse a whole text; ``None`` with the state that tells why when it does not follow the grammar."""
+        """Parse a whole text; ``None`` and the state with the error if it violates the grammar."""
         state = State(text)
         if sys.getrecursionlimit() < DEEPEST:
             sys.setrecursionlimit(DEEPEST)
         try:
             found = self._maker(self._root)(state, 0)
         except RecursionError:
-            # Thousands of brackets in each other: an error at the innermost that was reached.
+            # Thousands of nested brackets: report an error at the innermost one reached.
             found = None
         if found is not None:
             end = state.skip(found[0])
@@ -89,7 +89,7 @@ class Compiled:
         return None, state
 
     def _is_text(self, rule: str) -> bool:
-        """Tell whether a rule reads text only, making no object."""
+        """Return whether a rule matches text only, without making an object."""
         return _reads_text(self._rules[rule], self._rules)
 
     def _text(self, rule: str) -> Parse:
@@ -98,7 +98,7 @@ class Compiled:
         return self._texts[rule]
 
     def _maker(self, rule: str) -> Make:
-        """Return a rule's function by name, also while it is still being compiled (rules refer to each other)."""
+        """Return a rule's function by name, even while it is being compiled (rules refer to each other)."""
         if rule not in self._makers:
             self._makers[rule] = lambda state, position: self._makers[rule](state, position)
             body = self._rules[rule]
@@ -189,7 +189,7 @@ def _reads_text(body: grammar.Expression, rules: Mapping[str, grammar.Expression
         case grammar.Use(rule):
             return _reads_text(rules[rule], rules)
         case grammar.Choice(parts) | grammar.Sequence(parts):
-            # A choice among rules that make objects is met at its first option already.
+            # The first option of a choice tells whether its rules make objects.
             return all(_reads_text(part, rules) for part in parts[:1]) and not any(map(_assigns, parts))
         case grammar.Optional(part):
             return _reads_text(part, rules)

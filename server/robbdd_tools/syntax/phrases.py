@@ -1,4 +1,4 @@
-"""Catalog phrases as grammar rules: ``<object> is located at <workspace>`` → a textX rule."""
+"""Translate catalog phrases to grammar rules: ``<object> is located at <workspace>`` becomes a textX rule."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def phrase_rules(catalog: Catalog) -> str:
 
 
 def word_of_rule(rule: str) -> str | None:
-    """Return the catalog name behind a generated rule's name, ``None`` for any other rule."""
+    """Return the catalog name of a generated rule, ``None`` for any other rule."""
     for prefix in (PREDICATE_RULE, ACTION_RULE):
         if rule.startswith(prefix):
             return rule[len(prefix) :].partition(ALIAS)[0].replace("_", "-")

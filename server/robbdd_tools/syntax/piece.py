@@ -1,4 +1,4 @@
-"""Text to tree: parses one piece of text by its grammar, repaired where it is broken."""
+"""Parse one piece of text into a tree, with repairs where it is broken."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robbdd_tools.syntax.to_trees import convert
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """What a text says: its tree (``None`` when nothing helped), its faults, the offset of text behind its end."""
+    """Parsed text: its tree (``None`` if no repair helped), its faults, the offset of text after its end."""
 
     tree: Any
     faults: tuple[SyntaxFault, ...]
@@ -31,6 +31,6 @@ def read_piece(language: str, text: str) -> Piece:
     faults = tuple(fault_in(text, fault) for fault in recovered.faults)
     if recovered.parsed is None:
         return Piece(None, faults, None)
-    # What was put behind the end to repair it is no text of the user's.
+    # Text appended by a repair is not the user's.
     repaired = recovered.text[: len(text)]
     return Piece(convert(recovered.parsed.declaration, repaired), faults, recovered.parsed.trailing)

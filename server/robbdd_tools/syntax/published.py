@@ -1,8 +1,8 @@
-"""What the published form leaves out of templates and variants: names of clauses, name and duration of behaviours.
+"""Fill in what templates and variants in the published form omit: clause names, behaviour names and durations.
 
-A clause is called after its template or variant, its role, and a number (``fetch-given-1``), so that it has an IRI
-and can be referred to; names that stand in the text are not given a second time. A behaviour lasts from the event
-before which something is given until the event after which something then holds, and a scenario as its behaviour.
+A clause is named after its template or variant, its role, and a number (``fetch-given-1``), so that it has an IRI and
+can be referred to; names used in the text are not generated again. A behaviour lasts from the event before which
+something is given until the event after which something holds; a scenario lasts as long as its behaviour.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ from robbdd_tools.syntax.scene_tree import Name
 
 
 def unnamed_at(span: Span) -> Name:
-    """Return the placeholder for the name of a clause that has none: empty, at the clause's start."""
+    """Return the placeholder for a missing clause name: empty, at the clause's start."""
     return Name(Span(span.start, span.start), "")
 
 
 def complete_template(template: Template) -> Template:
-    """Return a template with all its clauses and behaviours named, and durations where the clauses tell them."""
+    """Return a template with all clauses and behaviours named, and with durations where the clauses imply them."""
     namer = _Namer(template.name.text, frozenset(_names(template.body)))
     body = namer.body(template.body, "")
     duration = template.duration
@@ -107,7 +107,7 @@ class _Namer:
 
 
 def _behaviour(body: Body) -> BehaviourUse | None:
-    """Return the behaviour of a body or of the bodies inside it."""
+    """Return the behaviour of a body or its nested bodies."""
     if body.when is not None:
         return body.when.behaviour
     return None if body.for_all is None else _behaviour(body.for_all.body)
@@ -139,7 +139,7 @@ def _times(expression: Expression | None) -> Iterator[TimeConstraint]:
 
 
 def _names(node: Body | Expression | None) -> Iterator[str]:
-    """Yield the names of fluents that stand in the text."""
+    """Yield the names of fluents written in the text."""
     match node:
         case Fluent():
             yield node.name.text

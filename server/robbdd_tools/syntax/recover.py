@@ -1,9 +1,9 @@
-"""Finds all syntax errors of a chunk, and a tree of what is sound in it, by repairing its text until it parses.
+"""Find all syntax errors of a chunk, and a tree of its valid parts, by repairing its text until it parses.
 
-Each repair keeps the length of the text: a sign is put in the place of white space, a misspelt keyword is overwritten
-into the white space behind it, and what cannot be repaired is blanked. So every span of the tree is a span of the
-user's text. A repair counts when the parser then gets beyond the place of the error; the smallest that lets the
-whole chunk pass is taken, else the one with which the parser comes furthest.
+Each repair keeps the length of the text: a symbol replaces white space, a misspelt keyword is overwritten into the
+white space after it, and text that cannot be repaired is blanked. So every span of the tree is a span of the user's
+text. A repair is valid if the parser then gets beyond the error; the smallest one with which the whole chunk parses
+wins, otherwise the one with which the parser gets furthest.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
 
 MOST_FAULTS = 12
 MOST_PARSES = 48
-"""Attempts per chunk: an editor asks for a chunk's errors with each keystroke inside it."""
+"""Maximum number of attempts per chunk: an editor needs a chunk's errors on each keystroke inside it."""
 ALIKE = 0.6
-"""Share of common letters from which a word counts as a misspelt keyword."""
+"""Similarity ratio from which a word counts as a misspelt keyword."""
 HOLE = "\u02ad"
-"""Stands for a missing name: a letter to the grammar, but of no alphabet, so that no user means it."""
+"""Placeholder for a missing name: a letter for the grammar, but one that no alphabet uses."""
 _SET_OF_VALUES = re.compile(r"\b(?P<set>set)\s+var\s*<[^<>]*>\s*:\s*\{\s*\Z")
 _COMMENTS = re.compile(r"(?P<comment>//[^\n]*)|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'")
 _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(?P<open>[{(])|(?P<close>[})])")
@@ -32,9 +32,9 @@ _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """A repaired text of the same length; ``span`` is what was changed.
+    """A repaired text of the same length; ``span`` is the changed part.
 
-    ``text`` is what the user may write there instead, ``None`` where text was blanked.
+    ``text`` is the user's fix there, ``None`` if text was blanked.
     """
 
     repaired: str
@@ -44,7 +44,7 @@ class Repair:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """An error: where the parser stopped and what it expected, with the text that repairs it where that is plain."""
+    """An error: where the parser stopped and what it expected, with the repairing text if that is certain."""
 
     rejected: Rejected
     repair: Repair | None
@@ -52,7 +52,7 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """All errors found, and what remains: the repaired text with its parse, ``None`` where nothing helped."""
+    """All errors found, and the repaired text with its parse, ``None`` if no repair helped."""
 
     faults: tuple[Fault, ...]
     text: str
@@ -60,11 +60,11 @@ class Recovered:
 
 
 def recover(language: str, text: str, first: Rejected) -> Recovered:
-    """Repair a chunk that was rejected; user text never raises."""
+    """Repair a rejected chunk; user text never raises."""
     faults: list[Fault] = []
     repaired, result, left, shadow = text, first, MOST_PARSES, -1
     while len(faults) < MOST_FAULTS:
-        # An error where an earlier repair already changed the text is that error still, or a consequence of it.
+        # An error in text that an earlier repair changed is the same error, or a consequence of it.
         if result.offset > shadow:
             faults.append(Fault(result, None))
             shadow = _word(repaired, result.offset).end
@@ -85,7 +85,7 @@ def recover(language: str, text: str, first: Rejected) -> Recovered:
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """The repair chosen for one error, what the parser then says, and how many attempts the choice took."""
+    """The repair chosen for one error, the parser's result after it, and the number of attempts."""
 
     repair: Repair
     result: Parsed | Rejected
@@ -99,8 +99,9 @@ def _best(language: str, text: str, stopped: Rejected, most: int) -> _Step | Non
     next_word = _word(text, own + len(text[own:]) - len(text[own:].lstrip())).end
     for parses, repair in enumerate(islice(_repairs(text, stopped), most), start=1):
         found = _parse(language, repair.repaired)
-        # Repaired text beats blanked text, however far the parser runs on from a misreading of what is left. A sign
-        # has to show more than a keyword: it may fit by chance.
+        # Repaired text beats blanked text, however far the parser runs on after misreading the rest. An inserted symbol
+        # needs
+        # more evidence than a keyword: it may fit by chance.
         enough = next_word if repair.span.start == repair.span.end else own
         if isinstance(found, Parsed) or (repair.text is not None and found.offset > enough):
             return _Step(repair, found, parses)
@@ -112,7 +113,7 @@ def _best(language: str, text: str, stopped: Rejected, most: int) -> _Step | Non
 
 
 def _parse(language: str, text: str) -> Parsed | Rejected:
-    """Parse a repaired chunk; text behind its end is an error, or a bracket too many would repair all."""
+    """Parse a repaired chunk; text after its end is an error, otherwise one extra bracket would repair everything."""
     found = parse_chunk(language, text)
     if isinstance(found, Parsed) and found.trailing is not None:
         return Rejected(found.trailing, Expectation(frozenset(), frozenset()))
@@ -120,7 +121,7 @@ def _parse(language: str, text: str) -> Parsed | Rejected:
 
 
 def _repairs(text: str, stopped: Rejected) -> Iterator[Repair]:
-    """Yield the repairs of one error, the likeliest first."""
+    """Yield the repairs of one error, the most likely first."""
     offset = stopped.offset
     found = _word(text, offset)
     literals = sorted(stopped.expected.literals)
@@ -139,14 +140,14 @@ def _repairs(text: str, stopped: Rejected) -> Iterator[Repair]:
 
 
 def _single_values(text: str, offset: int) -> Iterator[Repair]:
-    """Read 'set var <v>: { … }', which has single values, as 'var <v>: { … }'."""
+    """Read 'set var <v>: { … }' with single values as 'var <v>: { … }'."""
     found = _SET_OF_VALUES.search(text, max(0, offset - 200), offset)
     if found:
         yield _blanked(text, Span(*found.span("set")))
 
 
 def _insertion(text: str, offset: int, sign: str) -> Iterator[Repair]:
-    """Put a sign into the white space before the error, or behind the end of the text."""
+    """Put a symbol into the white space before the error, or after the end of the text."""
     place = _behind_words(text, offset)
     room = text[place : place + len(sign)]
     if place == len(text):
@@ -156,7 +157,8 @@ def _insertion(text: str, offset: int, sign: str) -> Iterator[Repair]:
 
 
 def _behind_words(text: str, offset: int) -> int:
-    """Return the end of the last word or sign before ``offset``: what is put behind a comment would be a part of it."""
+    """Return the end of the last word or symbol before ``offset``; text inserted after a comment would become part of
+    it."""
     found = (match for match in _COMMENTS.finditer(text, 0, offset) if match["comment"])
     comments = {match.start() + len(match[0].rstrip()): match.start() for match in found}
     place = len(text[:offset].rstrip())
@@ -166,7 +168,7 @@ def _behind_words(text: str, offset: int) -> int:
 
 
 def _hole(text: str, offset: int) -> Iterator[Repair]:
-    """Put a stand-in for a missing name into the white space before the error."""
+    """Put a placeholder for a missing name into the white space before the error."""
     place = _behind_words(text, offset)
     if not _continues(text, place - 1) and not (text[place:] and _continues(text, place + 1)):
         for repair in _insertion(text, offset, HOLE):
@@ -174,7 +176,7 @@ def _hole(text: str, offset: int) -> Iterator[Repair]:
 
 
 def _spelling(text: str, found: Span, keyword: str) -> Iterator[Repair]:
-    """Write a keyword over a word that resembles it, and over white space beside it where the keyword is longer."""
+    """Write a keyword over a similar word, and over adjacent white space if the keyword is longer."""
     word = text[found.start : found.end]
     if not word or SequenceMatcher(None, word.lower(), keyword.lower()).ratio() < ALIKE:
         return
@@ -188,23 +190,23 @@ def _spelling(text: str, found: Span, keyword: str) -> Iterator[Repair]:
 
 
 def _continues(text: str, place: int) -> bool:
-    """Tell whether a word would run into the letter at ``place``."""
+    """Return whether a word would run into the letter at ``place``."""
     letter = text[place : place + 1] if place >= 0 else ""
     return letter.isalnum() or letter in {"_", "-"}
 
 
 def _lines(text: str, offset: int, windows: tuple[tuple[int, int], ...]) -> Iterator[Repair]:
-    """Blank the line of the error, with lines that hold text before and after it."""
+    """Blank the line of the error, with non-empty lines before and after it."""
     lines = [match.span() for match in re.finditer(r"[^\n]*\S[^\n]*", text)]
     own = next((index for index, (_, end) in enumerate(lines) if offset <= end), len(lines) - 1)
-    # The first line holds the declaration's own head, without which nothing can be read.
+    # The first line holds the declaration's head, without which nothing can be parsed.
     for before, after in windows:
         if own - before > 0 and own + after < len(lines):
             yield _blanked(text, Span(lines[own - before][0], lines[own + after][1]))
 
 
 def _rest_of_brackets(text: str, offset: int) -> Iterator[Repair]:
-    """Blank what stands between the error and the bracket that closes those around it, as after 'a and b' 'or c'."""
+    """Blank the text from the error to the bracket that closes those around it, as after 'a and b' 'or c'."""
     depth = 0
     for match in _BRACKETS.finditer(text, offset):
         if match["open"]:

@@ -1,4 +1,4 @@
-"""What can be saved of the names in a declaration that did not parse."""
+"""Salvage the names in a declaration that did not parse."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robbdd_tools.syntax.recover import HOLE
 _NAME = r"(?P<name>[^\W\d][\w\-]*)"
 _ARGUMENT = r"\(\s*ns\s*=\s*(?P<ns>[^\W\d][\w\-]*)\s*\)\s*"
 _TARGET = r"(?P<target>[^\W\d][\w\-]*(?:\.[^\W\d][\w\-]*)*)"
-# What is left of an argument that lacks a sign or a word.
+# An argument that lacks a symbol or a word.
 _DAMAGED = r"(?:\(?[^(){}<>\n\"']*\)|\(\s*ns\s*=\s*[^\W\d][\w\-]*)\s*"
 _NAMED = rf"\s*(?:{_ARGUMENT}|{_DAMAGED})?{_NAME}"
 _HEADERS = (
@@ -76,7 +76,7 @@ _KINEMATIC_PARTS = {
 
 
 def salvage(text: str) -> tuple[Symbol, ...]:
-    """Return the names that a broken declaration evidently declares, so that its users see no second error."""
+    """Return the names that a broken declaration evidently declares, so that references to them are no errors."""
     for pattern, kind in _HEADERS:
         match = pattern.match(text)
         if match:
@@ -101,7 +101,7 @@ def salvage_scenario(text: str, story: str, namespace: str | None) -> tuple[Symb
 
 
 def with_lost(declared: tuple[Symbol, ...], salvaged: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
-    """Add to the names of a repaired text those of its blanked parts: their users are not at fault."""
+    """Add the names in the blanked parts of a repaired text, so that references to them are no errors."""
     paths = {symbol.path for symbol in declared}
     lost = (symbol for symbol in salvaged if symbol.path not in paths)
     known = (symbol for symbol in declared if HOLE not in symbol.path)
@@ -117,7 +117,7 @@ def _parts(text: str, start: int, own: Symbol) -> Iterator[Symbol]:
 
 
 def _kinematic_parts(text: str, start: int, own: Symbol) -> Iterator[Symbol]:
-    """Yield bodies, frames and the like; a part belongs to the last thing above it that can hold such parts."""
+    """Yield bodies, frames and the like; a part belongs to the last declaration above it that can contain it."""
     graph = body = frame = own.path
     for found in _KINEMATIC_PART.finditer(text, start):
         name, kind = found["name"], _KINEMATIC_PARTS[found["kind"]]

@@ -1,6 +1,6 @@
-"""The syntax trees of what every file kind shares, and of scenes: one frozen class per grammar rule.
+"""Syntax trees shared by every file kind, and those of scenes: one frozen class per grammar rule.
 
-Spans count from the start of the chunk, so that a tree stays valid wherever its text moves to.
+Spans count from the start of the chunk, so a tree stays valid when its text moves.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from robbdd_tools.base.document import Span
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """Any piece of a tree; ``span`` covers its text without surrounding white space."""
+    """A node of a tree; ``span`` covers its text without surrounding white space."""
 
     span: Span
 
@@ -26,7 +26,7 @@ def field_names(node: type[Node]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Name(Node):
-    """A name where it is declared."""
+    """A name at its declaration."""
 
     text: str
 
@@ -40,14 +40,15 @@ class Text(Node):
 
 @dataclass(frozen=True, slots=True)
 class Number(Node):
-    """A number: an ``int`` where it was written without point and exponent."""
+    """A number: an ``int`` if written without point and exponent."""
 
     value: int | float
 
 
 @dataclass(frozen=True, slots=True)
 class Ref(Node):
-    """A reference. ``role`` is the grammar rule without ``Ref`` (``Event``, ``AnySet`` …); ``span`` the path's."""
+    """A reference. ``role`` is the grammar rule without ``Ref`` (``Event``, ``AnySet`` …); ``span`` is that of the
+    path."""
 
     role: str
     path: str
@@ -85,7 +86,7 @@ class PythonAttribute(Node):
 
 @dataclass(frozen=True, slots=True)
 class CatalogEntry(Node):
-    """``catalog "name"``: a word of this installation's catalog."""
+    """``catalog "name"``: a word of the installed catalog."""
 
     name: Text
 
@@ -109,7 +110,7 @@ class ElementSet(Node):
 
 @dataclass(frozen=True, slots=True)
 class SimilarSet(Node):
-    """``similar obj set``: stands for base name + 0 … count-1."""
+    """``similar obj set``: declares members with the base name and 0 … count-1."""
 
     kind: str
     namespace: NamespaceArgument | None
@@ -120,7 +121,7 @@ class SimilarSet(Node):
 
 @dataclass(frozen=True, slots=True)
 class Link(Node):
-    """An entry that names something: ``obj <…>``, ``ws comp <…>``, ``set <…>``; its role tells which."""
+    """An entry that refers to a declaration: ``obj <…>``, ``ws comp <…>``, ``set <…>``; its role says which kind."""
 
     reference: Ref
 

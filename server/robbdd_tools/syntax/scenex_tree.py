@@ -1,4 +1,4 @@
-"""The syntax trees of executable scenes: distributions, models, sensors and scene instances."""
+"""Syntax trees of executable scenes: distributions, models, sensors and scene instances."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Mapping(Node):
 
 @dataclass(frozen=True, slots=True)
 class Gripper(Node):
-    """``gripper { actuator: "…" open: … close: … pads: "…", "…" stroke: … m }``: two fingers that close."""
+    """``gripper { actuator: "…" open: … close: … pads: "…", "…" stroke: … m }``: a two-finger gripper."""
 
     actuator: Text
     open: Number
@@ -89,7 +89,7 @@ class Gripper(Node):
 
 @dataclass(frozen=True, slots=True)
 class Arm(Node):
-    """``tool: "…" gripper { … } home: (…) rad velocity: (…) rad/s``: a robot arm that can pick."""
+    """``tool: "…" gripper { … } home: (…) rad velocity: (…) rad/s``: data of a robot arm that can pick."""
 
     tool: Text
     gripper: Gripper
@@ -136,7 +136,7 @@ class Sensor(Node):
 
 @dataclass(frozen=True, slots=True)
 class Modelled(Node):
-    """``obj <…> { … }``, ``obj set``, ``ws``, ``agn``, ``agn set``: what an element of the scene is realised by."""
+    """``obj <…> { … }``, ``obj set``, ``ws``, ``agn``, ``agn set``: the models of an element of the scene."""
 
     reference: Ref
     entries: tuple[Model | Camera | Sensor | Modelled, ...]

@@ -1,7 +1,7 @@
-"""Splits a text into chunks, one per top-level declaration, without parsing it.
+"""Split a text into chunks, one per top-level declaration, without parsing it.
 
-A declaration starts where its opening words stand outside all braces, or at the beginning of a line wherever that
-line is: a missing closing brace then costs one declaration, not the rest of the file.
+A declaration starts where its opening words occur outside all braces, or at the beginning of a line anywhere: a missing
+closing brace then breaks one declaration, not the rest of the file.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from robbdd_tools.base.document import edited_part
 
 _NAME = r"[^\W\d][\w\-]*"
 _GAP = r"(?:\s|//[^\n]*\n)"
-"""What may stand between two words: white space and comments."""
+"""Separator between two words: white space and comments."""
 _SHARED_STARTERS = (r"import\s*[\"']", rf"ns\s+{_NAME}\s*=")
 _STARTERS = {
     "scene": (
@@ -53,14 +53,14 @@ _STARTERS["ktree"] = _STARTERS["scenex"]
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """A piece of text from one declaration's first word up to the next declaration, at its offset."""
+    """The text from one declaration's first word up to the next declaration, and its offset."""
 
     offset: int
     text: str
 
 
 def split(language: str, text: str) -> tuple[Chunk, ...]:
-    """Return the chunks of a text in order; text before the first declaration that is not blank is one too."""
+    """Return the chunks of a text in order; non-blank text before the first declaration is a chunk too."""
     starts = list(_starts(language, text))
     first = starts[0] if starts else len(text)
     lead = len(text) - len(_LEAD.sub("", text, count=1))
@@ -70,11 +70,11 @@ def split(language: str, text: str) -> tuple[Chunk, ...]:
 
 
 def resplit(language: str, old: str, chunks: tuple[Chunk, ...], new: str) -> tuple[Chunk, ...]:
-    """Return ``split(language, new)``, given the chunks of ``old``: only the text around the edit is looked at.
+    """Return ``split(language, new)``, given the chunks of ``old``: only the text around the edit is scanned.
 
-    At the start of a chunk the splitter knows nothing of what came before. So it may begin again at a chunk before
-    the edit (the one before the edited chunk, whose end the edit may have moved) and stop where, behind the edit,
-    it meets a start that it has met before.
+    The splitter's state at the start of a chunk is always the same. So it can restart at a chunk before the edit (the
+    one before the edited chunk, whose end may have moved) and stop when, after the edit, it reaches the start of an old
+    chunk.
     """
     edited, behind_edit = edited_part(old, new)
     first = bisect_left(chunks, edited, key=lambda chunk: chunk.offset) - 2
@@ -102,10 +102,10 @@ _LEAD = re.compile(r"\A(?:\s|\ufeff|//[^\n]*)+")
 
 @cache
 def _scanner(language: str) -> re.Pattern[str]:
-    """Comments, strings, braces and starters; everything else is passed over."""
+    """Matches comments, strings, braces and starters; everything else is skipped."""
     starters = "|".join(_STARTERS[language]).replace(r"\s", _GAP)
     string = r"\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?"
-    # The first letters alone pass over nearly all of a text.
+    # Testing first letters skips nearly all of a text quickly.
     letters = (re.findall(r"(?:^\(\?:|^|\|)([A-Za-z])", starter) for starter in _STARTERS[language])
     first = "".join(sorted({letter for found in letters for letter in found}))
     return re.compile(
@@ -125,7 +125,7 @@ def _starts(language: str, text: str, position: int = 0) -> Iterator[int]:
             depth = max(0, depth - 1)
         elif match["start"]:
             begin = match.start()
-            # The starter may have swallowed an opening sign or quote: look at it again.
+            # The starter may include an opening bracket or quote: scan it again.
             position = begin + len(match["start"].rstrip("(\"'"))
             if depth == 0 or _starts_line(text, begin):
                 depth = 0

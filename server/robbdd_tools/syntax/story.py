@@ -1,8 +1,8 @@
-"""Reads a user story scenario by scenario, so that an edit inside one parses that one only, however long the story is.
+"""Parse a user story scenario by scenario, so that an edit inside one parses only that one, however long the story is.
 
-The story's text is cut at its scenarios. What stands around them is parsed with a stand-in in their place, and each
-scenario by itself; both are kept by their texts. The result is that of parsing the whole, for nothing in a scenario
-tells how another one is to be read; and an error costs no more than its own scenario.
+The story's text is cut at its scenarios. The text around them is parsed with a placeholder for them, and each scenario
+by itself; both are cached by text. The result equals that of parsing the whole story, because no scenario affects how
+another one is parsed; an error stays within its scenario.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from robbdd_tools.syntax.symbols import references, symbols, variant_symbols
 
 KEPT_FRAMES = 100
 KEPT_LETTERS = 30_000
-"""Letters of scenarios that are kept beside those of the story that was read last, however long that is."""
+"""Characters of scenarios that are kept in addition to the story parsed last, whatever its length."""
 STAND_IN = f"Scenario {HOLE}{{template:<{HOLE}>scene:<{HOLE}>variation:var<{HOLE}>:{{}}}}\n"
 _NAME = r"[^\W\d][\w\-]*"
 _STRING = r"\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?"
@@ -42,7 +42,7 @@ _STORY = re.compile(r"User\s+Story\b")
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """A story's text in parts: where its scenarios begin, and where what closes the story begins."""
+    """A story's text in parts: the starts of its scenarios, and the start of its closing part."""
 
     text: str
     starts: tuple[int, ...]
@@ -55,19 +55,19 @@ class Cut:
 
     @property
     def tail(self) -> str:
-        """The text behind the last scenario."""
+        """The text after the last scenario."""
         return self.text[self.end :]
 
     def scenarios(self) -> Iterator[tuple[int, str]]:
-        """Yield each scenario's offset and text, with what stands between it and the next."""
+        """Yield each scenario's offset and text, including the text up to the next."""
         return ((start, self.text[start:end]) for start, end in pairwise((*self.starts, self.end)))
 
 
 def cut_story(text: str) -> Cut | None:
-    """Return where a story's scenarios are, ``None`` for the text of anything but a story with scenarios.
+    """Return the parts of a story, ``None`` if the text is not a story with scenarios.
 
-    A scenario begins at its word directly inside the story's braces or, with its name and brace, at the beginning of
-    a line wherever that line is: a missing brace then costs one scenario.
+    A scenario starts at its keyword directly inside the story's braces or, with its name and brace, at the beginning of
+    any line: a missing brace then breaks one scenario.
     """
     if not _STORY.match(text):
         return None
@@ -89,15 +89,15 @@ def cut_story(text: str) -> Cut | None:
 
 
 def quotes_braces(text: str) -> bool:
-    """Tell whether a string of several lines holds braces, which ``cut_story`` takes for those of a scenario.
+    """Return whether a multi-line string contains braces, which ``cut_story`` takes for those of a scenario.
 
-    A quote that is not closed, as while one types, looks like that as well.
+    An unclosed quote, as while typing, looks the same.
     """
     return any("\n" in match[0] and _BRACE.search(match[0]) for match in _LONG_STRINGS.finditer(text))
 
 
 def _starts_line(text: str, offset: int) -> bool:
-    """Tell whether only white space stands before a place in its line."""
+    """Return whether only white space precedes a place in its line."""
     return not text[text.rfind("\n", 0, offset) + 1 : offset].strip()
 
 
@@ -113,9 +113,9 @@ def _closing_line(text: str, start: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """What a story says around its scenarios, with spans in a text where a stand-in has their place.
+    """A story without its scenarios, parsed with a placeholder for them.
 
-    ``head`` and ``tail`` are the parts of the story before and behind them.
+    ``head`` and ``tail`` are the parts of the story before and after the scenarios.
     """
 
     story: tree.Story | None
@@ -130,7 +130,7 @@ Key = tuple[str, str, str | None]
 
 
 class _Kept:
-    """Scenarios as they were read: those of the latest stories, never only a part of the latest one."""
+    """Cached scenarios: those of the latest stories; the latest story is kept completely."""
 
     def __init__(self) -> None:
         self._latest: dict[Key, tuple[Placed, ...]] = {}
@@ -138,12 +138,12 @@ class _Kept:
         self._letters = 0
 
     def begin(self) -> None:
-        """Begin to read a story: what it does not use may be forgotten."""
+        """Start a story: scenarios that it does not use may be evicted."""
         if self._letters > KEPT_LETTERS:
             self._older, self._latest, self._letters = self._latest, {}, 0
 
     def get(self, key: Key) -> tuple[Placed, ...]:
-        """Return what was read before, else read it."""
+        """Return a parsed scenario from the cache, or parse it."""
         found = self._latest.get(key)
         if found is None:
             found = self._older.get(key)
@@ -152,7 +152,7 @@ class _Kept:
         return found
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Clear the cache."""
         self.__init__()
 
 
@@ -160,12 +160,12 @@ _kept = _Kept()
 
 
 def forget_scenarios() -> None:
-    """Parse every scenario afresh from now on."""
+    """Clear the cache of scenarios."""
     _kept.clear()
 
 
 def read_story(cut: Cut) -> Declaration:
-    """Return the declaration of a story, of which only scenarios with a new text are parsed."""
+    """Return the declaration of a story; only scenarios with a new text are parsed."""
     _kept.begin()
     frame = _frame(cut.head, cut.tail)
     own = tuple(replace(symbol, extent=_stretched(symbol.extent, cut)) for symbol in frame.symbols)
@@ -218,7 +218,7 @@ def _outside(fault: SyntaxFault, cut: Cut) -> SyntaxFault:
     if fault.span.start == len(cut.head):
         span = Span(start, start + len(_WORD))
     elif len(cut.head) < fault.span.start < len(cut.head) + len(STAND_IN):
-        # Nothing but the end of the story is missed behind the stand-in.
+        # Only the end of the story can be missing after the placeholder.
         span = last_token(cut.text)
     fix = fault.fix
     if fix is not None:
@@ -232,7 +232,7 @@ def _stretched(span: Span, cut: Cut) -> Span:
 
 
 def _unframed(offset: int, cut: Cut) -> int:
-    """Return the place in the whole story of a place in its frame."""
+    """Map an offset in a story's frame to the whole story."""
     behind = len(cut.head) + len(STAND_IN)
     if offset <= len(cut.head):
         return offset
@@ -240,7 +240,7 @@ def _unframed(offset: int, cut: Cut) -> int:
 
 
 def _scenarios(key: Key) -> tuple[Placed, ...]:
-    """Return what a text says that begins with a scenario; what stands behind its end may be another one."""
+    """Parse a text that starts with a scenario; text after its end may be another scenario."""
     text, path, namespace = key
     found: list[Placed] = []
     start = 0
@@ -256,7 +256,7 @@ def _scenarios(key: Key) -> tuple[Placed, ...]:
 
 
 def _read_scenario(text: str) -> Piece:
-    """Parse a text that begins with a scenario; one whose name is still to be typed is read with a stand-in for it."""
+    """Parse a text that starts with a scenario; a name not yet typed is replaced by a placeholder."""
     nameless = _NAMELESS.match(text)
     if nameless is None:
         return read_piece("scenario", text)

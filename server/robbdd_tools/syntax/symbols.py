@@ -1,4 +1,4 @@
-"""Names declared and used in a tree."""
+"""The names declared and used in a tree."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robbdd_tools.syntax.recover import HOLE
 from robbdd_tools.syntax.scene_tree import field_names
 
 MOST_COPIES = 10_000
-"""Members of a ``similar`` set that get a name; a larger count is a typing error."""
+"""Maximum number of named members of a ``similar`` set; a larger count is a typing error."""
 
 _SETS = {
     "object": SymbolKind.OBJECT_SET,
@@ -42,7 +42,7 @@ _TOP: dict[type[tree.Node], SymbolKind] = {
 
 
 def symbols(root: tree.DeclarationTree) -> tuple[Symbol, ...]:
-    """Return what a declaration declares, itself first, then its parts in the order of the text."""
+    """Return the names that a declaration declares: itself first, then its parts in text order."""
     if isinstance(root, tree.Import):
         return ()
     if isinstance(root, tree.Namespace):
@@ -89,13 +89,13 @@ def _parts(root: tree.DeclarationTree, path: str, namespace: str) -> Iterator[Sy
 
 
 def variant_symbols(variant: tree.Variant, path: str, namespace: str | None) -> tuple[Symbol, ...]:
-    """Return what a scenario of the story at ``path`` declares, itself first."""
+    """Return the names that a scenario of the story at ``path`` declares, itself first."""
     own = _symbol(path, variant.name, SymbolKind.VARIANT, variant.span, namespace)
     return (own, *_clauses(variant, own.path, namespace))
 
 
 def _instance_parts(owner: tree.SceneInstance | tree.Modelled, path: str) -> Iterator[Symbol]:
-    """Graphs, models and sensors of a scene instance; elements that are modelled have their names elsewhere."""
+    """Yield graphs, models and sensors of a scene instance; modelled elements are declared elsewhere."""
     for entry in owner.entries:
         match entry:
             case tree.Graph():
@@ -111,7 +111,7 @@ def _instance_parts(owner: tree.SceneInstance | tree.Modelled, path: str) -> Ite
 
 
 def _tree_parts(owner: tree.KinematicTree | tree.Graph, path: str) -> Iterator[Symbol]:
-    """Bodies with their frames and poses, and joints."""
+    """Yield bodies with their frames and poses, and joints."""
     for entry in owner.entries:
         match entry:
             case tree.RigidBody():
@@ -134,7 +134,7 @@ def _body_parts(body: tree.RigidBody, path: str) -> Iterator[Symbol]:
 
 
 def _clauses(node: tree.Node, path: str, namespace: str | None) -> Iterator[Symbol]:
-    """Fluents, behaviours and quantified variables of a template or variant."""
+    """Yield fluents, behaviours and quantified variables of a template or variant."""
     for part in walk(node):
         match part:
             case tree.Fluent():
@@ -153,10 +153,10 @@ def _symbol(path: str, name: tree.Name, kind: SymbolKind, extent: Span, namespac
 
 
 def references(root: tree.Node, scopes: tuple[str, ...] = ()) -> tuple[Reference, ...]:
-    """Return every use of a name in a declaration, or in a part of one inside ``scopes``, in the order of the text."""
+    """Return every use of a name in a declaration, or in a part of one inside ``scopes``, in text order."""
     found: list[Reference] = []
     _collect(root, scopes, found)
-    # An event from which a duration was derived stands in the tree twice, but once in the text.
+    # An event from which a duration was derived occurs twice in the tree, but once in the text.
     every = (reference for reference in dict.fromkeys(found) if reference.ref.path != HOLE)
     return tuple(sorted(every, key=lambda reference: reference.ref.span))
 
@@ -180,14 +180,14 @@ def children(node: tree.Node) -> Iterator[tree.Node]:
 
 
 def walk(node: tree.Node) -> Iterator[tree.Node]:
-    """Yield a node and all below it, in the order of the grammar."""
+    """Yield a node and all its descendants, in the order of the grammar."""
     yield node
     for child in children(node):
         yield from walk(child)
 
 
 def walk_at(node: tree.Node, offset: int) -> Iterator[tree.Node]:
-    """Yield those of a node and all below it, in the order of the grammar, that an offset is in or at an end of."""
+    """Yield a node and its descendants that contain or touch an offset, in the order of the grammar."""
     if node.span.contains(offset):
         yield node
         for child in children(node):

@@ -1,7 +1,7 @@
-"""The only door to textX: the reference for what the grammars mean.
+"""The only module that uses textX, the reference for the meaning of the grammars.
 
-textX has no type information and builds its classes at run time, so its objects go by the name ``RawNode``. It is
-imported when it is needed, which is for grammars beyond what ``peg`` reads, and in tests.
+textX has no type information and builds its classes at run time, so its objects have the type ``RawNode``. It is
+imported on demand: for grammars that ``peg`` does not support, and in tests.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
 
 
 def parse_with_textx(language: str, text: str) -> Parsed | Rejected:
-    """Parse what ``parse_chunk`` parses, by textX itself."""
+    """Parse with textX what ``parse_chunk`` parses."""
     textx: Any = import_module("textx")
     try:
         chunk = _metamodel(language).model_from_str(text)
@@ -38,7 +38,7 @@ def _expectation(rules: Any) -> Expectation:
     names: set[str] = set()
     for rule in rules or ():
         keyword = getattr(rule, "to_match", None)
-        # The separator of a repetition is a keyword that textX names "sep".
+        # textX names the separator of a repetition "sep".
         if rule.rule_name and rule.rule_name != "sep":
             names.add(str(rule.rule_name))
         elif keyword is not None:

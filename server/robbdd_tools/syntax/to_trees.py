@@ -1,4 +1,4 @@
-"""The parser's objects to our frozen trees."""
+"""Convert the parser's objects to our frozen trees."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _KINDS = {"obj": "object", "ws": "workspace", "agn": "agent"}
 
 
 def convert(raw: RawNode, text: str) -> Any:
-    """Return the tree node of a parser's object made from ``text``, which may have been repaired by signs behind it."""
+    """Return the tree node of a parser's object for ``text``, which repairs may have extended."""
     checkpoint()
     rule = type(raw).__name__
     span = Span(min(raw._tx_position, len(text)), min(raw._tx_position_end, len(text)))
@@ -54,7 +54,7 @@ def _value(value: Any, text: str) -> Any:
 
 
 def _phrase_arguments(raw: RawNode, text: str) -> tuple[tuple[str, tree.Ref | tree.Name], ...]:
-    """Slots in the order in which they are written."""
+    """Return the slots in written order."""
     fields_of_raw = cast(dict[str, Any], vars(raw))
     slots: list[tuple[str, tree.Ref | tree.Name]] = [
         (name, convert(value, text)) for name, value in fields_of_raw.items() if name[0] != "_" and name != "parent"
@@ -63,7 +63,7 @@ def _phrase_arguments(raw: RawNode, text: str) -> tuple[tuple[str, tree.Ref | tr
 
 
 def _text(raw: RawNode, span: Span, _: str) -> tree.Text:
-    written = re.sub(r"\r\n?", "\n", raw.raw[1:-1])  # a string means the same whatever ends the lines of its file
+    written = re.sub(r"\r\n?", "\n", raw.raw[1:-1])  # A string's value does not depend on the line endings of its file.
     value = re.sub(r"\\(.)", lambda match: _ESCAPES.get(match[1], match[1]), written, flags=re.DOTALL)
     return tree.Text(span, value)
 
@@ -75,7 +75,7 @@ def _number(raw: RawNode, span: Span, _: str) -> tree.Number:
 
 
 def _inner(field: str) -> Callable[[RawNode, Span, str], Any]:
-    """A rule that only puts words around one of its parts."""
+    """Return a converter for a rule that only wraps one of its parts in words."""
     return lambda raw, _, text: _value(getattr(raw, field), text)
 
 
@@ -84,7 +84,7 @@ def _given(node: type[tree.Node], **given: Any) -> Callable[[RawNode, Span, str]
 
 
 def _clauses(raw: RawNode, span: Span, text: str) -> tree.Expression:
-    """Several clauses in a row mean *and*."""
+    """Join several clauses in a row by *and*."""
     found: tuple[tree.Expression, ...] = _value(raw.clauses, text)
     return found[0] if len(found) == 1 else tree.Conjunction(span, found)
 
@@ -113,7 +113,7 @@ def _variant(raw: RawNode, span: Span, text: str) -> tree.Variant:
 
 
 def _qualified(assignment: tree.Assignment, template: str) -> tree.Assignment:
-    """A variable that can be this or that is one of the variant's template, if it is written without its name."""
+    """Qualify an unqualified variable of an assignment with the variant's template."""
     variable = assignment.variable
     if "." in variable.path:
         return assignment

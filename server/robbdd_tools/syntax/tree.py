@@ -1,4 +1,4 @@
-"""The syntax trees under one name: what the shared grammar and those of the file kinds are read into."""
+"""All syntax trees under one name: the shared ones and those of each file kind."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ DeclarationTree = (
     | Execution
 )
 ChunkTree = DeclarationTree | Variant
-"""What a ``Declaration`` may hold: a scenario that is read by itself is one, too."""
+"""Tree of a ``Declaration``; a scenario parsed by itself is one too."""
 
 __all__ = [
     "Actuation",

@@ -1,1 +1,1 @@
-"""Recorded evidence: stored traces, read and written without a simulator."""
+"""Store and read traces, without a simulator."""

@@ -1,4 +1,4 @@
-"""A trace as bytes and back, equal to the last bit: whatever fields a trace has or gets."""
+"""Encode traces as bytes and decode them, bit for bit; works for any dataclass fields."""
 
 from __future__ import annotations
 
@@ -17,38 +17,39 @@ from robbdd_tools.monitor.trace import EventStamp, Trace
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What clauses are judged on: a trace, and the regions of its scene's workspaces."""
+    """Data that clauses are judged on: a trace, and the regions of its scene's workspaces."""
 
     trace: Trace
     regions: Regions
 
 
 KINDS: Mapping[str, Any] = {kind.__name__: kind for kind in (Evidence, Trace, Contact, EventStamp, Region)}
-"""The dataclasses that may occur; anything else would not come back."""
+"""The dataclasses that may occur; others cannot be restored."""
 
 
 def pack(evidence: Evidence) -> bytes:
-    """Return the length (8 bytes, little-endian) of a JSON description, this, and the arrays, each series in one piece.
+    """Return the length (8 bytes, little-endian) of a JSON description, the description, and the arrays one after
+    another.
 
     Raises ``TypeError`` for a value that could not be restored.
     """
     arrays: list[np.ndarray[Any, Any]] = []
     head = json.dumps(_described(evidence, arrays), ensure_ascii=False).encode()
-    # Time runs fastest: the many series that never change then nearly vanish when the file is compressed.
+    # Time is the fastest index: the many constant series then compress to almost nothing.
     return b"".join((len(head).to_bytes(8, "little"), head, *(array.tobytes(order="F") for array in arrays)))
 
 
 def unpack(data: bytes) -> Evidence:
-    """Restore what ``pack`` made; raises ``ValueError``, ``KeyError`` or ``TypeError`` for other bytes."""
+    """Decode the bytes of ``pack``; raises ``ValueError``, ``KeyError`` or ``TypeError`` for other bytes."""
     start = 8 + int.from_bytes(data[:8], "little")
     found = _restored(json.loads(data[8:start]), _Arrays(data, start))
     if not isinstance(found, Evidence):
-        raise TypeError("these bytes hold no trace")
+        raise TypeError("these bytes contain no trace")
     return found
 
 
 class _Arrays:
-    """Reads arrays off, one after the other."""
+    """Reads arrays one after another."""
 
     def __init__(self, data: bytes, start: int) -> None:
         self._data = data
@@ -89,7 +90,7 @@ def _restored(value: Any, arrays: _Arrays) -> Any:
         case {"kind": name, "fields": entries}:
             missing = [field for field in fields(KINDS[name]) if field.name not in entries]
             if len(entries) + len(missing) != len(fields(KINDS[name])) or not all(map(_is_optional, missing)):
-                raise TypeError(f"another version wrote this {name}")
+                raise TypeError(f"this {name} was written by another version")
             found = KINDS[name](**{field: _restored(inner, arrays) for field, inner in entries.items()})
             return _completed(found) if name == "Trace" and "immovable" not in entries else found
         case {"map": entries}:
@@ -105,9 +106,9 @@ def _is_optional(field: Field[Any]) -> bool:
 
 
 def _completed(trace: Trace) -> Trace:
-    """Tell of an older trace what cannot be pushed: what has configurations, but no mass.
+    """Add to an older trace which elements are immovable: those with configurations but without a mass.
 
-    Its contact forces cannot be made up for: what is judged by them is unknown.
+    Its contact forces cannot be reconstructed: clauses judged by force are unknown.
     """
     elements = {element for element, _ in trace.settings}
     immovable = (name for name in trace.names if name in elements and (name, "mass") not in trace.settings)

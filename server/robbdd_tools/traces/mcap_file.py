@@ -1,9 +1,9 @@
-"""Traces in MCAP, the robotics log format: the exact trace for us, and what viewers and plotters show of it.
+"""Traces in MCAP, the robotics log format: the exact trace, and topics for viewers and plotters.
 
 Topics: ``/trace`` (one message: the bytes of ``codec``), ``/tf`` (foxglove.FrameTransforms), ``/scene``
 (foxglove.SceneUpdate), ``/geometry`` (the same with meshes, for our own views), ``/joints``, ``/events`` and
-``/verdicts`` (JSON with the schemas below). Times are simulated;
-nothing depends on the wall clock, so equal executions give equal files.
+``/verdicts`` (JSON with the schemas below). Times are simulated; nothing depends on the wall clock, so equal executions
+give equal files.
 """
 
 from __future__ import annotations
@@ -67,18 +67,18 @@ SCHEMAS: Mapping[str, tuple[str, dict[str, Any]]] = {
         _object(iri=TEXT, name=TEXT, role=TEXT, sentence=TEXT, verdict=TEXT, robustness=NUMBER, unit=TEXT, reason=TEXT),
     ),
 }
-"""Topic to the name of its messages' type and the JSON schema of these."""
+"""Topic to the name and JSON schema of its messages' type."""
 
 View = tuple[float, str, Any]
-"""Something to be seen: simulated time (s), topic, message."""
+"""A message for viewers: simulated time (s), topic, message."""
 
 
 class UnreadableTrace(RobbddError):
-    """A file is no trace of ours; the message says why."""
+    """A file is not a trace of this tool; the message gives the reason."""
 
 
 def write_trace(path: Path, evidence: Evidence, views: Iterable[View]) -> None:
-    """Write a trace and what is to be seen of it; raises ``OSError``, and ``TypeError`` as ``pack``."""
+    """Write a trace and its messages for viewers; raises ``OSError``, and ``TypeError`` as ``pack``."""
     data = pack(evidence)
     path.parent.mkdir(exist_ok=True)
     with replacing_bytes(path) as file:
@@ -103,19 +103,19 @@ def read_trace(path: Path) -> Evidence:
         with open_regular(path) as file:
             for _, _, message in make_reader(file, validate_crcs=True).iter_messages(topics=[TRACE]):
                 return unpack(message.data)
-    except Exception as error:  # in damaged bytes each decoder finds faults of types of its own
+    except Exception as error:  # On damaged bytes each decoder raises exceptions of its own types.
         raise UnreadableTrace(f"{path} {_wrong_with_it(error)}") from error
     raise UnreadableTrace(f"{path} holds no trace")
 
 
 def read_views(path: Path, topics: Sequence[str]) -> Mapping[str, list[tuple[float, Any]]]:
-    """Return time (s) and message of what is to be seen, by topic; raises ``UnreadableTrace``."""
+    """Return time (s) and message of the viewers' messages, by topic; raises ``UnreadableTrace``."""
     found: dict[str, list[tuple[float, Any]]] = {topic: [] for topic in topics}
     try:
         with open_regular(path) as file:
             for _, channel, message in make_reader(file, validate_crcs=True).iter_messages(topics=list(topics)):
                 found[channel.topic].append((message.log_time / 1e9, json.loads(message.data)))
-    except Exception as error:  # in damaged bytes each decoder finds faults of types of its own
+    except Exception as error:  # On damaged bytes each decoder raises exceptions of its own types.
         raise UnreadableTrace(f"{path} {_wrong_with_it(error)}") from error
     return found
 
@@ -125,4 +125,4 @@ def _wrong_with_it(error: Exception) -> str:
         return "is gone"
     if isinstance(error, OSError):
         return f"cannot be read: {error.strerror or error}"
-    return "is damaged, or another version wrote it: run the scenario again"
+    return "is damaged, or was written by another version: run the scenario again"

@@ -12,5 +12,5 @@ PICK = Behaviour(
     ),
     sentence='"{agent}" picks "{object}"',
     events=("pick-start", "pick-end"),
-    doc="The agent grasps the object where it lies and lifts it.",
+    doc="The agent grasps the object at its place and lifts it.",
 )

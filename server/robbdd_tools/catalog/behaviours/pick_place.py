@@ -13,6 +13,6 @@ PICK_PLACE = Behaviour(
     ),
     sentence='"{agent}" picks "{object}" and places it at "{workspace}"',
     events=("pick-start", "pick-end", "place-start", "place-end"),
-    doc="The agent grasps the object where it lies, carries it to the workspace and releases it there.",
+    doc="The agent grasps the object at its place, carries it to the workspace and releases it there.",
     aliases=("<agent> picks <object> and places it at <workspace>",),
 )

@@ -13,5 +13,5 @@ PLACE = Behaviour(
     ),
     sentence='"{agent}" places "{object}" at "{workspace}"',
     events=("place-start", "place-end"),
-    doc="The agent carries the object that it holds to the workspace and releases it there.",
+    doc="The agent carries the held object to the workspace and releases it there.",
 )

@@ -1,1 +1,1 @@
-"""Things of the simulated world, one per file."""
+"""Object models of the simulated world, one per file."""

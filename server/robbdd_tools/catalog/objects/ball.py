@@ -15,5 +15,5 @@ BALL = ObjectModel(
     graspable=True,
     rest_height=RADIUS,
     color=(0.20, 0.45, 0.80, 1.0),
-    doc="A ball with a radius of 30 mm, of the weight of a tennis ball.",
+    doc="A ball with a radius of 30 mm and the mass of a tennis ball.",
 )

@@ -1,4 +1,4 @@
-"""An open bin that stands loose on a table: whoever hits it pushes it."""
+"""An open bin, loose on a table: a hit pushes it."""
 
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 

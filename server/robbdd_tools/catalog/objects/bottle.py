@@ -1,4 +1,4 @@
-"""A small bottle, which grippers take by its neck."""
+"""A small bottle; grippers grasp its neck."""
 
 from robbdd_tools.catalog.api import ObjectModel, Shape, ShapeKind
 
@@ -20,5 +20,5 @@ BOTTLE = ObjectModel(
     graspable=True,
     rest_height=HEIGHT / 2,
     color=(0.30, 0.60, 0.45, 1.0),
-    doc="A bottle of 60 mm diameter and 120 mm height with a neck of 32 mm; poses place the middle of its body.",
+    doc="A bottle of 60 mm diameter and 120 mm height with a neck of 32 mm; its poses refer to the middle of its body.",
 )

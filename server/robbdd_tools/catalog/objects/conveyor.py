@@ -1,17 +1,16 @@
-"""A short belt conveyor that stands on a table and ends at a fixed stop."""
+"""A short belt conveyor on a table, with a fixed stop at its end."""
 
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 
 LENGTH, WIDTH, HEIGHT = 0.74, 0.16, 0.05
-"""Extent along y (the way that things ride, from left to right of the robot) and x, and height of the belt's top, m."""
+"""Extent along y (the direction of travel, from the robot's left to its right) and x; height of the belt's top, m."""
 BELT = 0.008
 """Thickness of the belt, m."""
 GAP = 0.001
-"""Between the belt and what it runs over and under, m."""
+"""Clearance between the belt and the parts next to it, m."""
 STOP, STOP_HEIGHT = 0.06, 0.02
-"""Length of the stop and its height above the belt, m. No open finger comes down behind it, where closing would press
-on the stop: things are gripped from the belt's sides.
-"""
+"""Length of the stop and its height above the belt, m. An open finger does not fit behind it, where it would press on
+the stop when closing: objects are gripped from the belt's sides."""
 SPACE = 0.10
 """Height of the workspace above the belt, m."""
 SPEED = 0.10

@@ -1,4 +1,4 @@
-"""A wooden cube, the larger of the two kinds of thing that the paper's robots pick."""
+"""A wooden cube, the larger of the two object types that the paper's robots pick."""
 
 from robbdd_tools.catalog.api import ObjectModel, Shape, ShapeKind
 
@@ -15,5 +15,5 @@ CUBE = ObjectModel(
     graspable=True,
     rest_height=HALF,
     color=(0.85, 0.27, 0.20, 1.0),
-    doc="A cube with an edge of 31.5 mm, of the weight of hard plastic.",
+    doc="A cube with an edge of 31.5 mm and the density of hard plastic.",
 )

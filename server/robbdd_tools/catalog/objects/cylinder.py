@@ -1,4 +1,4 @@
-"""A solid cylinder that stands upright."""
+"""An upright solid cylinder."""
 
 from robbdd_tools.catalog.api import ObjectModel, Shape, ShapeKind
 
@@ -15,5 +15,5 @@ CYLINDER = ObjectModel(
     graspable=True,
     rest_height=HALF,
     color=(0.55, 0.35, 0.65, 1.0),
-    doc="An upright cylinder of 44 mm diameter and 60 mm height, of the weight of a filled small can.",
+    doc="An upright cylinder of 44 mm diameter and 60 mm height with the mass of a small filled can.",
 )

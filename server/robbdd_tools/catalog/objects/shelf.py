@@ -1,4 +1,4 @@
-"""A small stepped shelf that stands on a table: a gripper that points down reaches both of its boards."""
+"""A small stepped shelf on a table: a gripper that points down reaches both of its boards."""
 
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind, Vector
 
@@ -38,8 +38,8 @@ SHELF = ObjectModel(
     rest_height=0.0,
     color=(0.62, 0.50, 0.36, 1.0),
     doc=(
-        "A stepped shelf of 0.48 m with boards 0.05 m and 0.12 m high. A workspace whose name holds 'lower' or 'upper' "
-        "is the space above that board, any other one that above both."
+        "A stepped shelf of 0.48 m with boards 0.05 m and 0.12 m high. A workspace whose name contains 'lower' or "
+        "'upper' is the space above that board, any other one the space above both."
     ),
     region=Region((0.0, 0.0, (UPPER + SPACE) / 2), (DEPTH / 2, WIDTH / 2, (UPPER + SPACE) / 2)),
     places=((0.19, 0.0, 0.0), (0.19, 0.50, 0.0), (0.19, -0.50, 0.0)),

@@ -1,4 +1,4 @@
-"""A table that the robot works at."""
+"""A table in front of the robot."""
 
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 
@@ -9,7 +9,7 @@ SLAB = 0.04
 LEG = 0.03
 """Half edge of a leg, m."""
 SPACE = 0.15
-"""Height of the workspace above the top, m: what an arm has lifted higher is no longer on the table."""
+"""Height of the workspace above the top, m: an object lifted higher is no longer on the table."""
 
 
 def _shapes() -> tuple[Shape, ...]:
@@ -31,7 +31,7 @@ TABLE = ObjectModel(
     graspable=False,
     rest_height=HEIGHT,
     color=(0.80, 0.74, 0.64, 1.0),
-    doc="A table with a top of 0.70 × 1.50 m; poses place the middle of the top, its workspace is 0.15 m above it.",
+    doc="A table with a top of 0.70 × 1.50 m; its poses refer to the middle of the top, its workspace is 0.15 m high.",
     region=Region(center=(0.0, 0.0, SPACE / 2), half=(LENGTH / 2, WIDTH / 2, SPACE / 2)),
     places=((0.50, 0.0, 0.0), (-0.55, 0.0, 0.0)),
 )

@@ -1,4 +1,4 @@
-"""A flat tray that stands loose on a table."""
+"""A flat tray, loose on a table."""
 
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 
@@ -7,7 +7,7 @@ LENGTH, WIDTH, HEIGHT = 0.30, 0.22, 0.03
 WALL = 0.005
 """Thickness of rim and bottom, m."""
 SPACE = 0.10
-"""Height of the workspace above the bottom, m: things on a tray are higher than its rim."""
+"""Height of the workspace above the bottom, m: objects on a tray are higher than its rim."""
 
 
 def _shapes() -> tuple[Shape, ...]:

@@ -1,4 +1,4 @@
-"""An agent does not collide with a target: the way that the target is pushed (paper), or the force on it."""
+"""An agent does not collide with a target, judged by the target's displacement (paper) or by contact force."""
 
 from __future__ import annotations
 
@@ -11,21 +11,20 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 LIMIT = 0.05
-"""Metres of accumulated displacement that still count as untouched (paper, section on the experiment)."""
+"""Accumulated displacement (m) that still counts as untouched (paper, section on the experiment)."""
 FORCE_LIMIT = 140.0
-"""Newtons of contact force on what cannot be pushed. ISO/TS 15066:2016, table A.2: the largest permissible force of a
-quasi-static contact with hands and fingers, which are what is clamped between an arm and a work surface.
-"""
+"""Contact force (N) on an immovable target. ISO/TS 15066:2016, table A.2: the largest permissible force of a
+quasi-static contact with hands and fingers, the body parts that an arm can clamp against a work surface."""
 METRES, NEWTONS, SHARE = "m", "N", ""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Return limit minus displacement (m) or limit minus contact force (N) at each sample, shape (n,).
 
-    By force are judged a target that has a ``force_limit``, and one that is not pushed: a fixed object, or an agent;
-    by displacement any other: the path that it has travelled since the window opened. A target that is a workspace
-    stands for the objects that carry it; the one with the smallest margin counts. Where some of them can be pushed and
-    others cannot, each margin is divided by its limit.
+    A target is judged by force if it has a ``force_limit`` or is immovable (a fixed object, or an agent), otherwise by
+    displacement: the length of its path since the window opened. A workspace is represented by the objects that carry
+    it; the smallest margin counts. If some of these are judged by force and others by displacement, each margin is
+    divided by its limit.
     """
     import numpy as np
 
@@ -41,7 +40,7 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
 
 
 def unit(evidence: Evidence, arguments: Arguments) -> str:
-    """Return newtons for a target judged by force, metres for one judged by displacement, nothing for a mixed one."""
+    """Return newtons for a target judged by force, metres for displacement, and no unit for a mix."""
     by_force, by_way = _split(evidence, carriers_of(evidence, str(arguments["target"])))
     if by_force and by_way:
         return SHARE
@@ -49,7 +48,7 @@ def unit(evidence: Evidence, arguments: Arguments) -> str:
 
 
 def _split(evidence: Evidence, carriers: list[str]) -> tuple[list[str], list[str]]:
-    """Return the carriers that are judged by force, and those judged by displacement."""
+    """Return the carriers judged by force, and those judged by displacement."""
     if limit_of(evidence, carriers, "force_limit") is not None:
         return carriers, []
     by_force = [carrier for carrier in carriers if evidence.is_immovable(carrier)]
@@ -67,10 +66,10 @@ DOES_NOT_COLLIDE = Predicate(
     sentence='"{agent}" does not collide "{target}"',
     unit=METRES,
     doc=(
-        "The target is not pushed: the path it travels within the window stays below 0.05 m (displacement_limit). What "
-        "cannot be pushed (a fixed object, an agent) is not hit: the contact force of the agent, and of what it grips "
-        "beyond its weight, stays below 140 N (force_limit), the limit of ISO/TS 15066 for a hand that is clamped. "
-        "With a force_limit, any target is judged by force."
+        "The target is not pushed: the path it travels within the window stays below 0.05 m (displacement_limit). An "
+        "immovable target (a fixed object, an agent) is not hit: the contact force of the agent, and of the object "
+        "that it grips beyond its weight, stays below 140 N (force_limit), the limit of ISO/TS 15066 for a clamped "
+        "hand. With a force_limit, any target is judged by force."
     ),
     evaluate=margin,
     unit_for=unit,

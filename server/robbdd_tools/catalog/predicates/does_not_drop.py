@@ -1,4 +1,4 @@
-"""An agent does not drop an object: the object is held, or at rest on a workspace, or hardly falls in between."""
+"""An agent does not drop an object: the object is held, at rest on a workspace, or falls only slightly in between."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 LIMIT = 0.05
-"""Height (m) that an object may fall when it is let go of: gripper and cup release above a surface, not on it."""
+"""Height (m) that a released object may fall: gripper and cup release above a surface, not on it."""
 AT_REST = 0.01
 """Speed (m/s) below which an object is at rest."""
 REST_TIME = 0.1
-"""Seconds without a grip for which an object must have been that slow: a moment without contact is not rest."""
+"""Seconds without a grip for which an object must have been that slow: a brief loss of contact is not rest."""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Return the height (m) that the object is still allowed to fall, shape (n,).
+    """Return the height (m) that the object may still fall, shape (n,).
 
-    ``LIMIT`` while it is held; otherwise ``LIMIT`` minus the height that it has lost since it was last held or at
-    rest and, when it is at rest, no more than its distance to the faces of the best workspace (negative outside).
+    ``LIMIT`` while it is held; otherwise ``LIMIT`` minus its drop since it was last held or at rest and, if it is at
+    rest, at most its distance to the faces of the best workspace (negative outside).
     """
     import numpy as np
 
@@ -44,7 +44,8 @@ def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
 
 
 def _resting(times: FloatArray, position: FloatArray, held: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Tell where an object (positions (n, 3) m) has been slow and free for ``REST_TIME`` within the window."""
+    """Return at which samples an object (positions (n, 3) m) has been slow and free for ``REST_TIME`` within the
+    window."""
     import numpy as np
 
     way = np.linalg.norm(np.diff(position, axis=0), axis=1)
@@ -63,6 +64,6 @@ DOES_NOT_DROP = Predicate(
     ),
     sentence='"{agent}" does not drop "{object}"',
     unit="m",
-    doc="The object is held by the agent or rests on a workspace; in between it falls by less than 0.05 m.",
+    doc="The object is held by the agent or at rest on a workspace; in between it falls by less than 0.05 m.",
     evaluate=margin,
 )

@@ -1,4 +1,4 @@
-"""A target has a configuration value: set up before the scenario starts, read back from the world, then compared."""
+"""A target has a configuration value: set before the scenario starts, read back from the world, then compared."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 TOLERANCE = 1e-6
-"""Relative difference that is put down to floating-point numbers."""
+"""Relative difference attributed to floating-point rounding."""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Return 1 where the value that was read back is the one wanted and -1 elsewhere, shape (n,).
+    """Return 1 where the value read back is the wanted one and -1 elsewhere, shape (n,).
 
-    Raises ``SettingError`` for a name or a value that does not exist.
+    Raises ``SettingError`` for an unknown name or an invalid value.
     """
     import numpy as np
 
@@ -48,7 +48,7 @@ HAS_CONFIG = Predicate(
     unit="",
     doc=(
         "The target is set up with this value: position_range (m), height_scale, ee_speed, approach_speed (m/s), "
-        "travel_height (m), grip_time, release_time (s), mass (kg), friction or seed; or judged by it: max_speed "
+        "travel_height (m), grip_time, release_time (s), mass (kg), friction or seed; or it is judged by it: max_speed "
         "(m/s), displacement_limit (m), force_limit (N), whole_object, exactly_one."
     ),
     evaluate=margin,

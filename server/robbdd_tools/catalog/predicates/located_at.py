@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
     """Distance (m) of the object's position to the nearest face of the workspace, positive inside, shape (n,).
 
-    A workspace made of several regions counts as their union; with the configuration ``whole_object`` all of the
-    object counts.
+    Several regions of a workspace count as their union; with the configuration ``whole_object`` the whole object
+    counts.
     """
     return inside_margin(evidence, str(arguments["object"]), (str(arguments["workspace"]),))
 
@@ -30,6 +30,6 @@ LOCATED_AT = Predicate(
     ),
     sentence='"{object}" is located at "{workspace}"',
     unit="m",
-    doc="The object's position (with whole_object all of it) lies inside a bin, or above a table top.",
+    doc="The object's position (with whole_object its whole body) lies inside a bin, or above a table top.",
     evaluate=margin,
 )

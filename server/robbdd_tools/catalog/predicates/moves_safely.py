@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 LIMIT = 0.25
-"""Speed (m/s) of the tool centre point up to which a robot may move beside people: the reduced speed of ISO 10218-1."""
+"""Largest speed (m/s) of the tool centre point next to people: the reduced speed of ISO 10218-1."""
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:

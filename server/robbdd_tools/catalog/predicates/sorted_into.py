@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 
 def margin(evidence: Evidence, arguments: Arguments) -> FloatArray:
-    """Margin (m) of the object that is least inside any of the workspaces, shape (n,).
+    """Margin (m) of the object with the smallest margin to be inside any of the workspaces, shape (n,).
 
-    Where an object or a workspace has the configuration ``exactly_one``, being inside a second workspace counts
-    against it.
+    If an object or a workspace has the configuration ``exactly_one``, being inside a second workspace counts against
+    it.
     """
     import numpy as np
 
@@ -43,6 +43,6 @@ SORTED_INTO = Predicate(
     ),
     sentence='"{objects}" are sorted into "{workspaces}"',
     unit="m",
-    doc="Every object of the set lies in some workspace of the set, with exactly_one in no second one.",
+    doc="Every object of the set lies in some workspace of the set; with exactly_one in only one.",
     evaluate=margin,
 )

@@ -19,7 +19,7 @@ KINOVA_GEN3 = RobotModel(
     pads=("left_pad", "right_pad"),
     mount=(0.15, 0.0, 0.24),
     stroke=0.085,
-    doc="Kinova Gen3: seven axes, two-finger gripper with an opening of 85 mm that grips by friction at 20 N.",
+    doc="Kinova Gen3: seven axes, two-finger gripper with an opening of 85 mm and a friction grip of 20 N.",
     source=(
         "Kinematics (classic Denavit-Hartenberg), ranges of joints 2, 4 and 6 and the largest tool speed of 0.5 m/s: "
         "Kinova, 'KINOVA Gen3 Ultra lightweight robot User Guide'. Masses, centres of mass and "

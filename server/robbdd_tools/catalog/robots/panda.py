@@ -19,7 +19,7 @@ PANDA = RobotModel(
     pads=("left_pad", "right_pad"),
     mount=(0.0, 0.0, 0.15),
     stroke=0.08,
-    doc="Franka Emika Panda: seven axes, parallel gripper with an opening of 80 mm that grips by friction at 15 N.",
+    doc="Franka Emika Panda: seven axes, parallel gripper with an opening of 80 mm and a friction grip of 15 N.",
     source=(
         "Kinematics (modified Denavit-Hartenberg), joint position, velocity and torque limits, hand and tool centre "
         "point: Franka Emika, Robot and interface specifications of the Franka Control Interface documentation. "

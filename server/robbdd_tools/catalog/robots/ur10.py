@@ -19,7 +19,7 @@ UR10 = RobotModel(
     pads=("cup",),
     mount=(0.0, 0.0, 0.20),
     stroke=0.030,
-    doc="Universal Robots UR10: six axes, a suction cup of 30 mm that lets go at 42 N and grips only what it touches.",
+    doc="Universal Robots UR10: six axes, a suction cup of 30 mm that releases at 42 N and grips only what it touches.",
     source=(
         "Denavit-Hartenberg parameters, masses, centres of mass and inertias of the links: Universal Robots, 'DH "
         "Parameters for calculations of kinematics and dynamics', and with five digits config/ur10/"
