@@ -73,6 +73,16 @@ test("the Testing view runs what is chosen there with options", async () => {
   assert.deepEqual(asked, [{ uri: MODEL.toString(), only: [{ variant: "t:fetch" }, { variant: "t:sort" }], jobs: 2 }]);
 });
 
+test("catalog behaviours in place of implementations are sent by name, and typing errors are refused", async () => {
+  open();
+  await run(MODEL, ["Behaviours", "Run"], ["pick-server=pick-place, exec:other = place"]);
+  assert.deepEqual(asked, [{ uri: MODEL.toString(), bhv: { "pick-server": "pick-place", "exec:other": "place" } }]);
+  await run(MODEL, ["Behaviours"], ["pick-server"]);
+  assert.deepEqual(editor.problems, ["NAME=BEHAVIOUR, such as my-server=pick-place, separated by commas."]);
+  await run(MODEL, ["Run"]);
+  assert.equal(offered(), "with pick-server=pick-place, exec:other = place");
+});
+
 test("what is remembered is used as far as it is usable", () => {
   assert.deepEqual(optionsIn(undefined), {});
   assert.deepEqual(optionsIn({ repeat: 0, jobs: "2", seed: 1.5, where: "", amount: { kind: "pairwise", number: 4 } }), {});

@@ -10,6 +10,7 @@ import pytest
 from kit import EXAMPLES
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
+from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.lsp.convert import Converter
 from robbdd_tools.lsp.run_options import BadArgument, RunOptions
 from robbdd_tools.lsp.run_request import plan_run
@@ -56,6 +57,21 @@ def test_the_same_options_plan_the_same_executions(path: Path, options: dict[str
     assert keys(planned(path, tmp_path / "planned", **options)) == keys(expected)
 
 
+def test_a_substitution_of_the_command_counts_before_that_of_the_settings(tmp_path: Path) -> None:
+    project, uri = Project(), path_to_uri(EXECUTED)
+    project.load(uri)
+
+    def executed(options: dict[str, Any], settings: dict[str, str]) -> set[str]:
+        run = plan_run(project.snapshot(), Converter(), RunOptions.of({"uri": uri, **options}), (), settings)
+        return {str(spec.substitution) for spec in run.plan.prepare(tmp_path).scenarios}
+
+    assert executed({}, {"other": "pick-place"}) == {"None"}
+    (by_setting,) = executed({}, {"built-in": "pick-place"})
+    assert "'pick-place' substitutes" in by_setting
+    with pytest.raises(SelectionError, match="no behaviour 'none'"):
+        executed({"bhv": {"built-in": "none"}}, {"built-in": "pick-place"})
+
+
 def failed(variation: int, repetition: int, run: int, seed: int | None) -> JudgedScenario:
     judgement = Judgement("at-goal", "violated", "", 0.0, "", "")
     return JudgedScenario(
@@ -90,6 +106,7 @@ def test_nothing_failed_where_only_others_did(tmp_path: Path) -> None:
         ({"only": [{"variant": VARIANT, "variations": ["1"]}]}, "no usable 'only'"),
         ({"only": [{"variant": VARIANT, "execution": 1}]}, "no usable 'only'"),
         ({"record": 1}, "'record': it must be true or false"),
+        ({"bhv": {"built-in": 1}}, "'bhv': it must be an object"),
     ],
 )
 def test_a_bad_option_is_named_with_its_form(options: dict[str, Any], words: str) -> None:

@@ -232,3 +232,13 @@ def test_names_are_unique_and_short(bench: Path) -> None:
     assert long.endswith("-#1]")
     assert scenario_names([named(spec)]) == ["bench-to-tray"]
     assert scenario_names([named(spec, text="a\nb")]) == [r"bench-to-tray[a\nb]"]
+
+
+def test_a_substitution_needs_an_implementation_of_a_collected_model(pytester: pytest.Pytester) -> None:
+    shutil.copytree(EXAMPLES / "pickplace", pytester.path / "cell")
+    assert collected(pytester, "--robbdd", "--robbdd-bhv", "built-in=pick-place", "cell")
+    done = session(pytester, "--robbdd", "--robbdd-bhv", "server=pick-place", "--collect-only", "cell")
+    assert done.ret == pytest.ExitCode.USAGE_ERROR
+    assert "there is no behaviour implementation 'server'; the executions use built-in" in done.stderr.str()
+    done = session(pytester, "--robbdd", "--robbdd-bhv", "built-in", "cell")
+    assert "--robbdd-bhv: 'built-in' is not NAME=BEHAVIOUR" in done.stderr.str()

@@ -1,6 +1,6 @@
 // Asks for the options of a run, and remembers them for each workspace folder.
 import * as vscode from "vscode";
-import { type Amount, type OptionName, type RunOptions, numberProblem, optionsIn, summaryOf, typedNumber, withOption, wordsOf } from "./options";
+import { type Amount, type OptionName, type RunOptions, numberProblem, optionsIn, substitutionProblem, summaryOf, typedNumber, withOption, wordsOf } from "./options";
 
 const KEY = "robbdd.runOptions";
 const TITLE = "Run with Options";
@@ -44,6 +44,7 @@ function entries(options: RunOptions): Entry[] {
     option("$(sync) Repetitions", "repeat"),
     option("$(symbol-numeric) Seed", "seed"),
     option("$(server-process) Processes", "jobs"),
+    option("$(replace) Behaviours", "bhv"),
     ...(Object.keys(options).length === 0 ? [] : [{ label: "$(discard) Reset", description: "leave all to the model", action: "reset" } as const]),
   ];
 }
@@ -64,6 +65,11 @@ async function change(options: RunOptions, name: OptionName): Promise<RunOptions
       return changeNumber(options, name, "The seed of everything random; it replaces those of executions.", Number.MIN_SAFE_INTEGER);
     case "jobs":
       return changeNumber(options, name, "How many scenarios are executed at a time?");
+    case "bhv": {
+      const prompt = "Catalog behaviours in place of implementations of the .bddx, such as: my-ros-server=pick-place";
+      const typed = await vscode.window.showInputBox({ title: TITLE, prompt, value: options.bhv ?? "", validateInput: substitutionProblem });
+      return typed === undefined ? options : withOption(options, name, typed.trim());
+    }
   }
 }
 

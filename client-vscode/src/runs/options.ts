@@ -16,13 +16,33 @@ export interface RunOptions {
   readonly repeat?: number;
   readonly seed?: number;
   readonly jobs?: number;
+  /** Behaviour implementations and the catalog behaviours that are executed instead: `my-server=pick-place, …`. */
+  readonly bhv?: string;
 }
 
 export type OptionName = keyof RunOptions;
 
 /** The fields of the server's command. */
-export function argumentsOf({ amount, ...others }: RunOptions): Readonly<Record<string, unknown>> {
-  return amount === undefined ? others : { ...others, [amount.kind]: amount.number };
+export function argumentsOf({ amount, bhv, ...others }: RunOptions): Readonly<Record<string, unknown>> {
+  return {
+    ...others,
+    ...(amount === undefined ? {} : { [amount.kind]: amount.number }),
+    ...(bhv === undefined ? {} : { bhv: Object.fromEntries(substitutionsIn(bhv)) }),
+  };
+}
+
+/** What is wrong with typed substitutions; undefined for usable ones and for nothing. */
+export function substitutionProblem(text: string): string | undefined {
+  const isUsable = substitutionsIn(text).every(([name, behaviour]) => name !== "" && behaviour !== "");
+  return isUsable ? undefined : "NAME=BEHAVIOUR, such as my-server=pick-place, separated by commas.";
+}
+
+function substitutionsIn(text: string): [name: string, behaviour: string][] {
+  const entries = text.split(",").map((entry) => entry.trim()).filter((entry) => entry !== "");
+  return entries.map((entry) => {
+    const at = entry.lastIndexOf("=");
+    return at < 0 ? [entry, ""] : [entry.slice(0, at).trim(), entry.slice(at + 1).trim()];
+  });
 }
 
 /** What is usable of remembered options, which an older version may have written. */
@@ -30,13 +50,14 @@ export function optionsIn(remembered: unknown): RunOptions {
   if (!isRecord(remembered)) {
     return {};
   }
-  const { where, amount, repeat, seed, jobs } = remembered;
+  const { where, amount, repeat, seed, jobs, bhv } = remembered;
   return {
     ...(typeof where === "string" && where !== "" ? { where } : {}),
     ...(isAmount(amount) ? { amount } : {}),
     ...(isCount(repeat) ? { repeat } : {}),
     ...(Number.isSafeInteger(seed) ? { seed: seed as number } : {}),
     ...(isCount(jobs) ? { jobs } : {}),
+    ...(typeof bhv === "string" && bhv !== "" && substitutionProblem(bhv) === undefined ? { bhv } : {}),
   };
 }
 
@@ -51,7 +72,7 @@ export function withOption<Name extends OptionName>(
 
 /** An option in words, as it is set or left out. */
 export function wordsOf(options: RunOptions, name: OptionName): string {
-  const { where, amount, repeat, seed, jobs } = options;
+  const { where, amount, repeat, seed, jobs, bhv } = options;
   switch (name) {
     case "where":
       return where ?? "any values";
@@ -63,18 +84,21 @@ export function wordsOf(options: RunOptions, name: OptionName): string {
       return seed === undefined ? "as the model says, else 1" : String(seed);
     case "jobs":
       return jobs === undefined ? "as many as there are cores" : String(jobs);
+    case "bhv":
+      return bhv ?? "as the model says";
   }
 }
 
 /** All options that are set, in one line. */
 export function summaryOf(options: RunOptions): string {
-  const { where, amount, repeat, seed, jobs } = options;
+  const { where, amount, repeat, seed, jobs, bhv } = options;
   const parts = [
     ...(where === undefined ? [] : [`where ${where}`]),
     ...(amount === undefined ? [] : [amountWords(amount)]),
     ...(repeat === undefined ? [] : [wordsOf(options, "repeat")]),
     ...(seed === undefined ? [] : [`seed ${seed}`]),
     ...(jobs === undefined ? [] : [`${jobs} at a time`]),
+    ...(bhv === undefined ? [] : [`with ${bhv}`]),
   ];
   return parts.length === 0 ? "everything as the model says" : parts.join(", ");
 }

@@ -283,8 +283,11 @@ def _check_implementation(implementation: Implementation | None, calls: Iterable
         return
     place = at(implementation.origin)
     if implementation.kind == "ros-action":
-        message = f"the ROS action '{implementation.name}' is not available in simulation"
-        raise SceneError(f'{place}{message}: name a behaviour of the catalog or "py {{ module: …, attr: … }}"')
+        name = implementation.iri.replace("#", "/").rpartition("/")[2]
+        raise SceneError(
+            f"{place}the ROS action '{implementation.name}' is not available in simulation: name a behaviour of the "
+            f'catalog or "py {{ module: …, attr: … }}", or run with --bhv {name}=pick-place'
+        )
     for call in calls:
         if implementation.name not in (call.behaviour, "pick-place"):
             raise SceneError(f"{place}'{implementation.name}' of the catalog does not execute '{call.behaviour}'")

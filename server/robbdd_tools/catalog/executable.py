@@ -25,17 +25,50 @@ class Origin:
         return f"{self.file}:{self.line}:{self.column}"
 
 
+_KINDS = {"catalog": "catalog behaviour", "python": "Python code", "ros-action": "ROS action"}
+
+
+@dataclass(frozen=True, slots=True)
+class Substitution:
+    """A catalog behaviour that a run executes in place of a model's implementation.
+
+    ``implementation`` is the IRI, ``stated`` what the model binds it to (``ROS action '/pick'``), ``executed`` the name
+    of the catalog behaviour.
+    """
+
+    implementation: str
+    stated: str
+    executed: str
+
+    def __str__(self) -> str:
+        """Return the substitution as results state it."""
+        name = self.implementation.replace("#", "/").rpartition("/")[2]
+        return f"catalog behaviour '{self.executed}' substitutes for {self.stated} of '{name}'"
+
+
 @dataclass(frozen=True, slots=True)
 class Implementation:
     """What executes a behaviour: ``kind`` is ``catalog``, ``python`` or ``ros-action``; ``name`` is its name there.
 
-    ``origin`` is its source position, ``None`` for a graph without source text.
+    ``origin`` is its source position, ``None`` for a graph without source text. ``replaced`` is what the model states
+    where a run executes a catalog behaviour instead.
     """
 
     iri: str
     kind: str
     name: str
     origin: Origin | None = None
+    replaced: str = ""
+
+    @property
+    def words(self) -> str:
+        """Kind and name for messages, such as ``ROS action '/pick'``."""
+        return f"{_KINDS[self.kind]} '{self.name}'"
+
+    @property
+    def substitution(self) -> Substitution | None:
+        """The substitution, ``None`` for an implementation as the model states it."""
+        return Substitution(self.iri, self.replaced, self.name) if self.replaced else None
 
 
 @dataclass(frozen=True, slots=True)

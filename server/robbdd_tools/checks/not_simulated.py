@@ -35,11 +35,15 @@ def not_simulated(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         yield Diagnostic(uri, node.span.shifted(placed.offset), Severity.INFORMATION, CODE, message, fixes=fixes)
 
 
+def _simulate(root: tree.Implementation) -> str:
+    return f"write '{_CATALOG}', or run with --bhv {root.name.text}=pick-place"
+
+
 def _ros(root: tree.ChunkTree | None) -> tuple[tree.Node, str, str, str] | None:
     """Return what needs ROS in a declaration, its name, what follows in a simulation, and what may take its place."""
     match root:
         case tree.Implementation(source=tree.RosAction() as source):
-            return source, "ROS action", f"clauses stay unknown; to simulate it, write '{_CATALOG}'", _CATALOG
+            return source, "ROS action", f"clauses stay unknown; to simulate it, {_simulate(root)}", _CATALOG
         case tree.Provider(source=tree.RosTopic() | tree.Transforms() | tree.SimulatedStates() as source):
             truth = "policies that observe by it stay unknown; write 'simulation ground truth update-rate: … Hz'"
             return source, "ROS messages", truth, _GROUND_TRUTH

@@ -118,7 +118,13 @@ def _run(options: RunOptions) -> int:
         say_unfinished(last, last.status())
         failed = failed_in(last)
         own = failed.seed if selection.seed is None else selection.seed
-        selection = replace(selection, choices=[failed.choice], seed=own, default_seed=failed.default_seed)
+        selection = replace(
+            selection,
+            choices=[failed.choice],
+            seed=own,
+            default_seed=failed.default_seed,
+            default_substitutions=failed.substitutions,
+        )
         repeat = repeat or failed.repeat
     plan = Plan.of(model, selection)
     print_coverage(plan.covers)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 CHOOSING = (
-    "scenario", "seed", "repeat", "rerun_failed", "where", "first", "sample", "pairwise", "no_store",
+    "scenario", "seed", "repeat", "bhv", "rerun_failed", "where", "first", "sample", "pairwise", "no_store",
 )  # fmt: skip
 """Arguments that say what a new run executes and whether it is kept."""
 
@@ -30,6 +30,8 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rerun-failed", action="store_true", help="only what did not hold in the last stored run")
     text = "go on with a run that was interrupted: its number or folder (default: the latest such run)"
     parser.add_argument("--resume", metavar="RUN", nargs="?", const="latest", help=text)
+    text = "execute a catalog behaviour in place of this implementation of a .bddx, as with a ROS action; repeats"
+    parser.add_argument("--bhv", metavar="NAME=BEHAVIOUR", type=_substitution, action="append", help=text)
     allow_policy(parser)
     allow_selection(parser)
     outputs = parser.add_argument_group("outputs")
@@ -89,7 +91,15 @@ def run_options(options: argparse.Namespace) -> RunOptions:
     from robbdd_tools.workbench.plan import Selection
 
     names = options.scenario or ()
-    selection = Selection(names, options.where, options.first, options.sample, options.pairwise, options.seed)
+    selection = Selection(
+        names,
+        options.where,
+        options.first,
+        options.sample,
+        options.pairwise,
+        options.seed,
+        substitutions=dict(options.bhv or ()),
+    )
     outputs = _outputs(options, keep=not options.no_store)
     return RunOptions(
         options.path, selection, policy(options), outputs, options.repeat, options.rerun_failed, options.viewer
@@ -130,6 +140,16 @@ def policy(options: argparse.Namespace) -> Policy:
     found = found if options.jobs is None else replace(found, jobs=options.jobs)
     found = found if options.log_limit is None else replace(found, log_limit=options.log_limit * MEBIBYTE)
     return found if options.timeout is None else replace(found, timeout=options.timeout)
+
+
+def _substitution(text: str) -> tuple[str, str]:
+    from robbdd_tools.gherkin.select import SelectionError
+    from robbdd_tools.workbench.substitution import parse_substitution
+
+    try:
+        return parse_substitution(text)
+    except SelectionError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _seconds(text: str) -> float:

@@ -34,7 +34,7 @@ class ResultHint:
 
     ``outcome`` is the worst one; ``stale`` tells that the text has changed since. ``failing`` are the verdicts on a
     clause that did not hold, the worst first; ``worst`` is the worst of all. ``vacuous`` says why the clause could not
-    have failed.
+    have failed, ``substitutions`` which catalog behaviours were executed in place of the model's.
     """
 
     span: Span
@@ -45,11 +45,13 @@ class ResultHint:
     failing: tuple[Judged, ...] = ()
     worst: Judged | None = None
     vacuous: str = ""
+    substitutions: tuple[str, ...] = ()
 
     @property
     def tooltip(self) -> str:
         """Everything that is known, shortened where there are many variations."""
         remarks = [_CHANGED] * self.stale + [f"It proves little: {self.vacuous}."] * bool(self.vacuous)
+        remarks += self.substitutions
         return "\n".join((*remarks, *_shortened(self.lines, MOST_LINES)))
 
 
@@ -186,7 +188,8 @@ def _clause_hint(span: Span, judged: Sequence[Judged], *, stale: bool) -> Result
         label += " error in code"
     vacuous = worst.vacuous if all(judgement.vacuous for _, judgement in judged) else ""
     shown = " ".join((label, *[VACUOUS] * bool(vacuous), *[STALE] * stale))
-    return ResultHint(span, shown, worst.outcome, tuple(map(_line, ranked)), stale, failing, ranked[0], vacuous)
+    lines, substituted = tuple(map(_line, ranked)), substitutions(scenario for scenario, _ in judged)
+    return ResultHint(span, shown, worst.outcome, lines, stale, failing, ranked[0], vacuous, substituted)
 
 
 def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -> ResultHint:
@@ -203,7 +206,14 @@ def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -
         for scenario in scenarios
         for judgement in sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)
     )
-    return ResultHint(span, f"{label} {STALE}" if stale else label, outcome, lines, stale)
+    shown = f"{label} {STALE}" if stale else label
+    return ResultHint(span, shown, outcome, lines, stale, substitutions=substitutions(scenarios))
+
+
+def substitutions(scenarios: Iterable[JudgedScenario]) -> tuple[str, ...]:
+    """Return in words, each once, which catalog behaviours were executed in place of the model's."""
+    found = (scenario.substitution for scenario in scenarios)
+    return tuple(map(str, dict.fromkeys(one for one in found if one is not None)))
 
 
 def _worst(outcomes: Iterable[str]) -> str:

@@ -10,7 +10,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.behaviour_tree import links_to
 from robbdd_tools.checks.counting import factors_of, scenario_count
 from robbdd_tools.checks.template_variants import Scenario, scenarios
-from robbdd_tools.features.clause_results import clause_hints, pass_rate
+from robbdd_tools.features.clause_results import clause_hints, pass_rate, substitutions
 from robbdd_tools.features.markdown import code, code_block, literal
 from robbdd_tools.features.references import uses
 from robbdd_tools.features.run_verdicts import NOTHING
@@ -242,7 +242,8 @@ def result_words(hint: ResultHint) -> str:
     age = "Last results, of the text before it was edited" if hint.stale else "Last results"
     lines = [f"- {literal(line)}" for line in hint.lines[:MOST_LISTED]]
     vacuous = [f"- it proves little: {literal(hint.vacuous)}"] if hint.vacuous else []
-    return f"{age}:\n\n" + "\n".join((*lines, *vacuous))
+    substituted = [f"- {literal(words)}" for words in hint.substitutions]
+    return f"{age}:\n\n" + "\n".join((*lines, *vacuous, *substituted))
 
 
 def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Iterator[str]:
@@ -251,6 +252,7 @@ def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Ite
     if rate is None:
         return
     yield f"- {code(variant.definition.symbol.name)}: {rate.label}"
+    yield from (f"  - {literal(words)}" for words in substitutions(findings.variants[variant.iri]))
     failed = [scenario for scenario in findings.variants[variant.iri] if scenario.outcome != "holds"]
     for scenario in failed[:MOST_LISTED]:
         judged = sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)

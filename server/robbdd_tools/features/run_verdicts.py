@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.plain import from_plain
+from robbdd_tools.catalog.executable import Substitution
 from robbdd_tools.features.executions import executions_of, what_matters
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.names.clause_places import clauses_in
@@ -57,7 +58,7 @@ class JudgedScenario:
     ``execution`` is the IRI of the ``.bddx`` execution that it was run by and ``execution_digest`` that of its text,
     both empty for a scenario that was run as it is. ``faults`` are the errors that users' code had in it.
     ``repetition`` counts the executions of the scenario in the run (from 1); ``seed`` is the one that the user gave the
-    run, ``None`` without one.
+    run, ``None`` without one. ``substitution`` is the catalog behaviour that was executed in place of the model's.
     """
 
     model: str
@@ -75,6 +76,7 @@ class JudgedScenario:
     faults: tuple[Fault, ...] = ()
     repetition: int = 1
     seed: int | None = None
+    substitution: Substitution | None = None
 
     @property
     def outcome(self) -> str:

@@ -5,7 +5,7 @@ Nothing here knows RDF or source text; a model that was never written in RobBDD 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from robbdd_tools.base.selections import SelectionRule
@@ -119,6 +119,22 @@ class Exists:
 
 
 Clause = Fluent | TextFluent | TextClause | Junction | EventClause | BehaviourClause | ForAll | Exists
+
+
+def every_clause(clauses: Iterable[Clause]) -> Iterator[Clause]:
+    """Yield clauses at any depth, each before its parts."""
+    for clause in clauses:
+        yield clause
+        match clause:
+            case ForAll(clauses=inner) | Exists(clauses=inner) | Junction(operands=inner):
+                yield from every_clause(inner)
+            case _:
+                pass
+
+
+def behaviour_clauses(clauses: Iterable[Clause]) -> Iterator[BehaviourClause]:
+    """Yield the behaviours among clauses, at any depth."""
+    return (clause for clause in every_clause(clauses) if isinstance(clause, BehaviourClause))
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, cast
 
@@ -20,10 +20,11 @@ SECTION = "robbdd"
 
 
 class Settings:
-    """``robbdd.shapes`` by workspace folder (URI); ``""`` for documents outside of all folders."""
+    """``robbdd.shapes`` and ``robbdd.run.bhv`` by workspace folder (URI); ``""`` outside of all folders."""
 
     def __init__(self) -> None:
         self._shapes: dict[str, tuple[str, ...]] = {}
+        self._substitutions: dict[str, dict[str, str]] = {}
         self.sent: object = None
         """What the client has sent by itself, for all folders."""
 
@@ -43,22 +44,41 @@ class Settings:
         if len(texts) != len(patterns):
             return "The setting 'robbdd.shapes' is a list of file patterns, such as [\"shapes/*.ttl\"]."
         self._shapes[folder] = texts
+        return self._set_substitutions(folder, cast("dict[str, Any]", section) if isinstance(section, dict) else {})
+
+    def _set_substitutions(self, folder: str, section: Mapping[str, Any]) -> str | None:
+        run: object = section.get("run")
+        stated = cast("dict[str, Any]", run).get("bhv") if isinstance(run, dict) else None
+        entries = cast("dict[str, object]", stated or {}) if isinstance(stated or {}, dict) else {"": None}
+        texts = {name: behaviour for name, behaviour in entries.items() if isinstance(behaviour, str)}
+        if len(texts) != len(entries):
+            return 'The setting \'robbdd.run.bhv\' is an object such as { "my-server": "pick-place" }.'
+        self._substitutions[folder] = texts
         return None
 
     def forget_others(self, folders: Collection[str]) -> None:
         """Drop the settings of folders that are no longer part of the workspace."""
         self._shapes = {folder: patterns for folder, patterns in self._shapes.items() if folder in folders}
+        self._substitutions = {folder: texts for folder, texts in self._substitutions.items() if folder in folders}
+
+    def substitutions(self, uri: str) -> dict[str, str]:
+        """Return the catalog behaviours that runs of a model execute in place of implementations of its ``.bddx``."""
+        return self._substitutions.get(self._folder_of(uri), {})
 
     def shapes(self, uri: str) -> EditorShapes:
         """Return the shapes that the editor adds for a document; their patterns count from its workspace folder."""
-        inside = [folder for folder in self._shapes if folder and uri.startswith(f"{folder.rstrip('/')}/")]
-        folder = max(inside, key=len, default="")
+        folder = self._folder_of(uri)
         path = uri_to_path(folder) if folder else None
         if path is None:
             document = uri_to_path(uri)
             path = None if document is None else document.parent
         patterns = self._shapes.get(folder, ())
         return EditorShapes() if path is None else EditorShapes(str(path), patterns)
+
+    def _folder_of(self, uri: str) -> str:
+        """Return the innermost workspace folder of a document, ``""`` outside of all."""
+        inside = [folder for folder in self._shapes if folder and uri.startswith(f"{folder.rstrip('/')}/")]
+        return max(inside, key=len, default="")
 
 
 def register_settings(server: RobbddServer) -> None:

@@ -34,6 +34,7 @@ def judged_scenario(
         execution_digest=digests.executions.get(execution, ""),
         repetition=spec.repetition,
         seed=seed,
+        substitution=spec.substitution,
     )
 
 

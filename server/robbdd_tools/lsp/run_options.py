@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.base.exceptions import RobbddError
@@ -28,8 +29,8 @@ class RunOptions:
     ``scenario`` is a variant or execution (local name, CURIE or IRI), ``variation`` the number of one scenario in its
     variant. Each entry of ``only`` has a ``variant`` (IRI) and optionally the numbers of scenarios (``variations``) and
     one ``execution`` (IRI). ``failed`` selects what did not hold the last time. ``where``, ``first``, ``sample``,
-    ``pairwise``, ``seed``, ``repeat`` and ``jobs`` are those of ``robbdd run``. ``record`` takes a picture of each
-    violation. ``token`` is the run's name in its messages.
+    ``pairwise``, ``seed``, ``repeat``, ``jobs`` and ``bhv`` (implementation to catalog behaviour) are those of
+    ``robbdd run``. ``record`` takes a picture of each violation. ``token`` is the run's name in its messages.
     """
 
     uri: str
@@ -46,6 +47,7 @@ class RunOptions:
     seed: int | None = None
     repeat: int | None = None
     jobs: int | None = None
+    bhv: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @classmethod
     def of(cls, argument: Mapping[str, Any]) -> RunOptions:
@@ -71,11 +73,15 @@ class RunOptions:
 
 
 def select(
-    options: RunOptions, model: AcceptanceModel, results: Iterable[JudgedScenario]
+    options: RunOptions,
+    model: AcceptanceModel,
+    results: Iterable[JudgedScenario],
+    substitutions: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[Selection, int | None]:
     """Return what to select of a model, and the number of repetitions (``None``: as the model says).
 
-    ``results`` are those of earlier runs. Raises ``NothingFailed``.
+    ``results`` are those of earlier runs; ``substitutions`` are those of the client's settings. Raises
+    ``NothingFailed``.
     """
     variants = [variant.iri for story in model.stories for variant in story.variants]
     names = () if options.scenario is None else (options.scenario,)
@@ -90,8 +96,17 @@ def select(
         choices.append(failed.choice)
         seed = failed.seed if seed is None else seed
         repeat = repeat or failed.repeat
+        substitutions = {**substitutions, **failed.substitutions}
     selection = Selection(
-        names, options.where, options.first, options.sample, options.pairwise, seed, choices=tuple(choices)
+        names,
+        options.where,
+        options.first,
+        options.sample,
+        options.pairwise,
+        seed,
+        choices=tuple(choices),
+        substitutions=options.bhv,
+        default_substitutions=substitutions,
     )
     return selection, repeat
 
@@ -106,7 +121,9 @@ def _failed(failed: Sequence[JudgedScenario]) -> Failed:
     ]
     newest = max(failed, key=lambda one: one.run)
     repeated = max(one.repetition for one in failed)
-    return Failed(Choice(listed), newest.seed, repeated if repeated > 1 else None)
+    substituted = (one.substitution for one in failed if one.substitution is not None)
+    substitutions = {one.implementation: one.executed for one in substituted}
+    return Failed(Choice(listed), newest.seed, repeated if repeated > 1 else None, substitutions=substitutions)
 
 
 def _listed(entry: Mapping[str, Any]) -> Listed:
@@ -147,11 +164,16 @@ def _is_entry(value: object) -> bool:
     return _is_text(entry.get("variant")) and (numbers is None or are_numbers) and isinstance(execution, str | None)
 
 
+def _is_substitution(value: object) -> bool:
+    return isinstance(value, Mapping) and all(map(_is_text, cast("Mapping[object, object]", value).values()))
+
+
 _FORMS: Mapping[str, tuple[Callable[[object], bool], str]] = {
     **dict.fromkeys(("uri", "scenario", "where", "token"), (_is_text, "a text")),
     **dict.fromkeys(("failed", "record"), (_is_flag, "true or false")),
     **dict.fromkeys(("first", "sample", "repeat", "jobs"), (_is_positive, "a whole number above 0")),
     **dict.fromkeys(("variation", "seed"), (_is_number, "a whole number")),
     "pairwise": (_is_strength, "2 or 3"),
+    "bhv": (_is_substitution, "an object of behaviour implementations and catalog behaviours"),
     "only": (_is_choice, "a list of objects with a 'variant' and, if wanted, 'variations' and an 'execution'"),
 }

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
@@ -48,16 +49,20 @@ class PlannedRun:
 
 
 def plan_run(
-    snapshot: Snapshot, convert: Converter, options: RunOptions, results: Iterable[JudgedScenario]
+    snapshot: Snapshot,
+    convert: Converter,
+    options: RunOptions,
+    results: Iterable[JudgedScenario],
+    substitutions: Mapping[str, str] = MappingProxyType({}),
 ) -> PlannedRun:
-    """Plan a run; ``results`` are those of earlier runs.
+    """Plan a run; ``results`` are those of earlier runs, ``substitutions`` those of the client's settings.
 
     Raises ``ModelErrors``, ``NothingToRun``, ``NothingFailed`` and ``SelectionError``.
     """
     uri = options.uri
     file = runnable_model(snapshot, uri)
     model = file.acceptance
-    selection, repeat = select(options, model, results)
+    selection, repeat = select(options, model, results, substitutions)
     try:
         plan = Plan.of_files(uri, uri_to_path(uri), (file,), selection)
     except NothingSelected:

@@ -61,7 +61,10 @@ def cancel_run(ls: RobbddServer) -> None:
 async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
     """Plan a run on the open texts and prepare its folder; raises ``RobbddError`` and ``OSError``."""
     results = list(ls.results)
-    planned = await ls.in_background(lambda snapshot: plan_run(snapshot, ls.convert, options, results), options.uri)
+    substitutions = ls.settings.substitutions(options.uri)
+    planned = await ls.in_background(
+        lambda snapshot: plan_run(snapshot, ls.convert, options, results, substitutions), options.uri
+    )
     place, remark = await asyncio.to_thread(ls.stores.begin, options.uri)
     if remark:
         ls.tell(remark)

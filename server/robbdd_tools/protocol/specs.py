@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from robbdd_tools.catalog.coordination import TreeSpec
-from robbdd_tools.catalog.executable import Implementation, SceneInstance
+from robbdd_tools.catalog.executable import Implementation, SceneInstance, Substitution
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.protocol.clauses import Statement
 
@@ -108,6 +108,11 @@ class ScenarioSpec:
     model: str = ""
     tree: TreeSpec | None = None
     node: str = ""
+
+    @property
+    def substitution(self) -> Substitution | None:
+        """The catalog behaviour that is executed in place of the model's implementation, if there is one."""
+        return None if self.execution is None else self.execution.implementation.substitution
 
 
 @dataclass(frozen=True, slots=True)

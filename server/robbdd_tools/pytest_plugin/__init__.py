@@ -12,6 +12,7 @@ DEFAULTS: dict[str, object] = {
     "robbdd_scenario": None,
     "robbdd_seed": None,
     "robbdd_repeat": None,
+    "robbdd_bhv": None,
     "robbdd_where": None,
     "robbdd_first": None,
     "robbdd_sample": None,
@@ -34,6 +35,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--robbdd-seed", metavar="N", type=int, help="decides everything random (default: 1)")
     text = "execute each scenario N times, with other random numbers each time"
     group.addoption("--robbdd-repeat", metavar="N", type=int, help=text)
+    text = "execute a catalog behaviour in place of this implementation of a .bddx, as with a ROS action; repeats"
+    group.addoption("--robbdd-bhv", metavar="NAME=BEHAVIOUR", action="append", help=text)
     text = "only scenarios with such values: 'robot=panda and target=~cube.*'"
     group.addoption("--robbdd-where", metavar="EXPRESSION", help=text)
     group.addoption("--robbdd-first", metavar="N", type=int, help="only the first N of each scenario's variations")

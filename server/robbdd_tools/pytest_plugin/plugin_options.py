@@ -9,8 +9,10 @@ from typing import Any
 
 import pytest
 
+from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.workbench.folder import Keeping
 from robbdd_tools.workbench.plan import Selection
+from robbdd_tools.workbench.substitution import parse_substitution
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,18 @@ def read_options(config: pytest.Config) -> Options:
     if timeout is not None and not (timeout >= 0 and isfinite(timeout)):
         raise pytest.UsageError(f"--robbdd-timeout: {timeout} is not a number of seconds")
     names = tuple(given("scenario") or ())
-    selection = Selection(names, given("where"), given("first"), given("sample"), given("pairwise"), given("seed"))
+    try:
+        substitutions = dict(map(parse_substitution, given("bhv") or ()))
+    except SelectionError as error:
+        raise pytest.UsageError(f"--robbdd-bhv: {error}") from None
+    selection = Selection(
+        names,
+        given("where"),
+        given("first"),
+        given("sample"),
+        given("pairwise"),
+        given("seed"),
+        default_substitutions=substitutions,
+    )
     store = None if given("store") is None else Path(given("store")).absolute()
     return Options(selection, given("repeat"), timeout, Keeping(store=store, keep=not given("no_store")))

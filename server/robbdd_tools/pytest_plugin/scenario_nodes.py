@@ -14,7 +14,7 @@ import pytest
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.gherkin.select import SelectionError
-from robbdd_tools.graph.acceptance_model import BehaviourClause, Exists, ForAll, Junction
+from robbdd_tools.graph.acceptance_model import behaviour_clauses
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.pytest_plugin.failure_text import Failure, failure
 from robbdd_tools.pytest_plugin.node_names import local_name, scenario_names
@@ -24,7 +24,6 @@ from robbdd_tools.workbench.model import NO_SCENARIO, load
 from robbdd_tools.workbench.plan import Plan
 
 if TYPE_CHECKING:
-    from robbdd_tools.graph.acceptance_model import Clause
     from robbdd_tools.protocol.specs import ScenarioSpec
     from robbdd_tools.workbench.model import Model, ModelFile
     from robbdd_tools.workbench.on_demand import Executed
@@ -137,6 +136,8 @@ class ScenarioItem(pytest.Item):
         self._executed = executed = executor.execute(self.spec)
         result = executed.result
         self.user_properties = [(VERDICT, str(result.verdict)), ("seed", result.seed)]
+        if result.substitution is not None:
+            self.user_properties.append(("substitution", str(result.substitution)))
         self.user_properties += [
             (f"margin {clause.name} ({clause.unit})", clause.margin)
             for clause in result.clauses
@@ -198,7 +199,8 @@ def _marks(spec: ScenarioSpec, file: ModelFile) -> Iterable[pytest.MarkDecorator
     """Yield a mark for each agent and behaviour of a scenario, so that ``-m "robbdd(agent='panda')"`` selects by it."""
     variant = next(one for story in file.acceptance.stories for one in story.variants if one.iri == spec.variant)
     agents = [local_name(agent) for agent in spec.scene.agents if agent not in spec.scene.unused]
-    behaviours = dict.fromkeys(_behaviours((*variant.template.clauses, *variant.clauses)))
+    clauses = behaviour_clauses((*variant.template.clauses, *variant.clauses))
+    behaviours = dict.fromkeys(clause.behaviour for clause in clauses)
     for agent, behaviour in product(agents or [""], behaviours or [""]):
         yield pytest.mark.robbdd(
             story=local_name(spec.story),
@@ -208,15 +210,3 @@ def _marks(spec: ScenarioSpec, file: ModelFile) -> Iterable[pytest.MarkDecorator
             agent=agent,
             behaviour=behaviour,
         )
-
-
-def _behaviours(clauses: Iterable[Clause]) -> Iterator[str]:
-    """Yield the catalog names of the behaviours that clauses state, at any depth."""
-    for clause in clauses:
-        match clause:
-            case BehaviourClause(behaviour=name):
-                yield name
-            case ForAll(clauses=inner) | Exists(clauses=inner) | Junction(operands=inner):
-                yield from _behaviours(inner)
-            case _:
-                pass

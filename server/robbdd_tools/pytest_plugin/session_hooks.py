@@ -15,6 +15,7 @@ from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.printable import printable
 from robbdd_tools.base.writing import replace_file
+from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.graph.write.foreign_imports import graph_format
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.pytest_plugin.plugin_options import OPTIONS, read_options
@@ -28,6 +29,7 @@ from robbdd_tools.pytest_plugin.scenario_nodes import (
 )
 from robbdd_tools.pytest_plugin.session_run import Executor, Owner, key_of, model_files, session_plan
 from robbdd_tools.run.store import StoredRun
+from robbdd_tools.workbench.substitution import refuse_unknown
 
 if TYPE_CHECKING:
     from robbdd_tools.run.results import RunResults
@@ -72,6 +74,7 @@ class Hooks:
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Leave out what another model of the session executes already, as ``robbdd run`` does for a folder."""
         scenarios = [item for item in items if isinstance(item, ScenarioItem)]
+        self._refuse_unknown_substitutions()
         for node in self._models:
             if node.unselected is not None and not scenarios:
                 item = make_node(UnselectedItem, node, name="selection")
@@ -153,6 +156,14 @@ class Hooks:
         if self._shared is not None:
             shutil.rmtree(self._shared, ignore_errors=True)
 
+    def _refuse_unknown_substitutions(self) -> None:
+        """Raise ``UsageError`` where ``--robbdd-bhv`` names an implementation or behaviour that does not exist."""
+        try:
+            substitutions = self._options.selection.default_substitutions
+            refuse_unknown((file.acceptance for file in self._files), substitutions)
+        except SelectionError as error:
+            raise pytest.UsageError(f"--robbdd-bhv: {error}") from None
+
     @property
     def _files(self) -> tuple[ModelFile, ...]:
         return model_files(node.file for node in self._models if node.file is not None)
@@ -180,6 +191,8 @@ def _read_pointer(shared: Path) -> StoredRun:
 
 def _summary(place: StoredRun, results: RunResults) -> Iterator[str]:
     names = {clause.iri: clause.name for scenario in results.scenarios for clause in scenario.spec.clauses}
+    substitutions = (scenario.spec.substitution for scenario in results.scenarios)
+    yield from map(str, dict.fromkeys(one for one in substitutions if one is not None))
     yield from (f"{names[iri]} proves little: {reason}" for iri, reason in results.vacuous().items())
     total = len(results.scenarios)
     counts = f"{results.count(Outcome.HOLDS)} hold, {results.count(Outcome.VIOLATED)} violated"

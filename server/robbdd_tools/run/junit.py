@@ -49,7 +49,8 @@ def _case(suite: ElementTree.Element, scenario: ScenarioResult) -> None:
         element = ElementTree.SubElement(case, tag, message=printable(worst), type=str(outcome))
         element.text = _lines(words for _, words in failed)
     output = ElementTree.SubElement(case, "system-out")
-    output.text = _lines((f"seed {spec.seed}", *(words for _, words in _clauses(scenario))))
+    substituted = [] if spec.substitution is None else [str(spec.substitution)]
+    output.text = _lines((f"seed {spec.seed}", *substituted, *(words for _, words in _clauses(scenario))))
 
 
 def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:

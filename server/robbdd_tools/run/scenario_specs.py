@@ -26,6 +26,7 @@ from robbdd_tools.graph.acceptance_model import (
     Junction,
     SceneModel,
     Variant,
+    every_clause,
 )
 from robbdd_tools.graph.read.clauses import used_names
 from robbdd_tools.monitor.policy import Observation, Policy
@@ -271,7 +272,7 @@ def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
     behaviours = load_catalog().behaviours
     emitted: dict[str, None] = {}
     stated: dict[Iri, str] = {}
-    clauses = tuple(_every((*template.clauses, *variant.clauses)))
+    clauses = tuple(every_clause((*template.clauses, *variant.clauses)))
     for clause in clauses:
         if isinstance(clause, BehaviourClause):
             events = behaviours[clause.behaviour].events
@@ -287,12 +288,6 @@ def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
             if name is not None:
                 bound.setdefault(event, name if linked is None else emitter(linked.node, name))
     return bound
-
-
-def _every(clauses: tuple[Clause, ...]) -> Iterator[Clause]:
-    for clause in clauses:
-        yield clause
-        yield from _every(getattr(clause, "clauses", getattr(clause, "operands", ())))
 
 
 def _named_events(clause: Clause) -> Iterator[Iri]:

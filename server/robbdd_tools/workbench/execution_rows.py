@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, cast
 
+from robbdd_tools.catalog.executable import Substitution
 from robbdd_tools.monitor.verdict import Cause, Outcome
 
 
@@ -42,7 +43,8 @@ class ExecutionResult:
     ``index`` is its position in the run (from 0), ``variation`` the number of the scenario in its variant and
     ``repetition`` that of the execution (both from 1). ``values`` maps variables to CURIEs, literals or lists of them.
     ``execution`` is the CURIE of the ``.bddx`` execution, empty without one. ``duration`` (s) is simulated time,
-    ``None`` for an execution that did not finish.
+    ``None`` for an execution that did not finish. ``substitution`` is the catalog behaviour that was executed in place
+    of the model's implementation, ``None`` for an execution as the model states it.
     """
 
     index: int
@@ -58,6 +60,7 @@ class ExecutionResult:
     verdict: Outcome
     duration: float | None
     clauses: tuple[ClauseResult, ...]
+    substitution: Substitution | None = None
 
     def rows(self) -> Iterator[dict[str, Any]]:
         """Yield one flat dictionary per clause; the values of variables are columns called ``value.NAME``."""
@@ -68,6 +71,7 @@ class ExecutionResult:
             "variation": self.variation,
             "repetition": self.repetition,
             "execution": self.execution,
+            "substitution": "" if self.substitution is None else str(self.substitution),
             "seed": self.seed,
             "duration": self.duration,
             "scenario_verdict": str(self.verdict),
@@ -103,6 +107,7 @@ def execution_result(index: int, entry: Mapping[str, Any]) -> ExecutionResult:
         Outcome(entry["verdict"]),
         entry["duration"],
         tuple(map(_clause, entry["clauses"])),
+        Substitution(**entry["substitution"]) if entry.get("substitution") else None,
     )
 
 

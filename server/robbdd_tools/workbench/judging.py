@@ -21,6 +21,7 @@ from robbdd_tools.run.scheduler import CANCELLED
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_results, rows_of
 from robbdd_tools.workbench.plan import NothingSelected, Plan, Selection
+from robbdd_tools.workbench.substitution import substitutions_of
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.messages import RunMessage
@@ -134,7 +135,11 @@ def _prepared(place: StoredRun, model: Model, folder: Path) -> Manifest:
         raise NothingToJudge(f"run {place.number or place.folder} has finished no execution yet")
     known = {scenario_key(manifest.scenarios[index]) for index in finished}
     repeat = max(spec.repetition for spec in manifest.scenarios)
-    selection = Selection(only=lambda spec: scenario_key(spec) in known, default_seed=manifest.seed)
+    selection = Selection(
+        only=lambda spec: scenario_key(spec) in known,
+        default_seed=manifest.seed,
+        default_substitutions=substitutions_of(manifest.scenarios),
+    )
     plan = Plan.of(model, selection)
     try:
         prepared = plan.prepare(folder, repeat=repeat if repeat > 1 else None)

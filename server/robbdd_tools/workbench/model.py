@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -158,13 +158,16 @@ class Model:
         sample: int | None = None,
         pairwise: int | None = None,
         seed: int | None = None,
+        substitutions: Mapping[str, str] | None = None,
     ) -> Plan:
         """Select scenarios to run.
 
         ``names`` are variants or executions (local name, CURIE or IRI; all without any). ``where`` is a condition on
         the values (``"robot=panda and target=~cube.*"``). At most one of these reduces what fits: the ``first`` N, a
         random ``sample`` of N, or the few that cover all combinations of values of any 2 or 3 variables (``pairwise``).
-        ``seed`` decides the sample, and the run unless that gets its own.
+        ``seed`` decides the sample, and the run unless that gets its own. ``substitutions`` maps behaviour
+        implementations of a ``.bddx`` to catalog behaviours that are executed instead
+        (``{"my-server": "pick-place"}``).
 
         Raises ``ModelErrors``, ``NothingToRun``, and ``SelectionError`` for a selection that cannot be made.
         """
@@ -174,7 +177,9 @@ class Model:
         reducing = [name for name, value in given.items() if value is not None]
         if len(reducing) > 1:
             raise ValueError(f"give only one of {' and '.join(reducing)}")
-        return Plan.of(self, Selection(names, where, first, sample, pairwise, seed))
+        return Plan.of(
+            self, Selection(names, where, first, sample, pairwise, seed, substitutions=dict(substitutions or {}))
+        )
 
 
 def load(path: str | os.PathLike[str], *, text: str | None = None) -> Model:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +13,7 @@ from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
 from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare_all
 from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.workbench.judged_text import judged_texts
+from robbdd_tools.workbench.substitution import refuse_unknown, substitute
 
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.covering import Cover
@@ -96,7 +97,9 @@ class Selection:
     ``names`` are variants or executions by local name, CURIE or IRI. At most one of ``first``, ``sample`` and
     ``pairwise`` reduces the scenarios that satisfy ``where``. A scenario must be listed in each of ``choices`` and
     satisfy ``only``. ``seed`` decides the sample and, unless the run has its own, the run; ``default_seed`` is used
-    where neither the user nor an execution of a model states one.
+    where neither the user nor an execution of a model states one. ``substitutions`` maps behaviour implementations
+    (local name, CURIE or IRI) to catalog behaviours that are executed instead; ``default_substitutions`` does the same
+    and ignores implementations that the models lack.
     """
 
     names: Sequence[str] = ()
@@ -108,6 +111,8 @@ class Selection:
     choices: Sequence[Choice] = ()
     only: Callable[[ScenarioSpec], bool] | None = None
     default_seed: int = DEFAULT_SEED
+    substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
+    default_substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def wanted(self) -> Wanted:
         """Return the part of the selection that is made on the variations."""
@@ -242,6 +247,7 @@ class _Planner:
     def requests(self) -> list[RunRequest]:
         """Return a request for each model with something selected; raises ``SelectionError``."""
         self._refuse_unknown_names()
+        refuse_unknown((file.acceptance for file in self._files), self._selection.substitutions)
         found: list[RunRequest] = []
         problems: list[SelectionError] = []
         for file in self._files:
@@ -256,7 +262,8 @@ class _Planner:
         return found
 
     def _request(self, file: ModelFile) -> RunRequest | None:
-        model, selection = file.acceptance, self._selection
+        selection = self._selection
+        model = substitute(file.acceptance, {**selection.default_substitutions, **selection.substitutions})
         executions = tuple(one for one in self._executions(model) if one.iri not in self._taken)
         executed = {execution.variant for execution in executions}
         variants = [

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from robbdd_tools.base.exceptions import RobbddError
@@ -12,6 +13,7 @@ from robbdd_tools.run.prepare import DEFAULT_SEED
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, shown_path
 from robbdd_tools.run.stored_results import RUNNING
 from robbdd_tools.workbench.plan import Choice, Listed
+from robbdd_tools.workbench.substitution import substitutions_of
 
 
 class NothingFailed(RobbddError):
@@ -23,13 +25,14 @@ class Failed:
     """What did not hold, and how to execute it as then.
 
     ``seed`` is the one that the user gave, ``repeat`` the number of repetitions; ``None`` without one. ``default_seed``
-    is that of scenarios without any.
+    is that of scenarios without any. ``substitutions`` are those of the run.
     """
 
     choice: Choice
     seed: int | None
     repeat: int | None
     default_seed: int = DEFAULT_SEED
+    substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 def last_run(store: RunStore, model: Path) -> StoredRun:
@@ -59,4 +62,4 @@ def failed_in(place: StoredRun) -> Failed:
     ]
     repeated = max(spec.repetition for spec in specs)
     repeat = repeated if repeated > 1 else None
-    return Failed(Choice(listed), place.record().user_seed, repeat, results["seed"])
+    return Failed(Choice(listed), place.record().user_seed, repeat, results["seed"], substitutions_of(specs))

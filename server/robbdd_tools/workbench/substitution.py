@@ -1,0 +1,100 @@
+"""Substitute catalog behaviours for behaviour implementations that a simulation does not have.
+
+A substitution maps a behaviour implementation of a ``.bddx`` (local name, CURIE or IRI) to the name of a catalog
+behaviour. Where several name the same implementation, the last one counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.gherkin.select import SelectionError
+from robbdd_tools.graph.acceptance_model import Clause, Iri, behaviour_clauses
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import Implementation
+    from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution
+    from robbdd_tools.protocol.specs import ScenarioSpec
+
+EXECUTES_ALL = "pick-place"
+"""The catalog behaviour that executes the others, too."""
+
+
+def parse_substitution(text: str) -> tuple[str, str]:
+    """Read ``NAME=BEHAVIOUR``; raises ``SelectionError``."""
+    name, equals, behaviour = (part.strip() for part in text.rpartition("="))
+    if not (name and equals and behaviour):
+        raise SelectionError(f"'{text}' is not NAME=BEHAVIOUR, such as my-server=pick-place")
+    return name, behaviour
+
+
+def refuse_unknown(models: Iterable[AcceptanceModel], substitutions: Mapping[str, str]) -> None:
+    """Raise ``SelectionError`` for an implementation that no model has, or a behaviour that the catalog lacks."""
+    known: set[str] = set()
+    local: set[str] = set()
+    for model in models:
+        for execution in model.executions:
+            known |= _names(model, execution.implementation.iri)
+            local.add(_local(model, execution.implementation.iri))
+    catalog = load_catalog().behaviours
+    for name, behaviour in substitutions.items():
+        if name not in known:
+            there_are = f"the executions use {', '.join(sorted(local))}" if local else "the model has no executions"
+            raise SelectionError(f"there is no behaviour implementation '{name}'; {there_are}")
+        if behaviour not in catalog:
+            raise SelectionError(f"the catalog has no behaviour '{behaviour}'; it has {', '.join(catalog)}")
+
+
+def substitute(model: AcceptanceModel, substitutions: Mapping[str, str]) -> AcceptanceModel:
+    """Return a model whose executions use the substituted behaviours; names that it lacks are ignored.
+
+    Raises ``SelectionError`` for a behaviour that the catalog lacks, or that does not execute those of a scenario.
+    """
+    if not substitutions:
+        return model
+    executions = tuple(_substituted(model, execution, substitutions) for execution in model.executions)
+    return replace(model, executions=executions)
+
+
+def substitutions_of(scenarios: Iterable[ScenarioSpec]) -> dict[str, str]:
+    """Return what was substituted in planned scenarios: IRI of the implementation to catalog behaviour."""
+    executed = (spec.execution.implementation for spec in scenarios if spec.execution is not None)
+    return {one.iri: one.name for one in executed if one.substitution is not None}
+
+
+def _substituted(model: AcceptanceModel, execution: Execution, substitutions: Mapping[str, str]) -> Execution:
+    names = _names(model, execution.implementation.iri)
+    named = [behaviour for name, behaviour in substitutions.items() if name in names]
+    if not named:
+        return execution
+    behaviour = named[-1]
+    refuse_unknown([model], {execution.implementation.iri: behaviour})
+    unfit = [one for one in _behaviours(model, execution.variant) if behaviour not in (one, EXECUTES_ALL)]
+    if unfit:
+        raise SelectionError(
+            f"'{behaviour}' of the catalog does not execute '{unfit[0]}' of {_local(model, execution.iri)}: "
+            f"substitute '{EXECUTES_ALL}' for {_local(model, execution.implementation.iri)}"
+        )
+    return replace(execution, implementation=_replaced(execution.implementation, behaviour))
+
+
+def _replaced(implementation: Implementation, behaviour: str) -> Implementation:
+    stated = implementation.replaced or implementation.words
+    return replace(implementation, kind="catalog", name=behaviour, replaced=stated)
+
+
+def _behaviours(model: AcceptanceModel, iri: Iri) -> Iterator[str]:
+    for variant in (variant for story in model.stories for variant in story.variants if variant.iri == iri):
+        clauses: tuple[Clause, ...] = (*variant.template.clauses, *variant.clauses)
+        yield from (clause.behaviour for clause in behaviour_clauses(clauses))
+
+
+def _names(model: AcceptanceModel, iri: str) -> set[str]:
+    return {iri, model.curie(iri), _local(model, iri)}
+
+
+def _local(model: AcceptanceModel, iri: str) -> str:
+    return model.curie(iri).rpartition(":")[2]
