@@ -6,7 +6,7 @@ READY := $(VENV)/.ready
 CLIENT := client-vscode
 CLIENT_READY := $(CLIENT)/node_modules/.package-lock.json
 
-.PHONY: demo test setup lint test-python test-client test-editors fuzz nightly bench package publish clean
+.PHONY: demo test setup lint test-python test-client test-editors fuzz nightly mutants bench package publish clean
 
 demo: $(READY)
 	$(BIN)/robbdd run examples/pickplace/pickplace.bdd
@@ -45,6 +45,10 @@ fuzz: $(READY)
 MINUTES ?= 60
 nightly: $(READY)
 	$(BIN)/python -m tests.nightly --minutes $(MINUTES) $(if $(ONLY),--only $(ONLY)) $(if $(SEED),--seed $(SEED))
+
+# Plants faults at random and counts those that the tests of each room notice: make mutants SAMPLE=60 SEED=1 ONLY=monitor
+mutants: $(READY)
+	nice -n 15 $(BIN)/python -m tests.mutants $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only $(ONLY))
 
 # Measures speed as ratios of one run and writes the figures into docs/performance.md.
 bench: $(READY)

@@ -36,7 +36,8 @@ def test_a_margin_that_counts_from_the_opening_of_its_window_stays_within() -> N
 def test_without_a_window_the_curve_says_why() -> None:
     trace = a_trace()
     found = curve(Curve(), After("t:never"), trace, lambda rows: trace.times[rows.first : rows.last + 1])
-    assert (found.start, found.reason, len(found.times)) == (None, "event t:never never occurred", 11)
+    assert (found.start, found.end, found.reason) == (None, None, "event t:never never occurred")
+    assert found.margins == found.times == tuple(round(row * 0.1, 6) for row in range(11))
 
 
 def test_what_is_not_known_is_no_point() -> None:
@@ -45,7 +46,8 @@ def test_what_is_not_known_is_no_point() -> None:
     def margins(rows: Window) -> np.ndarray[tuple[int], np.dtype[np.float64]] | None:
         return None if rows.first == 0 else np.full(rows.last - rows.first + 1, np.nan)
 
-    assert curve(Curve(), After("t:a"), trace, margins).times == ()
+    found = curve(Curve(), After("t:a"), trace, margins)
+    assert (found.start, found.end, found.times, found.margins) == (0.2, 0.2, (), ())
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -59,3 +61,55 @@ def test_a_long_curve_is_thinned_out_and_keeps_what_decides(seed: int) -> None:
     window = [margin for time, margin in zip(found.times, found.margins, strict=True) if 0.2 <= time <= 0.6]
     assert min(window) == pytest.approx(margins[2:7].min(), abs=1e-6)
     assert {0.2, 0.6} <= set(found.times)
+
+
+def test_a_sample_without_a_number_is_no_gap_in_the_rest() -> None:
+    trace = a_trace()
+    values = np.array([np.nan, 1, 2, np.nan, 4, 5, 6, 7, 8, 9, np.inf])
+    found = curve(Curve(), During("t:a", "t:b"), trace, lambda rows: values[rows.first : rows.last + 1])
+    assert found.times == (0.1, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+    assert found.margins == (1, 2, 4, 5, 6, 7, 8, 9)
+
+
+def test_a_margin_known_in_the_window_only_is_drawn_there() -> None:
+    trace = a_trace()
+
+    def margins(rows: Window) -> np.ndarray[tuple[int], np.dtype[np.float64]] | None:
+        return None if rows.first == 0 else np.ones(rows.last - rows.first + 1)
+
+    assert curve(Curve(), During("t:a", "t:b"), trace, margins).times == (0.2, 0.3, 0.4, 0.5, 0.6)
+
+
+def test_an_execution_without_samples_has_no_curve() -> None:
+    def margins(rows: Window) -> np.ndarray[tuple[int], np.dtype[np.float64]] | None:
+        raise AssertionError(rows)
+
+    found = curve(Curve(unit="m", negated=True), After("t:a"), trace_of({}), margins)
+    assert found == Curve(unit="m", negated=True, reason="event t:a never occurred")
+
+
+def test_times_and_margins_are_rounded_to_six_decimals() -> None:
+    trace = trace_of({"cube": still(2)}, {"t:a": 0.0})
+    found = curve(Curve(), After("t:a"), trace, lambda rows: np.full(rows.last - rows.first + 1, 1 / 3))
+    assert found.margins == (0.333333, 0.333333)
+
+
+def test_a_curve_of_as_many_points_as_a_screen_shows_is_whole() -> None:
+    for rows, points in ((POINTS, POINTS), (POINTS + 1, POINTS)):
+        trace = a_trace(rows)
+        found = curve(Curve(), After("t:a"), trace, lambda rows: np.sin(np.arange(rows.first, rows.last + 1) * 2.0))
+        assert len(found.times) == pytest.approx(points, abs=3)
+        assert (len(found.times) == rows) == (rows == POINTS)
+
+
+def test_a_long_curve_without_a_window_keeps_its_extremes() -> None:
+    trace = a_trace(LONG)
+    margins = np.random.default_rng(3).normal(size=LONG)
+    found = curve(Curve(), During("t:a", "t:never"), trace, lambda rows: margins[rows.first : rows.last + 1])
+    part = LONG // (POINTS // 2)
+    for first in range(0, LONG, part):
+        times = {
+            round(0.1 * (first + row), 6)
+            for row in (margins[first : first + part].argmin(), margins[first : first + part].argmax())
+        }
+        assert times <= set(found.times)

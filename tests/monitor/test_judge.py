@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from monitor.traces import heights, still, trace_of
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
-from robbdd_tools.monitor.judge import judge
+from robbdd_tools.monitor.judge import judge, margin_range
 from robbdd_tools.monitor.time import After, Before, During
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 
@@ -35,13 +35,18 @@ def judged(values: list[float], thing: str = "ball") -> Verdict:
 def test_holds_with_the_smallest_margin_and_its_instant() -> None:
     found = judged([0.3, 0.1, 0.2])
     assert (found.outcome, found.robustness, found.unit) == (Outcome.HOLDS, 0.1, "m")
-    assert found.at == pytest.approx(0.1)
+    assert found.at == found.worst_at == pytest.approx(0.1)
 
 
 def test_violated_with_the_smallest_margin_at_the_first_offending_sample() -> None:
     found = judged([0.3, -0.1, -0.4, 0.2])
     assert (found.outcome, found.robustness, found.unit) == (Outcome.VIOLATED, -0.4, "m")
     assert found.at == pytest.approx(0.1)
+    assert found.worst_at == pytest.approx(0.2)
+
+
+def test_a_margin_of_zero_is_no_offence() -> None:
+    assert judged([0.0, -0.1]).at == pytest.approx(0.1)
 
 
 def test_a_margin_of_zero_holds() -> None:
@@ -66,11 +71,34 @@ def test_a_predicate_without_evaluator_is_unknown() -> None:
 
 def test_a_missing_event_is_unknown() -> None:
     found = judge(ABOVE, {"thing": "ball"}, After("never"), trace_of({"ball": still(1)}), {})
-    assert found.outcome is Outcome.UNKNOWN
+    assert found == unknown("event never never occurred", Cause.NO_EVENT)
+
+
+def test_a_window_without_samples_is_unknown_and_could_not_have_been_violated() -> None:
+    found = judge(ABOVE, {"thing": "ball"}, During("a", "a"), trace_of({"ball": still(3)}, {"a": 0.05}), {})
+    assert found == unknown("no sample was taken in the window", Cause.EMPTY, "its window holds no sample")
+
+
+def test_a_unit_may_depend_on_the_trace() -> None:
+    def unit(evidence: Evidence, arguments: Arguments) -> str:
+        return f"{len(evidence.times)} {arguments['thing']}"
+
+    trace = trace_of({"ball": heights([1.0, 2.0])}, {"start": 0.0, "end": 0.1})
+    assert judge(replace(ABOVE, unit_for=unit), {"thing": "ball"}, ALL, trace, {}).unit == "2 ball"
+
+
+def test_regions_of_workspaces_are_those_of_the_scene() -> None:
+    def count(evidence: Evidence, arguments: Arguments) -> FloatArray:
+        return evidence.position(str(arguments["thing"]))[:, 2] + len(evidence.workspaces)
+
+    trace = trace_of({"ball": heights([1.0, 2.0])}, {"start": 0.0, "end": 0.1})
+    counted = replace(ABOVE, evaluate=count)
+    assert judge(counted, {"thing": "ball"}, ALL, trace, {"bin": ()}).robustness == 2.0
+    assert margin_range(counted, {"thing": "ball"}, trace, {"bin": ()}) == (2.0, 3.0)
 
 
 def test_a_margin_that_is_not_a_number_is_unknown() -> None:
-    assert judged([1.0, float("nan")]).outcome is Outcome.UNKNOWN
+    assert judged([1.0, float("nan")]) == unknown("the margin is not a number at some sample", Cause.NO_RECORD)
 
 
 @given(st.lists(st.floats(-10, 10), min_size=1, max_size=30))

@@ -10,10 +10,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from monitor.traces import STEP, still, trace_of
-from robbdd_tools.monitor.time import After, Before, During, NoWindow, TimeConstraint, Window, in_iterations, window
+from robbdd_tools.monitor.time import (
+    After,
+    Before,
+    During,
+    NoWindow,
+    TimeConstraint,
+    Window,
+    in_iterations,
+    occurrences,
+    window,
+)
 from robbdd_tools.monitor.trace import EventStamp
 
 COUNT = 21
+"""Samples, from 0 s to 2 s."""
 
 
 def a_window(constraint: TimeConstraint, **events: float) -> Window | NoWindow:
@@ -77,8 +88,11 @@ def test_an_event_after_the_last_sample_has_no_sample_after_it() -> None:
 
 def test_a_trace_without_samples_has_no_window() -> None:
     empty = trace_of({}, {"e": 0.0})
-    for constraint in (Before("e"), After("e"), During("e", "e")):
-        assert isinstance(window(constraint, empty), NoWindow)
+    assert window(Before("e"), empty) == NoWindow("no sample was taken before event e", open=False, empty=True)
+    assert window(After("e"), empty) == NoWindow(
+        "the execution ended at 0.00 s, before 0.00 s when the window closes", open=False
+    )
+    assert window(During("e", "e"), empty) == NoWindow("no sample was taken in the window", open=False, empty=True)
 
 
 def test_the_first_occurrence_counts() -> None:
@@ -150,3 +164,38 @@ def test_a_clause_outside_a_loop_refers_to_its_first_or_last_iteration(
 ) -> None:
     assert in_iterations(constraint, role, (1, 3)) == expected
     assert in_iterations(constraint, role, ()) == constraint
+
+
+def test_a_horizon_may_reach_from_the_first_sample_to_the_last() -> None:
+    assert a_window(Before("e", 1.0), e=1.0) == Window(0, 10)
+    assert a_window(After("e", 1.0), e=1.0) == Window(10, 20)
+    assert a_window(After("e"), e=2.0) == Window(20, 20)
+
+
+def test_a_time_constraint_names_its_events_with_their_iterations() -> None:
+    assert occurrences(Before("e", 0.5, 2)) == (("e", 2),)
+    assert occurrences(After("e", None, 1)) == (("e", 1),)
+    assert occurrences(During("a", "b", (1, 3))) == (("a", 1), ("b", 3))
+
+
+def test_an_end_that_is_missing_is_that_of_its_iteration() -> None:
+    events = (EventStamp("a", 0.2, 1), EventStamp("b", 0.4, 1))
+    trace = replace(trace_of({"x": still(11)}), events=events)
+    for constraint, reason in (
+        (During("a", "b", (1, 2)), "event b never occurred in iteration 2"),
+        (During("a", "b", (3, 1)), "event a never occurred in iteration 3"),
+        (Before("a", None, 4), "event a never occurred in iteration 4"),
+    ):
+        assert window(constraint, trace) == NoWindow(reason, open=False)
+
+
+def test_times_that_differ_by_rounding_only_are_the_same() -> None:
+    early, late = 1.0 - 1e-12, 1.0 + 1e-12
+    for time in (early, late):
+        assert a_window(Before("e"), e=time) == a_window(After("e"), e=time) == Window(10, 10)
+        assert a_window(During("e", "e"), e=time) == Window(10, 10)
+        assert a_window(Before("e", 0.5), e=time) == Window(5, 10)
+        assert a_window(After("e", 0.5), e=time) == Window(10, 15)
+    assert a_window(Before("e", late), e=1.0) == Window(0, 10)
+    assert a_window(After("e", late), e=1.0) == Window(10, 20)
+    assert a_window(During("a", "b"), a=late, b=early) == NoWindow("event b occurred before event a", open=False)

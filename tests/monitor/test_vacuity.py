@@ -33,3 +33,20 @@ def test_nothing_is_said_where_nothing_tells_whether_it_could_be_otherwise() -> 
     assert margin_range(ABOVE, WORDS, trace_of({"ball": still(1)}), {}) is None
     for kind in (replace(ABOVE, set_up=True), replace(ABOVE, quantities=("reach",)), replace(ABOVE, evaluate=None)):
         assert margin_range(kind, WORDS, trace, {}) is None
+
+
+def test_samples_without_a_number_are_not_counted() -> None:
+    nan = float("nan")
+    assert margin_range(ABOVE, WORDS, trace_of({"ball": heights([nan, 1.0, 3.0])}), {}) == (1.0, 3.0)
+    assert margin_range(ABOVE, WORDS, trace_of({"ball": heights([nan, 1.0])}), {}) is None
+    assert margin_range(ABOVE, WORDS, trace_of({"ball": heights([2.0, 1.0])}), {}) == (1.0, 2.0)
+
+
+def test_a_difference_by_rounding_only_is_none() -> None:
+    assert is_constant((1.0, 1.0 + 1e-12))
+    assert is_constant((0.0, 1e-9))
+    assert not is_constant((-1.0, 1.0))
+
+
+def test_ranges_are_joined_to_the_one_that_holds_all() -> None:
+    assert joined([(0.0, 1.0), (-1.0, 0.5), (0.2, 3.0)]) == (-1.0, 3.0)

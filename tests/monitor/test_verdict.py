@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, conjunction, disjunction, negation, unknown
 
 ORDER = [Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.HOLDS]
@@ -66,3 +69,46 @@ def test_unknown_does_not_hide_a_fulfilled_alternative() -> None:
 
 def test_nothing_to_judge_is_unknown() -> None:
     assert conjunction([]).outcome is disjunction([]).outcome is Outcome.UNKNOWN
+
+
+def test_nothing_to_judge_could_not_have_been_violated() -> None:
+    empty = unknown(
+        "there is nothing to judge: the set is empty", Cause.EMPTY, "a set that it quantifies over is empty"
+    )
+    assert conjunction([]) == disjunction([]) == empty
+
+
+def test_the_margin_of_a_negation_has_the_other_sign_at_the_worst_instant() -> None:
+    violated = Verdict(Outcome.VIOLATED, -2.0, "m", at=1.0, worst_at=3.0, reason="too low", operand=1)
+    assert negation(violated) == Verdict(Outcome.HOLDS, 2.0, "m", at=3.0, worst_at=3.0, operand=1)
+    assert negation(Verdict(Outcome.HOLDS, 2.0, "m", 1.0, worst_at=1.0)).outcome is Outcome.VIOLATED
+
+
+def test_the_first_unknown_of_several_is_the_answer() -> None:
+    first, second = unknown("one", Cause.NO_RECORD), unknown("two", Cause.NO_EVENT)
+    assert conjunction([of(1.0), first, second]) == first
+    assert disjunction([of(-1.0), first, second]) == first
+
+
+def test_the_verdict_that_decides_is_returned() -> None:
+    low, high = replace(of(-1.0), operand=0), replace(of(-3.0), operand=1)
+    assert conjunction([low, of(2.0), high]) is high
+    assert disjunction([low, high]) is low
+    assert disjunction([high, of(1.0), of(2.0)]).robustness == 2.0
+
+
+def test_a_policy_without_margin_decides_like_a_margin_of_zero() -> None:
+    holds = Verdict(Outcome.HOLDS)
+    assert conjunction([of(1.0), holds, of(2.0)]) is holds
+    assert disjunction([holds, of(0.5)]).robustness == 0.5
+
+
+def test_a_fault_of_users_code_stays_with_its_verdict() -> None:
+    fault = Fault("KeyError", "x", "policy:judge")
+    found = unknown("its policy failed", Cause.USER_CODE, fault=fault)
+    assert (found.outcome, found.reason, found.cause, found.fault) == (
+        Outcome.UNKNOWN,
+        "its policy failed",
+        Cause.USER_CODE,
+        fault,
+    )
