@@ -39,10 +39,9 @@ def main(arguments: Sequence[str]) -> int:
         except SessionFailed as error:
             print(error, file=sys.stderr)
             return 2
-        for mutant in results:
-            if not mutant.is_killed:
-                diff = session.diff(mutant.name)
-                print(f"{session.place(mutant.name, diff)} {mutant.status} ({mutant.name})\n{diff}\n", flush=True)
+        survivors = {mutant.name: mutant.status for mutant in results if not mutant.is_killed}
+        for mutant, diff in session.diffs(list(survivors)).items():
+            print(f"{session.place(mutant, diff)} {survivors[mutant]} ({mutant})\n{diff}\n", flush=True)
         table.append(_row(name, len(names), results))
         reached = reached and _rate(results) >= TARGET
     print(f"seed {options.seed}\n" + "\n".join(table))

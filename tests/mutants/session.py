@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import os
 import random
 import re
@@ -114,9 +115,15 @@ class Session:
         first = _first_line(ast.parse(path.read_text(encoding="utf-8")), function)
         return f"{path.relative_to(ROOT)}:{first + _changed_line(diff)}"
 
-    def diff(self, name: str) -> str:
-        """Return the change of a mutant as a unified diff of its function."""
-        return self._mutmut("show", name).partition("\n+++")[2].partition("\n")[2].rstrip()
+    def diffs(self, names: Sequence[str]) -> dict[str, str]:
+        """Return the changes of mutants as unified diffs of their functions, by name."""
+        program = (
+            "import json, sys\n"
+            "from mutmut.mutation.diff_apply import get_diff_for_mutant\n"
+            "print(json.dumps({name: get_diff_for_mutant(name) for name in sys.argv[1:]}))\n"
+        )
+        found: dict[str, str] = json.loads(self._output([sys.executable, "-c", program, *names]))
+        return {name: "\n".join(diff.splitlines()[2:]) for name, diff in found.items()}
 
     def _mutmut(self, *arguments: str) -> str:
         return self._output([str(Path(sys.executable).with_name("mutmut")), *arguments])
