@@ -8,7 +8,7 @@ from typing import Any
 
 from kit import MODEL, SCENE, fixture
 from robbdd_tools.gherkin.feature import FeaturePiece, feature_pieces
-from robbdd_tools.gherkin.render import sheet
+from robbdd_tools.gherkin.user_template import sheet
 from robbdd_tools.graph.acceptance_model import AcceptanceModel
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph

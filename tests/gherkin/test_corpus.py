@@ -79,7 +79,7 @@ def test_scenarios_are_those_of_the_reference() -> None:
 
 @pytest.mark.parametrize("template", ["default", "compact", "de"])
 def test_every_foreign_model_has_a_feature_with_all_of_its_scenarios(template: str) -> None:
-    from robbdd_tools.gherkin.render import sheet
+    from robbdd_tools.gherkin.user_template import sheet
 
     for path in corpus(".bdd"):
         model = model_of(path)

@@ -12,7 +12,7 @@ import pytest
 
 from kit import MODEL, SCENE, fixture, schema_errors
 from robbdd_tools.gherkin.feature_files import FeaturePlan, clause_origins, whole_plan, write_features
-from robbdd_tools.gherkin.render import sheet
+from robbdd_tools.gherkin.user_template import sheet
 from robbdd_tools.graph.read.acceptance import read_model
 from robbdd_tools.graph.write.build import build_graph
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
+import psutil
 import pytest
 
 from gherkin_kit import edited, feature, read_by_behave, steps
 from kit import MODEL
+from robbdd_tools.base.limits import LIMITS
 from robbdd_tools.gherkin.render import TemplateProblem
+from robbdd_tools.gherkin.template_requests import BlockRequest, TemplateSource, encoded
 
 
 def rendered(folder: Path, source: str, model: str = MODEL) -> str:
@@ -72,6 +77,54 @@ def test_an_error_is_shown_with_its_file_and_line(tmp_path: Path, source: str, l
     place = f"{tmp_path / 'own.feature.jinja'}:{line}: " if line else f"{tmp_path / 'own.feature.jinja'}: "
     assert str(caught.value).startswith(place)
     assert words in str(caught.value)
+
+
+LOOPS = "{% for i in range(99999) %}{% for j in range(99999) %}{% endfor %}{% endfor %}"
+
+
+@pytest.mark.parametrize(
+    ("source", "limits", "words"),
+    [
+        (SCENARIO % LOOPS, {"seconds": 1}, ": the block 'scenario' takes longer than 1 s (limit template-seconds, "),
+        (SCENARIO % "{{ 10 ** (10 ** 9) }}", {"seconds": 1}, ": the template takes longer than 1 s (limit temp"),
+        (
+            SCENARIO % "{% for i in range(999) %}{{ i }}{% endfor %}",
+            {"output": 500},
+            ": the block makes more than 500 bytes",
+        ),
+        (SCENARIO % "{{ 'x' * 10 ** 10 }}", {}, ":2: the template needs more memory than the limit template-memory"),
+        (
+            SCENARIO % "{% set x = 'x' * 9 ** 8 %}{{ x * 9 }}",
+            {"memory": 300_000_000},
+            ":2: the template needs more mem",
+        ),
+        (SCENARIO % ("{% for x in y %}" * 50 + "{% endfor %}" * 50), {}, ": the template cannot be compiled (Synt"),
+        (SCENARIO % ("{{ " + "(" * 5000 + ")" * 5000 + " }}"), {}, ": the template cannot be compiled (Recursion"),
+        (SCENARIO % "{{ '\\ud800' }}", {}, ": UnicodeEncodeError: "),
+    ],
+)
+def test_a_template_ends_at_its_limits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, source: str, limits: dict[str, int], words: str
+) -> None:
+    for name, value in limits.items():
+        monkeypatch.setenv(LIMITS[f"template-{name}"].variable, str(value))
+    with pytest.raises(TemplateProblem) as caught:
+        rendered(tmp_path, source)
+    assert str(caught.value).startswith(f"{tmp_path / 'own.feature.jinja'}{words}")
+    assert [child for child in psutil.Process().children() if "template_worker" in " ".join(child.cmdline())] == []
+
+
+def test_the_process_of_a_template_ends_although_nobody_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(LIMITS["template-seconds"].variable, "1")
+    sent = encoded(TemplateSource("endless", SCENARIO % LOOPS)) + encoded(BlockRequest("scenario", (), {}))
+    worker = [sys.executable, "-m", "robbdd_tools.gherkin.template_worker"]
+    done = subprocess.run(worker, input=sent, capture_output=True, encoding="utf-8", timeout=120, check=False)
+    assert (done.returncode, done.stdout) == (1, '{"value": null}\n{"value": ["scenario"]}\n')
+
+
+def test_our_templates_need_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(subprocess, "Popen", None)
+    assert "Feature: " in feature(MODEL, "compact")
 
 
 def test_a_template_that_cannot_be_read_is_answered_with_ours(tmp_path: Path) -> None:

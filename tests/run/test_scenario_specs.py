@@ -9,7 +9,7 @@ from gherkin_kit import edited, model_of
 from kit import EVENTS
 from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.gherkin.feature_files import whole_plan
-from robbdd_tools.gherkin.render import sheet
+from robbdd_tools.gherkin.user_template import sheet
 from robbdd_tools.graph.acceptance_model import Execution, Iri
 from robbdd_tools.monitor.policy import Policy, Rule
 from robbdd_tools.protocol.clauses import Text

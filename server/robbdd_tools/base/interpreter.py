@@ -52,7 +52,7 @@ def run_for(
 
 
 def start(
-    module: str, *arguments: str, folder: Path, log: IO[bytes], more: Mapping[str, str] | None = None
+    module: str, *arguments: str, folder: Path, log: IO[bytes] | None, more: Mapping[str, str] | None = None
 ) -> subprocess.Popen[str]:
     """Start one of our modules in ``folder``; it communicates over its standard streams and logs to ``log``.
 
@@ -64,7 +64,7 @@ def start(
         env={**_environment(), **(more or {})},
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        stderr=log,
+        stderr=subprocess.DEVNULL if log is None else log,
         text=True,
         encoding="utf-8",
         **own_group(),

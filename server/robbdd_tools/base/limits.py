@@ -52,6 +52,12 @@ SCANNED_DEPTH = Limit("scanned-depth", 32, "levels of folders")
 """Nesting depth of folders that one search enters."""
 VALIDATION_SECONDS = Limit("validation-seconds", 120, "seconds")
 """Time for one validation of a file; 10,000 lines take about 5 s of CPU time."""
+TEMPLATE_SECONDS = Limit("template-seconds", 10, "seconds")
+"""Time for one block of a user's template; ours take milliseconds."""
+TEMPLATE_OUTPUT = Limit("template-output", 8 * MIB, "bytes")
+"""Text that one block of a user's template may make."""
+TEMPLATE_MEMORY = Limit("template-memory", 512 * MIB, "bytes")
+"""Address space of the process that renders a user's template, where the system can limit it."""
 
 LIMITS: Mapping[str, Limit] = {
     limit.name: limit
@@ -62,6 +68,9 @@ LIMITS: Mapping[str, Limit] = {
         SCANNED_ENTRIES,
         SCANNED_DEPTH,
         VALIDATION_SECONDS,
+        TEMPLATE_SECONDS,
+        TEMPLATE_OUTPUT,
+        TEMPLATE_MEMORY,
     )
 }
 

@@ -168,6 +168,20 @@ def lower_priority() -> None:
         os.nice(NICENESS)
 
 
+def limit_memory(largest: int) -> None:
+    """Let the address space of this process grow to ``largest`` bytes; beyond it, Python raises ``MemoryError``.
+
+    Windows and macOS have no such limit.
+    """
+    if sys.platform != "win32":
+        import resource
+
+        _, most = resource.getrlimit(resource.RLIMIT_AS)
+        if most == resource.RLIM_INFINITY or largest < most:
+            with suppress(OSError, ValueError):  # macOS refuses what is less than the process has already
+                resource.setrlimit(resource.RLIMIT_AS, (largest, most))
+
+
 def describe_exit(code: int) -> str:
     """Return an exit code of ``Popen`` in words: ``code 7``, ``signal SIGKILL``, ``code 0xC0000005 (…)``."""
     if code < 0:

@@ -35,7 +35,8 @@ class GherkinOptions:
 def write_gherkin(options: GherkinOptions) -> int:
     """Write the features of a model with all that behave needs and print their paths; returns the exit code."""
     from robbdd_tools.gherkin.feature_files import clause_origins, whole_plan
-    from robbdd_tools.gherkin.render import TemplateProblem, sheet
+    from robbdd_tools.gherkin.render import TemplateProblem
+    from robbdd_tools.gherkin.user_template import sheet
     from robbdd_tools.graph.rdf.serialize import serialize
 
     file = sound_model(options.path)

@@ -70,6 +70,24 @@ class ScenarioText:
 
 
 @dataclass(frozen=True, slots=True)
+class ScenarioData:
+    """The fields of a ``ScenarioText`` that templates get."""
+
+    name: str
+    number: int
+    values: Binding
+    cells: tuple[str, ...]
+    tags: tuple[str, ...]
+    tables: tuple[SceneTable, ...]
+    steps: tuple[Step, ...]
+
+    @staticmethod
+    def of(one: ScenarioText) -> ScenarioData:
+        """Return the data of a scenario."""
+        return ScenarioData(one.name, one.number, one.values, one.cells, one.tags, one.tables, one.steps)
+
+
+@dataclass(frozen=True, slots=True)
 class FeaturePiece:
     """A run of text of one feature: its head, the head of a variant, one scenario, or its end."""
 
@@ -136,7 +154,7 @@ class _FeatureWriter:
                 yield piece
             for number, binding in scenarios(variant):
                 scenario = writer.scenario(number, binding)
-                rendered = self._sheet.render("scenario", {**values, "scenario": scenario})
+                rendered = self._sheet.render("scenario", {**values, "scenario": ScenarioData.of(scenario)})
                 yield self._advanced(FeaturePiece(rendered, _located(scenario, rendered, self._line, shared)))
         yield from self._plain("end", story)
 

@@ -1,16 +1,19 @@
-"""Feature templates: ours and the user's, in a sandbox, rendered block by block."""
+"""Feature templates: compiled, and rendered block by block in this process.
+
+Our own templates are rendered here; those of users in a process of their own, see ``user_template``.
+"""
 
 from __future__ import annotations
 
 import re
 import traceback
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from robbdd_tools.base.files import UnreadableFile, load_text
+from robbdd_tools.base.files import load_text
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -20,6 +23,8 @@ OURS = ("default", "compact", "de")
 BLOCKS = ("feature", "variant", "scenario", "end")
 """What a template may define; ``scenario`` is the one that it must."""
 ENDING = ".feature.jinja"
+LONGEST_MESSAGE = 2000
+"""Characters of an error message; expressions of a template can make them as long as they like."""
 
 
 class TemplateProblem(Exception):
@@ -29,14 +34,28 @@ class TemplateProblem(Exception):
         super().__init__(f"{file}:{line}: {message}" if line else f"{file}: {message}")
         self.file = file
         self.line = line
+        self.message = message
+
+
+class Sheet(Protocol):
+    """A template ready to be rendered."""
+
+    def has(self, block: str) -> bool:
+        """Tell whether the template has a block."""
+        ...
+
+    def render(self, block: str, values: Mapping[str, object]) -> str:
+        """Return the text of one block, nothing when the template lacks it; raises ``TemplateProblem``."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
-    """A template ready to be rendered, with those that it extends."""
+class CompiledSheet:
+    """A template with those that it extends; a block of more than ``largest`` bytes is an error."""
 
     file: str
     chain: tuple[Template, ...]
+    largest: int | None = None
 
     def has(self, block: str) -> bool:
         """Tell whether the template has a block."""
@@ -52,29 +71,31 @@ class Sheet:
         if not found:
             return ""
         try:
-            return "".join(found[0](context))
+            return "".join(found[0](context) if self.largest is None else _limited(found[0](context), self.largest))
         except Exception as error:  # whatever the expressions of a template do wrong
             raise _problem(self, error) from None
 
 
-def sheet(name: str) -> Sheet:
-    """Return one of our templates by its name, or a user's by its path; raises ``TemplateProblem``."""
-    return our_sheet(name) if name in OURS else _user_sheet(name)
+class _TooLong(Exception):
+    """A block makes more text than it may."""
+
+    def __init__(self, largest: int) -> None:
+        super().__init__(f"the block makes more than {largest} bytes of text (limit template-output)")
+
+
+def _limited(pieces: Iterator[str], largest: int) -> Iterator[str]:
+    size = 0
+    for piece in pieces:
+        size += len(piece.encode("utf-8"))
+        if size > largest:
+            raise _TooLong(largest)
+        yield piece
 
 
 @cache
 def our_sheet(name: str = OURS[0]) -> Sheet:
     """Return one of our templates."""
-    return _sheet(f"{name}{ENDING}", _our_source(f"{name}{ENDING}") or "", user=False)
-
-
-def _user_sheet(file: str) -> Sheet:
-    try:
-        source = load_text(Path(file))
-    except UnreadableFile as error:
-        known = ", ".join(OURS)
-        raise TemplateProblem(file, 0, f"{error} (templates that come along: {known})") from None
-    return _sheet(file, source, user=True)
+    return compiled(f"{name}{ENDING}", _our_source(f"{name}{ENDING}") or "")
 
 
 def _our_source(name: str) -> str | None:
@@ -82,7 +103,8 @@ def _our_source(name: str) -> str | None:
     return load_text(Path(__file__).parent / "templates" / name) if name in known else None
 
 
-def _sheet(file: str, source: str, *, user: bool) -> Sheet:
+def compiled(file: str, source: str, largest: int | None = None) -> CompiledSheet:
+    """Return a template of ours, or a user's whose blocks make ``largest`` bytes; raises ``TemplateProblem``."""
     from jinja2 import (
         Environment,
         FunctionLoader,
@@ -99,7 +121,7 @@ def _sheet(file: str, source: str, *, user: bool) -> Sheet:
         return None if text is None else (text, name, None)
 
     # Feature files are plain text: HTML escaping would corrupt the names. Ours need no sandbox, which costs time.
-    environment = (SandboxedEnvironment if user else Environment)(
+    environment = (Environment if largest is None else SandboxedEnvironment)(
         loader=FunctionLoader(load), undefined=StrictUndefined, autoescape=False, keep_trailing_newline=True
     )
     chain: list[Template] = []
@@ -121,13 +143,17 @@ def _sheet(file: str, source: str, *, user: bool) -> Sheet:
         raise TemplateProblem(file, line, f"there is no template '{error.name}' to extend, only {known}") from None
     except TemplateError as error:
         raise TemplateProblem(file, 0, str(error)) from None
-    found = Sheet(file, tuple(chain))
+    except (MemoryError, OverflowError, RecursionError, SyntaxError) as error:
+        # Jinja evaluates constant expressions and compiles the rest to Python, which nests less deeply.
+        said = " ".join(str(error).split())[:LONGEST_MESSAGE]
+        raise TemplateProblem(file, 0, f"the template cannot be compiled ({type(error).__name__}: {said})") from None
+    found = CompiledSheet(file, tuple(chain), largest)
     if not found.has("scenario"):
         raise TemplateProblem(file, 0, f"the template has no block 'scenario' (blocks: {', '.join(BLOCKS)})")
     return found
 
 
-def _problem(sheet: Sheet, error: Exception) -> TemplateProblem:
+def _problem(sheet: CompiledSheet, error: Exception) -> TemplateProblem:
     """Blame the innermost line of a template on the way to an error."""
     templates = {template.filename: template for template in sheet.chain}
     places = [entry for entry in traceback.extract_tb(error.__traceback__) if entry.filename in templates]
@@ -136,5 +162,8 @@ def _problem(sheet: Sheet, error: Exception) -> TemplateProblem:
         # The frames are those of the Python code that a template is compiled to.
         file = places[-1].filename
         line = templates[file].get_corresponding_lineno(places[-1].lineno or 0)
-    kind = "" if type(error).__module__.startswith("jinja2") else f"{type(error).__name__}: "
-    return TemplateProblem(file, line, kind + re.sub(r"\s+", " ", str(error)))
+    if isinstance(error, MemoryError):
+        return TemplateProblem(file, line, "the template needs more memory than the limit template-memory")
+    is_plain = isinstance(error, _TooLong) or type(error).__module__.startswith("jinja2")
+    kind = "" if is_plain else f"{type(error).__name__}: "
+    return TemplateProblem(file, line, kind + re.sub(r"\s+", " ", str(error)[:LONGEST_MESSAGE]))

@@ -1,0 +1,65 @@
+"""The process that renders one template of a user. It ends when its input ends.
+
+Each line of its input is a pickled request in Base64, each line of its output the answer as JSON: ``value``, or
+``file``, ``line`` and ``message`` of a problem. A first answer says that the process is ready. The first request is
+the template, the others are blocks.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import json
+import sys
+from collections.abc import Callable
+
+from robbdd_tools.base.limits import TEMPLATE_MEMORY, TEMPLATE_OUTPUT, TEMPLATE_SECONDS
+from robbdd_tools.base.processes import limit_memory
+from robbdd_tools.gherkin.render import BLOCKS, CompiledSheet, TemplateProblem, compiled
+from robbdd_tools.gherkin.template_requests import Request, TemplateSource, decoded
+
+
+class _Worker:
+    """What the process knows between two requests."""
+
+    def __init__(self) -> None:
+        self._sheet: CompiledSheet | None = None
+        self._values: dict[str, object] = {}
+
+    def answer(self, request: Request) -> object:
+        """Return the blocks of a template, or the text of a block; raises ``TemplateProblem``."""
+        if isinstance(request, TemplateSource):
+            self._sheet = compiled(request.file, request.source, TEMPLATE_OUTPUT.value())
+            return [block for block in BLOCKS if self._sheet.has(block)]
+        assert self._sheet is not None
+        self._values |= request.fresh
+        return self._sheet.render(request.block, {name: self._values[name] for name in request.names})
+
+
+def main() -> None:
+    """Answer requests until the input ends."""
+    stdout, sys.stdout = sys.stdout, sys.stderr
+    limit_memory(TEMPLATE_MEMORY.value())
+    worker = _Worker()
+
+    def send(answer: dict[str, object]) -> None:
+        stdout.write(json.dumps(answer) + "\n")
+        stdout.flush()
+
+    send({"value": None})
+    for line in sys.stdin:
+        # Whoever waits for the answer ends this process; should they be gone, it ends by itself.
+        faulthandler.dump_traceback_later(2 * TEMPLATE_SECONDS.value(), exit=True)
+        answer = _answered(worker.answer, decoded(line))
+        faulthandler.cancel_dump_traceback_later()
+        send(answer)
+
+
+def _answered(answer: Callable[[Request], object], request: Request) -> dict[str, object]:
+    try:
+        return {"value": answer(request)}
+    except TemplateProblem as problem:
+        return {"file": problem.file, "line": problem.line, "message": problem.message}
+
+
+if __name__ == "__main__":
+    main()
