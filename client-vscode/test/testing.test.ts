@@ -211,12 +211,12 @@ test("a refused run says why at what was to be run", async () => {
   const follower = new RunFollower<Node>(world.tree, sink, "fetch.bdd", () => 0);
   const refused = (variations?: number[]) => {
     const wanted = world.tree.wanted(FILE, { variant: "t:fetch", ...(variations && { variations }) });
-    follower.refuse(wanted, "a run is going on");
+    follower.refuse(wanted, "a run is in progress");
   };
   refused();
   await world.tree.expand(world.item("tidy", "fetch"));
   refused([3]);
-  assert.deepEqual(told, ["errored tidy / fetch a run is going on", "errored fetch / part = cube3 a run is going on"]);
+  assert.deepEqual(told, ["errored tidy / fetch a run is in progress", "errored fetch / part = cube3 a run is in progress"]);
 });
 
 const found = { uri: FILE, variant: "t:fetch", variation: 2, values: "part = cube2", seconds: null, stale: false };

@@ -49,7 +49,7 @@ async function twoRuns(): Promise<{ readonly runs: Runs; readonly first: string;
   runs.say(first, { type: "RunStarted", total: 1, simulator: "mujoco 4.0.0" });
   const second = await runs.begin();
   assert.notEqual(first, second.name);
-  runs.answer(1, { problem: "a run is going on: cancel it first", momentary: true });
+  runs.answer(1, { problem: "a run is in progress: cancel it first", momentary: true });
   await second.ended;
   return { runs, first, firstEnded };
 }

@@ -1,7 +1,7 @@
 """Acceptance tests of robots: load, check, plan, run and judge RobBDD models (docs/python.md).
 
-The names in ``__all__`` are the public interface; everything else may change without notice. They are imported when
-they are first used, so that importing the package stays cheap.
+The names in ``__all__`` are the public interface; everything else may change without notice. They are imported at first
+use, so that importing the package stays cheap.
 """
 
 from __future__ import annotations

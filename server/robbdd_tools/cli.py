@@ -1,6 +1,6 @@
-"""The command line: what each ``robbdd`` command takes, and exit codes.
+"""Command line: arguments of each ``robbdd`` command, and exit codes.
 
-Exit codes: 0 all well; 1 errors found (check) or a clause violated or unknown (run); 2 the command could not do its
+Exit codes: 0 success; 1 errors found (check) or a clause violated or unknown (run); 2 the command could not do its
 work; 128 + n ended by signal n (130 Ctrl-C, 143 SIGTERM, 129 SIGHUP).
 """
 
@@ -36,7 +36,7 @@ FORMATS = ("ttl", "json-ld", "json-ld-expanded", "nt", "xml")
 
 
 class _Ended(BaseException):
-    """A signal ends the command, which cleans up what it has begun; ``number`` is the signal's."""
+    """A signal ends the command after its clean-up; ``number`` is the signal's."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
@@ -48,7 +48,7 @@ def _end(number: int) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code; a broken pipe and signals end it quietly."""
+    """Run the command line and return its exit code; a broken pipe and signals end it without a traceback."""
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
@@ -69,10 +69,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Refuses arguments, file names among them, without letting them act on the terminal."""
+    """Argument parser whose error messages are escaped for the terminal."""
 
     def error(self, message: str) -> NoReturn:
-        """Print what is wrong and end the process."""
+        """Print the error and exit."""
         super().error(printable(message))
 
 
@@ -102,19 +102,23 @@ def _parser() -> argparse.ArgumentParser:
     gherkin = commands.add_parser("gherkin", help="write a folder of features that behave runs")
     gherkin.add_argument("path", metavar="FILE", type=Path)
     gherkin.add_argument("-o", "--output", metavar="DIR", type=Path, required=True)
-    gherkin.add_argument("--template", metavar="NAME|FILE", default="default", help="default, compact, de or your own")
-    gherkin.add_argument("--seed", type=int, default=None, help="decides samples and runs (default: 1)")
+    gherkin.add_argument(
+        "--template", metavar="NAME|FILE", default="default", help="default, compact, de or your own file"
+    )
+    gherkin.add_argument("--seed", type=int, default=None, help="seed of samples and runs (default: 1)")
     allow_selection(gherkin)
     gherkin.set_defaults(command=_gherkin)
 
     steps = commands.add_parser("steps", help="write a skeleton of step functions for another robot or simulator")
     steps.add_argument("path", metavar="FILE", type=Path)
-    steps.add_argument("-o", "--output", metavar="STEPS.py", type=Path, help="add what is missing to this file")
-    steps.add_argument("--undefined", action="store_true", help="only free text, which nothing else can judge")
+    steps.add_argument("-o", "--output", metavar="STEPS.py", type=Path, help="add missing steps to this file")
+    steps.add_argument(
+        "--undefined", action="store_true", help="only steps of free-text clauses, which nothing else can judge"
+    )
     steps.set_defaults(command=_steps)
 
     run = commands.add_parser("run", help="execute the scenarios of models in simulation and judge every clause")
-    text = "a model, or a folder of which all models are run"
+    text = "a model, or a folder whose models are all run"
     run.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", help=text)
     allow_run(run)
     run.set_defaults(command=_run)
@@ -124,15 +128,17 @@ def _parser() -> argparse.ArgumentParser:
     allow_store(runs)
     runs.set_defaults(command=_runs)
 
-    replay = commands.add_parser("replay", help="simulate a stored run again and prove that its traces are the same")
+    replay = commands.add_parser("replay", help="simulate a stored run again and check that its traces are identical")
     replay.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
     replay.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
-    replay.add_argument("--force", action="store_true", help="go on where files were changed since the run")
+    replay.add_argument("--force", action="store_true", help="continue even if files have changed since the run")
     allow_policy(replay)
     allow_store(replay)
     replay.set_defaults(command=_replay)
 
-    judge = commands.add_parser("judge", help="judge the traces of a stored run by an edited model, without simulating")
+    judge = commands.add_parser(
+        "judge", help="judge the traces of a stored run against an edited model, without simulating"
+    )
     judge.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
     judge.add_argument("path", metavar="FILE|DIR", type=Path)
     judge.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
@@ -142,30 +148,30 @@ def _parser() -> argparse.ArgumentParser:
     view = commands.add_parser("view", help="render the initial scene of a scenario with its workspaces labelled")
     view.add_argument("path", metavar="FILE", type=Path)
     view.add_argument("--scenario", metavar="NAME", help="this scenario or variant (default: the first)")
-    view.add_argument("--seed", type=int, default=None, help="decides everything random (default: 1)")
+    view.add_argument("--seed", type=int, default=None, help="seed of all random choices (default: 1)")
     view.add_argument("-o", "--output", metavar="FILE.png", type=Path, help="default: the model's name with .png")
     view.set_defaults(command=_view)
 
     imported = commands.add_parser("import", help="write a graph (.ttl, .json, .jsonld) as RobBDD text")
     imported.add_argument("path", metavar="FILE", type=Path)
     imported.add_argument("-o", "--output", metavar="MODEL.bdd", type=Path, required=True)
-    imported.add_argument("--force", action="store_true", help="replace files that are there already")
+    imported.add_argument("--force", action="store_true", help="replace existing files")
     imported.set_defaults(command=_import)
-    query = commands.add_parser("query", help="ask the knowledge graph of a model in SPARQL")
+    query = commands.add_parser("query", help="query the knowledge graph of a model with SPARQL")
     query.add_argument("path", metavar="FILE", type=Path)
     query.add_argument("query", metavar="QUERY", nargs="?", help="SELECT, ASK, CONSTRUCT or DESCRIBE")
     query.add_argument("-f", "--file", metavar="QUERY.rq", type=Path, help="read the query from this file")
-    query.add_argument("--name", metavar="NAME", help="a query that comes along; without any query they are listed")
+    query.add_argument("--name", metavar="NAME", help="a built-in query; without any query, these are listed")
     query.add_argument("--format", choices=("table", "csv", "json", "ttl", "json-ld"), default="table")
     _take_results(query)
     query.set_defaults(command=_query)
-    new = commands.add_parser("new", help="begin a project from a template")
+    new = commands.add_parser("new", help="create a project from a template")
     new.add_argument(
         "path", metavar="DIR", nargs="?", type=Path, help="its folder; without it the templates are listed"
     )
     new.add_argument("--template", metavar="NAME", default="pickplace", help="default: pickplace")
     new.set_defaults(command=_new)
-    doctor = commands.add_parser("doctor", help="test the installation part by part, and say how to fix it")
+    doctor = commands.add_parser("doctor", help="test each part of the installation, and say how to fix it")
     doctor.add_argument("path", metavar="FILE|DIR", nargs="?", type=Path, default=Path(), help="whose store to test")
     doctor.add_argument("--json", action="store_true", help="print one JSON object")
     doctor.set_defaults(command=_doctor)
@@ -175,21 +181,19 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _take_results(parser: argparse.ArgumentParser) -> None:
-    text = "with the results of a run: its JSON, or the number of a stored run (default: the newest)"
+    text = "include the results of a run: its JSON, or the number of a stored run (default: the latest)"
     parser.add_argument("--results", metavar="RESULT.json|RUN", nargs="?", const="latest", help=text)
 
 
 def _allow_refusal(*parsers: argparse.ArgumentParser) -> None:
     for parser in parsers:
-        text = "refuse what needs Python code of users: steps, behaviours, evaluators, models"
+        text = "refuse to execute users' Python code: steps, behaviours, evaluators, models"
         parser.add_argument("--no-user-code", action="store_true", help=text)
 
 
 def _allow_hosts(*parsers: argparse.ArgumentParser) -> None:
     for parser in parsers:
-        text = (
-            "fetch JSON-LD contexts from this host, once; may be repeated (always: context-hosts in your own settings)"
-        )
+        text = "fetch JSON-LD contexts from this host; may be repeated (always: context-hosts in your settings)"
         parser.add_argument("--allow-host", metavar="HOST", action="append", help=text)
 
 
@@ -297,7 +301,7 @@ def _query(options: argparse.Namespace) -> int:
 
     text, results = options.query, options.results
     if text is None and options.file is None and options.name is None and results is not None and "{" in results:
-        # A query right behind --results is taken for its value; no run is called so.
+        # argparse takes a query directly after --results for its value; no run has such a name.
         text, results = results, "latest"
     return query(options.path, text, options.file, options.name, options.format, results)
 

@@ -1,8 +1,8 @@
-"""Entry points of the commands: they clean Python's module path before anything else is imported.
+"""Entry points of the commands: they clean Python's module path before any other import.
 
-``server/scripts`` keeps ``PYTHONPATH`` from the interpreter where a shell starts the commands. On Windows, and where
-``robbdd.py`` is started directly, the interpreter has read it already: its folders are removed from ``sys.path`` here.
-Modules that Python imports before its first script (``encodings``, ``sitecustomize``) are beyond our reach then.
+``server/scripts`` hides ``PYTHONPATH`` from the interpreter if a shell starts the commands. On Windows, and if
+``robbdd.py`` is started directly, the interpreter has already read it: its folders are removed from ``sys.path`` here.
+This cannot cover modules that Python imports before its first script (``encodings``, ``sitecustomize``).
 """
 
 from __future__ import annotations

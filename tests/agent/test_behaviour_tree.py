@@ -128,7 +128,7 @@ def create(leaf):
     [
         ("def create(leaf): return 3", "create' returned a int, not a behaviour of py_trees"),
         ("def create(leaf): return leaf('third')", "the model declares no node 'third' of this tree; it has first"),
-        ("def create(leaf): return leaf('first')", "has 0 nodes called 'second': it must have one"),
+        ("def create(leaf): return leaf('first')", "has 0 nodes called 'second', not one"),
         ("def make(leaf): return None", "has no function 'create'"),
     ],
 )

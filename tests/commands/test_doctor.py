@@ -249,7 +249,7 @@ def test_a_database_that_cannot_be_written_is_found(tmp_path: Path, monkeypatch:
     monkeypatch.setattr(sqlite3, "connect", read_only)
     part = stored(tmp_path)
     assert (part.state, "attempt to write a readonly database" in part.detail) == (State.FAILED, True)
-    assert part.fix == "name another store by `--store DIR`"
+    assert part.fix == "name another store with `--store DIR`"
 
 
 def test_an_installation_without_its_data_is_no_traceback(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -113,7 +113,7 @@ def test_a_template_that_makes_no_gherkin_is_told_so(folder: Path) -> None:
     own.write_text("{% block feature %}Feature: f\n{% endblock %}" + scenario)
     done = robbdd("gherkin", "main.bdd", "-o", "out", "--template", own.name, folder=folder)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("robbdd: own.feature.jinja: what it makes is no Gherkin: ")
+    assert done.stderr.startswith("robbdd: own.feature.jinja: its output is not Gherkin: ")
     assert str(Path("out", "features", "fetching.feature")) in done.stderr
 
 
@@ -123,7 +123,7 @@ def test_steps_are_printed_or_added_to_a_file(folder: Path) -> None:
     assert (printed.returncode, first.returncode) == (0, 0)
     assert printed.stdout == (folder / "steps" / "own.py").read_text(encoding="utf-8")
     again = robbdd("steps", "main.bdd", "-o", "steps/own.py", folder=folder)
-    assert again.stdout == f"{Path('steps', 'own.py')}: 0 new steps, 8 there already\n"
+    assert again.stdout == f"{Path('steps', 'own.py')}: 0 new steps, 8 already defined\n"
     (folder / "steps" / "own.py").write_text("\ndef (:\n", encoding="utf-8")
     broken = robbdd("steps", "main.bdd", "-o", "steps/own.py", folder=folder)
     assert broken.returncode == 2

@@ -27,7 +27,7 @@ def test_imported_text_is_sound_and_gives_the_same_graph(folder: Path) -> None:
 def test_losses_are_warnings_by_triple(folder: Path) -> None:
     done = robbdd("import", "foreign.ttl", "-o", "model.bdd", folder=folder)
     assert done.returncode == 0
-    assert "foreign.ttl: warning: the language cannot say: ex:cup a ex:Cup [lost]\n" in done.stderr
+    assert "foreign.ttl: warning: the language cannot express: ex:cup a ex:Cup [lost]\n" in done.stderr
     assert "ex:thing becomes ex:var-thing" in done.stderr
     assert robbdd("gherkin", "model.bdd", "-o", "f", folder=folder).returncode == 0
 
@@ -60,7 +60,7 @@ def test_what_no_scenario_uses_is_not_called_lost_where_the_scene_says_it(tmp_pa
     (tmp_path / "m.ttl").write_text("\n".join(statements), encoding="utf-8")
     done = robbdd("import", "m.ttl", "-o", "n.bdd", folder=tmp_path)
     assert done.returncode == 0
-    assert sorted(line.partition("cannot say: ")[2] for line in done.stderr.splitlines()) == [
+    assert sorted(line.partition("cannot express: ")[2] for line in done.stderr.splitlines()) == [
         "ex:cube a ex:RigidBody [lost]",
         "ex:tree a rbw:BehaviourTree [lost]",
     ]

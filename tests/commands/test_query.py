@@ -96,7 +96,7 @@ def test_what_holds_no_results_is_refused_in_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "r.json").write_text("[]", encoding="utf-8")
     done = robbdd("query", HEIGHTS, "ASK { }", "--results", "r.json", folder=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "robbdd: r.json holds no results of a run: the document is not an object\n"
+    assert done.stderr == "robbdd: r.json contains no results of a run: the document is not an object\n"
 
 
 PAPER = """import "lab.scene"

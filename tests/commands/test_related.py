@@ -184,7 +184,7 @@ def test_replay_and_judge_know_the_shared_execution(tmp_path: Path) -> None:
     robbdd(tmp_path, "judge", "latest", "m.bdd", "--json", "judged.json")
     document = json.loads((tmp_path / "judged.json").read_text(encoding="utf-8"))
     reasons = {clause["reason"] for scenario in document["scenarios"] for clause in scenario["clauses"]}
-    assert reasons == {"the behaviour tree changed since the run: only a new run can tell"}
+    assert reasons == {"the behaviour tree changed since the run: execute a new run"}
 
 
 def test_results_tell_in_the_graph_what_was_judged_from_one_execution(tmp_path: Path) -> None:

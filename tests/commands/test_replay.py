@@ -143,4 +143,4 @@ def test_what_the_trace_does_not_tell_is_unknown(folder: Path) -> None:
 def test_a_changed_scene_needs_a_new_run(folder: Path) -> None:
     edit(folder, "<thing> is located at <source>", "<thing> is located at <goal>")
     reasons = {one["reason"] for one in judged(folder, 1)}
-    assert reasons == {"the scene changed since the run: only a new run can tell"}
+    assert reasons == {"the scene changed since the run: execute a new run"}

@@ -170,7 +170,7 @@ def test_observations_too_far_apart_in_time_are_no_evidence() -> None:
             spec_of(provider=Provider("x:p", "topic", source="/poses")),
             "env:cube1 is observed by a ROS topic '/poses', which a simulation does not have",
         ),
-        (spec_of(targets=("t:var-thing",)), "a distance is between two things; 1 are observed"),
+        (spec_of(targets=("t:var-thing",)), "a distance is between two elements, but 1 are observed"),
         (spec_of(targets=("t:var-thing", "env:void")), "the trace has no record of 'env:void'"),
         (spec_of(provider=replace(TRUTH, rate=0.0)), "the update rate of the provider of env:cube1 must be above 0 Hz"),
     ],

@@ -127,7 +127,7 @@ async def test_each_execution_has_results_of_its_own(editor: Editor, model: Path
 
 async def test_an_execution_that_is_gone_is_not_run(editor: Editor, model: Path) -> None:
     answer = await run(editor, model, only=[{"variant": VARIANT, "execution": f"{ONE}-2"}])
-    assert "the model does not have these scenarios any more" in answer["problem"]
+    assert "the model no longer has these scenarios" in answer["problem"]
 
 
 @pytest.mark.parametrize("option", ["--json", "--junit"])

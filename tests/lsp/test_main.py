@@ -116,6 +116,6 @@ async def test_a_session_that_begins_with_nonsense_is_told_so_and_may_begin_agai
         error = (await wire.answer("initialize", params))["error"]
         assert (error["code"], error["message"]) == (
             INVALID_PARAMS,
-            "the parameters of initialize are not as the protocol has them",
+            "the parameters of initialize do not match the protocol",
         )
     assert "result" in await wire.answer("initialize", {"capabilities": {}})

@@ -46,7 +46,7 @@ def test_what_is_left_out_is_none() -> None:
 @pytest.mark.parametrize(
     ("read", "message"),
     [
-        (lambda: Parameters([1]).text("uri"), "'uri' is missing: it is a text"),
+        (lambda: Parameters([1]).text("uri"), "'uri' is missing: it must be a text"),
         (lambda: given(uri=7).text("uri"), "'uri' must be a text"),
         (lambda: given(most=-1).optional_number("most"), "'most' must be a whole number from 0"),
         (lambda: given(most=1.5).optional_number("most"), "'most' must be a whole number"),

@@ -111,7 +111,7 @@ async def test_chosen_scenarios_of_an_unopened_file_are_run_under_the_clients_na
 @pytest.mark.parametrize(
     ("only", "words"),
     [
-        ([{"variant": "https://example.org/gone"}], "the model does not have these scenarios any more"),
+        ([{"variant": "https://example.org/gone"}], "the model no longer has these scenarios"),
         ([{"variant": VARIANT, "variations": [99]}], "no scenario fits the selection"),
         ([{"variations": [1]}], "no usable 'only'"),
     ],

@@ -181,4 +181,4 @@ def test_exit_ends_the_process_while_its_work_hangs() -> None:
         [sys.executable, "-c", hanging], input=data, capture_output=True, timeout=PATIENCE, check=False
     )
     assert done.returncode == 0
-    assert b"a thread still works" in done.stderr
+    assert b"a thread is still running" in done.stderr

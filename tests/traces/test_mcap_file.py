@@ -119,7 +119,7 @@ def test_the_first_diverging_step_and_quantity_are_named() -> None:
     [
         (still(4), "step 4: 5 samples were taken, now 4"),
         (replace(still(), names=("e:a", "e:c")), "the scenes hold different bodies"),
-        (replace(still(), remark="x"), "the traces differ in what is known beside the samples"),
+        (replace(still(), remark="x"), "the traces differ apart from the samples"),
     ],
 )
 def test_other_differences_are_named_too(other: Trace, words: str) -> None:

@@ -64,4 +64,4 @@ def test_an_agent_that_must_not_run_code_of_users_imports_none(tmp_path: Path) -
     write(tmp_path / "mine.py", "mine")
     for value, why in (("1", "--no-user-code was given"), (UNTRUSTED, "the workspace is not trusted")):
         found = load(tmp_path, "mine:answer", **{NO_USER_CODE: value})
-        assert found == [f"code of users is not run: {why}", "True"]
+        assert found == [f"users' code is not run: {why}", "True"]

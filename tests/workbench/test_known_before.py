@@ -24,7 +24,7 @@ KNOWN_BEFORE = {
     "setting": r"there is no configuration '|cannot be configured: | has no \w+: that is of ",
     "single-element": r"needs one \w+, not a set of them",
     "no-room": r"there is room for ",
-    "execution-fit": r"does not execute '|a distance is between two things",
+    "execution-fit": r"does not execute '|a distance is between two elements",
     "model-file": r"there is no model file ",
     "python-source": r"No module named |has no attribute ",
     "catalog-entry": r"the catalog has no ",

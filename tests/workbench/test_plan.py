@@ -102,7 +102,7 @@ def test_a_choice_lists_an_execution(executed: Model) -> None:
 
 def test_a_choice_of_scenarios_that_are_gone_is_refused(model: Model) -> None:
     gone = Choice([Listed("https://example.org/gone")])
-    with pytest.raises(NothingSelected, match="any more"):
+    with pytest.raises(NothingSelected, match="no longer"):
         Plan.of(model, Selection(choices=[gone]))
 
 

@@ -7,7 +7,7 @@ export function problemOf(answer: unknown): string | undefined {
   return typeof problem === "string" ? problem : undefined;
 }
 
-/** Whether that says nothing of the scenarios: another run is going on, nothing had failed. */
+/** Whether that says nothing of the scenarios: another run is in progress, or nothing had failed. */
 export function isMomentary(answer: unknown): boolean {
   return isRecord(answer) && answer["momentary"] === true;
 }

@@ -1,1 +1,1 @@
-"""The process that executes scenarios: behave and its steps, the course of behaviours, messages to the parent."""
+"""The process that executes scenarios: behave, its steps, the course of behaviours, messages to the parent."""

@@ -1,6 +1,6 @@
-"""``python -m robbdd_tools.agent RUN_FOLDER``: executes scenarios of a prepared run.
+"""``python -m robbdd_tools.agent RUN_FOLDER``: execute scenarios of a prepared run.
 
-Which ones it reads on its standard input, as they come; it reports on its standard output (``protocol.messages``).
+Reads scenario numbers from standard input as they arrive; writes messages to standard output (``protocol.messages``).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from robbdd_tools.base.processes import on_end_request
 
 
 def _stop(signum: int) -> None:
-    # Every message is written whole and at once, so that there is nothing to flush or to undo.
+    # Every message is written in one call, so there is nothing to flush or to undo.
     os._exit(128 + signum)
 
 
@@ -25,9 +25,9 @@ def _main() -> int:
         return 2
     orders, messages = reserve_channel()
     adopt_orphans()
-    # Executing needs no graphics: a back end that does not work here must not keep the engine from loading.
+    # Execution needs no graphics: a broken graphics back end must not prevent loading the engine.
     os.environ["MUJOCO_GL"] = "disable"
-    # The handlers are in place before the slow imports.
+    # Install the signal handlers before the slow imports.
     from robbdd_tools.agent.orders import read_orders
     from robbdd_tools.agent.runner import run_folder
 

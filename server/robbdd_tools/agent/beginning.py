@@ -1,4 +1,4 @@
-"""What the execution of a scenario begins with: behaviours, times, and the course that related scenarios share."""
+"""Set-up of a scenario's execution: behaviours, times, and the course that related scenarios share."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ScenarioSpec
 
 LEAD = 0.5
-"""Seconds between the scenario's start and its first behaviour, at least."""
+"""Minimum seconds between the scenario's start and its first behaviour."""
 KEPT = 8
-"""Courses that are kept for further scenarios. One that is gone is simulated again, to the last bit the same."""
+"""Number of courses kept for further scenarios. A dropped course is simulated again, bit-identical."""
 
 
 class Courses:
-    """The courses of events that several scenarios may be judged from: one for each execution of a behaviour tree."""
+    """Courses shared by several scenarios: one for each execution of a behaviour tree."""
 
     def __init__(self) -> None:
         self._kept: dict[str, Course] = {}
         self.left_out: set[str] = set()
-        """Elements that were reported as left out."""
+        """Elements already reported as left out."""
 
     def course(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing) -> Course:
-        """Return the course of a scenario, a new one where it shares none; raises ``SceneError``."""
+        """Return the course of a scenario, a new one unless it shares one; raises ``SceneError``."""
         if spec.tree is None:
             return Course(spec, calls, timing)
         course = self._kept.pop(spec.tree.name, None) or Course(spec, calls, timing)
@@ -41,9 +41,9 @@ class Courses:
 
 
 def calls_of(spec: ScenarioSpec) -> list[Call]:
-    """Return the behaviours of a scenario, or of its behaviour tree, as far as it is known what they are about.
+    """Return the behaviours of a scenario, or those of its behaviour tree whose arguments are known.
 
-    Raises ``SceneError`` as ``call_of``.
+    Raises the ``SceneError`` of ``call_of``.
     """
     if spec.tree is not None:
         return [Call(leaf.behaviour, leaf.arguments) for leaf in spec.tree.leaves() if leaf.behaviour]
@@ -51,9 +51,9 @@ def calls_of(spec: ScenarioSpec) -> list[Call]:
 
 
 def call_of(call: BehaviourCall) -> Call:
-    """Return a behaviour as it is executed.
+    """Return a behaviour in executable form.
 
-    A place may be a set, of which the behaviour chooses an element. Raises ``SceneError`` for any other set, and for
+    A place may be a set, from which the behaviour chooses an element. Raises ``SceneError`` for any other set, and for
     an empty one.
     """
     arguments: dict[str, str | tuple[str, ...]] = {}
@@ -69,7 +69,7 @@ def call_of(call: BehaviourCall) -> Call:
 
 
 def timing_of(spec: ScenarioSpec, clauses: Iterable[Clause]) -> Timing:
-    """Leave enough time before and after for the windows that the clauses speak of, its own or those of its tree."""
+    """Return times that leave room for the windows of all clauses, of the scenario or of its tree."""
     lead, tail = (LEAD, 0.0) if spec.tree is None else (spec.tree.lead, spec.tree.tail)
     for clause in clauses if spec.tree is None else ():
         for fluent in fluents_of(clause):

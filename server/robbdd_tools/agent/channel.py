@@ -1,4 +1,4 @@
-"""Where run messages go: to the parent process, or nowhere when behave is run by hand."""
+"""Destination of run messages: the parent process, or none when behave is run by hand."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
 
 
 class Channel:
-    """Takes messages and drops them."""
+    """Drops all messages."""
 
     def send(self, message: RunMessage) -> None:
-        """Pass a message on."""
+        """Drop a message."""
 
 
 class Lines(Channel):
-    """Writes each message at once as a line of JSON to a file descriptor."""
+    """Writes each message immediately to a file descriptor, as a line of JSON."""
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
         self._writing = Lock()
 
     def send(self, message: RunMessage) -> None:
-        """Write a message; the process ends quietly when nobody reads any more."""
+        """Write a message; exit without a message if the reader is gone."""
         data = (encode(message) + "\n").encode()
         try:
             # Threads of users' code print, too.
@@ -39,7 +39,7 @@ class Lines(Channel):
 
 
 class Reports(Lines):
-    """The channel of an agent: knows the scenario that is being executed, if any, and which ones are finished."""
+    """The channel of an agent; tracks the current scenario, if any, and the finished ones."""
 
     def __init__(self, descriptor: int) -> None:
         super().__init__(descriptor)

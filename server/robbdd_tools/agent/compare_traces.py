@@ -1,7 +1,7 @@
-"""``python -m robbdd_tools.agent.compare_traces RUN OTHER``: finds where the traces of two runs first differ.
+"""``python -m robbdd_tools.agent.compare_traces RUN OTHER``: find where the traces of two runs first differ.
 
-Prints one JSON object per scenario with a trace in OTHER: ``index`` and ``difference``, empty when the traces are equal
-to the last bit.
+Prints one JSON object for each scenario with a trace in OTHER: ``index`` and ``difference``, empty if the traces are
+bit-identical.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class _Divergence:
 
 
 def difference(first: Evidence, second: Evidence) -> str:
-    """Say at which sample and in which quantity two traces first differ, and nothing when they are equal to the bit."""
+    """Return the sample and quantity at which two traces first differ; empty if they are bit-identical."""
     if pack(first) == pack(second):
         return ""
     one, other = first.trace, second.trace
@@ -57,7 +57,7 @@ def difference(first: Evidence, second: Evidence) -> str:
     for stamp, again in zip(one.events, other.events, strict=False):
         if stamp != again:
             return f"event {stamp.name} was at {stamp.time:.3f} s; event {again.name} is at {again.time:.3f} s"
-    return "the traces differ in what is known beside the samples (events, settings, regions)"
+    return "the traces differ apart from the samples (events, settings, regions)"
 
 
 def _divergences(one: Trace, other: Trace) -> Iterator[_Divergence | None]:
@@ -78,7 +78,7 @@ def _divergences(one: Trace, other: Trace) -> Iterator[_Divergence | None]:
 def _first(
     ours: FloatArray, theirs: FloatArray, quantity: str, labels: tuple[tuple[str, ...], ...]
 ) -> _Divergence | None:
-    """Return the first place where two arrays differ in their bits, as far as both go."""
+    """Return the first position where the bits of two arrays differ, up to the length of the shorter one."""
     rows = min(len(ours), len(theirs))
     bits = [np.ascontiguousarray(values[:rows]).view(np.uint64) for values in (ours, theirs)]
     places = np.argwhere(bits[0] != bits[1])

@@ -1,4 +1,4 @@
-"""What happens in the world: behaviours that are executed one after the other, or as a behaviour tree wants."""
+"""The course of events in the world: behaviours executed in sequence or by a behaviour tree."""
 
 from __future__ import annotations
 
@@ -36,26 +36,26 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ScenarioSpec
 
 START, END = "scenario-start", "scenario-end"
-"""What emits the events that delimit a scenario."""
+"""Emitters of the events that delimit a scenario."""
 REST = 1.0
-"""Seconds between the end of the last behaviour and the end of the scenario, for things to come to rest."""
+"""Seconds between the end of the last behaviour and the end of the scenario, in which objects come to rest."""
 TIMEOUT = 60.0
 """Seconds of simulated time after which an execution is stopped."""
 PLACES = 1
-"""Tells the random choice of places from that of the scene, which begins with the same seed."""
+"""Separates the random stream for places from that of the scene, which starts from the same seed."""
 LOOK = 16
-"""Ticks after which an execution without any news is looked at again."""
+"""Control ticks after which an execution without events is examined again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A behaviour (by its catalog name) with the names that fill its slots; a place may be a set of workspaces."""
+    """A behaviour (by its catalog name) with the names in its slots; a place may be a set of workspaces."""
 
     behaviour: str
     arguments: Arguments
 
     def element(self, slot: str) -> str:
-        """Return the one element that fills a slot; raises ``SceneError`` for a set."""
+        """Return the single element in a slot; raises ``SceneError`` for a set."""
         found = self.arguments[slot]
         if isinstance(found, str):
             return found
@@ -63,14 +63,14 @@ class Call:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """The workspaces that the behaviour may place at."""
+        """The workspaces where the behaviour may place."""
         found = self.arguments["workspace"]
         return (found,) if isinstance(found, str) else tuple(found)
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A member of a set of places that a behaviour chose: ``iteration`` as of event stamps, tree nodes at work."""
+    """An element that a behaviour chose from a set of places; ``iteration`` and tree nodes as in event stamps."""
 
     iteration: int
     nodes: tuple[str, ...]
@@ -79,7 +79,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """Seconds of simulated time: idle before the first behaviour, recorded after the scenario's end, at most."""
+    """Simulated times, s: minimum idle time before the first behaviour, recording after the scenario's end, timeout."""
 
     lead: float = 0.5
     tail: float = 0.0
@@ -87,14 +87,13 @@ class Timing:
 
 
 class Course:
-    """The course of events: the world, settled, at time 0, and what will be done in it.
+    """The course of events: the settled world at time 0 and the behaviours to execute in it.
 
-    ``stamps`` are what emitters have emitted so far; ``completed`` counts the behaviours that went through, of those
-    that are executed one after the other; ``tree`` is the behaviour tree, if one is executed. ``remark`` is the last
-    word on what went wrong; ``broken`` says what is wrong with the user's code or model, if anything is, so that
-    nothing can be concluded, and ``fault`` describes an error in that code. ``cut_short`` is the verdict on
-    behaviours where the execution ended before its script did; ``failed`` that one of the behaviours failed. ``wall``
-    is the time spent, s. Raises ``SceneError`` when the scene cannot be set up.
+    ``stamps`` are the events emitted so far; ``completed`` counts the successful behaviours of a sequence; ``tree`` is
+    the behaviour tree, if one is executed. ``remark`` is the latest problem. ``broken`` is an error in the user's code
+    or model that prevents any verdict, and ``fault`` describes an error in that code. ``cut_short`` is the verdict on
+    behaviours that had not ended when the execution was stopped; ``failed`` is set when a behaviour has failed.
+    ``wall`` is the wall time spent, s. Raises ``SceneError`` when the scene cannot be set up.
     """
 
     def __init__(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing | None = None) -> None:
@@ -132,7 +131,7 @@ class Course:
         self.wall = perf_counter() - began
 
     def go_on(self) -> None:
-        """Run on until there is news, or for a while."""
+        """Simulate until an event occurs, or for a number of ticks."""
         began = perf_counter()
         self._run_on()
         self.wall += perf_counter() - began
@@ -185,7 +184,7 @@ class Course:
             self.completed += 1
 
     def attempt(self, call: Call) -> Generator[None, None, str]:
-        """Execute a behaviour, one control tick after the other; returns why it failed, else nothing."""
+        """Execute a behaviour, one control tick per step; return why it failed, empty on success."""
         try:
             yield from self._behaviour(call)
         except BehaviourError as error:
@@ -223,7 +222,7 @@ class Course:
         return self._controllers[agent]
 
     def _in_any_order(self, call: Call) -> tuple[str, ...]:
-        """Return the places of a behaviour, in an order that follows from the scenario's seed."""
+        """Return the places of a behaviour in an order derived from the scenario's seed."""
         places = call.places
         if len(places) < 2:
             return places
@@ -246,7 +245,7 @@ class Course:
             raise SceneError(f"the scene does not come to rest: {error}") from error
 
     def _hand_over(self, call: Call) -> None:
-        """Let the agent take hold of what it is to place before the scenario starts."""
+        """Put the object to be placed into the gripper before the scenario starts."""
         self._muted = True
         try:
             for _ in self._controller(call).pick(call.element("object")):
@@ -257,7 +256,7 @@ class Course:
         self.simulation.restart()
 
     def stamp(self, name: str) -> None:
-        """Note that an emitter, by its name, emits its event now."""
+        """Record the event of an emitter at the current time."""
         self.stamps.append(EventStamp(name, self.simulation.time, self._iteration))
 
     def _emit(self, event: str) -> None:
@@ -278,7 +277,7 @@ def _tree_run(spec: TreeSpec, course: Course) -> TreeRun:
 
 
 def _check_implementation(implementation: Implementation | None, calls: Iterable[Call]) -> None:
-    """Raise ``SceneError`` when the implementation cannot execute the behaviours in simulation."""
+    """Raise ``SceneError`` if the implementation cannot execute the behaviours in simulation."""
     if implementation is None or implementation.kind == "python":
         return
     place = at(implementation.origin)

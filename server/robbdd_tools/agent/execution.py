@@ -1,4 +1,4 @@
-"""One execution of a scenario, advanced only as far as somebody wants to know."""
+"""One execution of a scenario, simulated lazily: only as far as its clauses need."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 
 class Execution:
-    """A scenario in execution: what one scenario sees of a course of events, by its own names of the events.
+    """A scenario in execution: one scenario's view of a course, under its own event names.
 
-    The ``course`` is a new one unless one is given: scenarios that are linked to one behaviour tree share it. Raises
+    Without ``course``, a new one is created; scenarios linked to one behaviour tree share a course. Raises
     ``SceneError`` when the scene cannot be set up.
     """
 
@@ -43,7 +43,7 @@ class Execution:
 
     @property
     def simulation(self) -> Simulation:
-        """The simulation, for those who want to look at the world."""
+        """The simulation."""
         return self.course.simulation
 
     @property
@@ -53,17 +53,17 @@ class Execution:
 
     @property
     def completed(self) -> int:
-        """How many behaviours went through."""
+        """Number of successful behaviours."""
         return self.course.completed
 
     @property
     def broken(self) -> str:
-        """What is wrong with the user's code or model, if anything is, so that nothing can be concluded."""
+        """An error in the user's code or model that prevents any verdict; else empty."""
         return self.course.broken
 
     @property
     def fault(self) -> Fault | None:
-        """The error in the user's code that the execution is broken for."""
+        """The error in the user's code behind ``broken``."""
         return self.course.fault
 
     @property
@@ -78,12 +78,12 @@ class Execution:
 
     @property
     def stepping(self) -> float:
-        """Wall time spent in the engine's step so far, s."""
+        """Wall time spent in the engine's steps so far, s."""
         return self.simulation.stepping
 
     @property
     def trace(self) -> Trace:
-        """What happened so far."""
+        """The trace so far."""
         course = self.course
         events = tuple(replace(stamp, name=name) for stamp in course.stamps for name in self._names.get(stamp.name, ()))
         trace = course.simulation.trace(events, course.finished, course.remark)
@@ -94,10 +94,10 @@ class Execution:
         return self.simulation.recorder.states[self.trace.last_at_or_before(time + TICK / 2)]
 
     def advance_until(self, satisfied: Callable[[Trace], bool]) -> Trace:
-        """Run on until a trace satisfies a condition or the execution is finished; returns the trace.
+        """Simulate until the trace satisfies a condition or the execution is finished; return the trace.
 
-        It is asked when an event has occurred or a behaviour is over, and now and then in between; of a scenario that
-        is a part of a behaviour tree, from its beginning on.
+        The condition is evaluated after each event and behaviour, and every few ticks. If the scenario is linked to a
+        part of a behaviour tree, it is first evaluated when that part starts.
         """
         course = self.course
         while not (course.finished or self._begun):
@@ -109,7 +109,7 @@ class Execution:
         return trace
 
     def measured(self, clause: Clause, trace: Trace) -> Trace:
-        """Return a trace with the configuration and the quantities that a clause needs and that cost time."""
+        """Return a trace with the configuration and the costly quantities that a clause needs."""
         began = perf_counter()
         for fluent, arguments in wanting(clause, "reach"):
             agent, name = arguments["agent"], arguments["object"]
@@ -121,7 +121,7 @@ class Execution:
         return self.complete(trace)
 
     def complete(self, trace: Trace) -> Trace:
-        """Return a trace with all that is known beside its samples."""
+        """Return a trace with all data that belongs to it apart from its samples."""
         size, forces, cast = len(trace.times), self.simulation.forces, self.simulation.world.cast
         return replace(
             trace,
@@ -136,9 +136,9 @@ class Execution:
         )
 
     def run_behaviour(self, index: int) -> bool:
-        """Run on until behaviour number ``index`` is over; returns whether it went through.
+        """Simulate until behaviour number ``index`` is over; return whether it succeeded.
 
-        Of a scenario that is linked to a node of a behaviour tree, until that is over.
+        For a scenario linked to a node of a behaviour tree, until the node is over.
         """
         tree = self.course.tree
         if tree is None or not self._node:
@@ -148,7 +148,7 @@ class Execution:
         return tree.has_succeeded(self._node)
 
     def chosen(self, index: int) -> str:
-        """Return the places that behaviour number ``index`` chose of a set, as words; empty without a choice."""
+        """Return the places that behaviour number ``index`` chose from a set, as text; empty without a choice."""
         course = self.course
         found = [
             choice.place
@@ -159,13 +159,13 @@ class Execution:
 
     @property
     def failure(self) -> str:
-        """Why the behaviour failed, once it has."""
+        """Why the behaviour failed; empty if it has not."""
         tree = self.course.tree
         return (tree.failure(self._node) if tree is not None and self._node else "") or self.course.remark
 
     @property
     def cut_short(self) -> Verdict | None:
-        """The verdict on the behaviour where the execution ended while it was still going on."""
+        """The verdict on a behaviour that had not ended when the execution was stopped."""
         tree = self.course.tree
         over = self.course.failed if tree is None or not self._node else tree.is_over(self._node)
         return None if over else self.course.cut_short
@@ -183,7 +183,7 @@ class Execution:
 
 
 def _names_of(events: Mapping[str, str]) -> dict[str, list[str]]:
-    """Turn event → emitter into emitter → events."""
+    """Invert event → emitter to emitter → events."""
     names: dict[str, list[str]] = {}
     for event, emitter in events.items():
         names.setdefault(emitter, []).append(event)

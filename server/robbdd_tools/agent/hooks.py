@@ -1,6 +1,6 @@
-"""Hooks of behave: they hold the simulated world while behave goes through the scenarios.
+"""Hooks of behave: they manage the simulated world during a behave run.
 
-behave has no types; this module and ``steps`` are the only ones that see its objects.
+behave has no types; only this module and ``steps`` access its objects.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from robbdd_tools.user_code.calls import fault_of, original
 
 __all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario"]
 EXECUTION = "robbdd.execution"
-"""Where behave's user data holds which scenario of the manifest is being executed: several may share a feature's."""
+"""Key of behave's user data for the manifest's scenario number: several may share a feature's scenario."""
 
 
 def before_all(context: Any) -> None:
-    """Read the manifest that lies beside the features folder; raises ``OSError`` or ``ValueError``."""
+    """Read the manifest in the parent of the features folder; raises ``OSError`` or ``ValueError``."""
     folder = Path(context.config.base_dir).resolve().parent
     if not (folder / MANIFEST).is_file():
         raise OSError(f"there is no {MANIFEST} in {folder}: run a folder that 'robbdd run' has written")
@@ -29,8 +29,8 @@ def before_all(context: Any) -> None:
 
 
 def before_scenario(context: Any, scenario: Any) -> None:
-    """Read the scenario's steps ahead, so that its world knows which behaviours are to come."""
-    # A failed clause says nothing about the others: each gets its verdict.
+    """Read the scenario's steps in advance, so that its world knows the coming behaviours."""
+    # Execute the remaining steps after a failed one: each clause gets its own verdict.
     scenario.continue_after_failed_step = True
     texts = [(int(step.line), str(step.step_type), str(step.name)) for step in scenario.all_steps]
     handed_out = context.config.userdata.get(EXECUTION)
@@ -39,25 +39,25 @@ def before_scenario(context: Any, scenario: Any) -> None:
 
 
 def after_step(context: Any, step: Any) -> None:
-    """Tell the outcome of a step that a user's own function carried out; ours have reported their verdict already."""
+    """Report the outcome of a user-defined step; our own steps have already reported their verdict."""
     sources = context.session.sources
     context.session.take_verdict(int(step.line), _verdict(step, sources))
 
 
 def after_scenario(context: Any, _scenario: Any) -> None:
-    """Give the clauses that are still open their verdict."""
+    """Report a verdict for each open clause."""
     context.session.finish()
 
 
 def after_all(context: Any) -> None:
-    """Give a scenario that was broken off its verdict."""
+    """Report verdicts for an interrupted scenario."""
     session = getattr(context, "session", None)
     if session is not None:
         session.finish()
 
 
 def _verdict(step: Any, sources: Mapping[str, str]) -> Verdict:
-    """Return what the outcome of a step says of its clause: a failed assertion violates it.
+    """Return the verdict on a step's clause from the step's outcome: a failed assertion violates it.
 
     ``sources`` maps copies of files of steps to the files that users edit.
     """

@@ -1,4 +1,4 @@
-"""Keeps the state of the world at the moment at which a clause was violated, for pictures of it later."""
+"""Store the world state at each clause violation, to render pictures later."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FOLDER = "moments"
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Scenario number ``index``, the feature line of the clause, the time (s), the engine's joint positions."""
+    """A violation: scenario number, feature line of the clause, time (s), the engine's joint positions."""
 
     index: int
     line: int
@@ -28,34 +28,34 @@ class Moment:
 
 
 class Moments:
-    """The moments of a run folder: a file per scenario with one JSON object per line, in the order of their finding.
+    """The violations of a run folder: one file per scenario with one JSON object per line, in order of detection.
 
-    Several agent processes may work on one folder, each on scenarios of its own.
+    Several agent processes may work in one folder, each on its own scenarios.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder / FOLDER
 
     def clear(self, index: int) -> None:
-        """Forget those of an earlier execution of a scenario; raises ``OSError``."""
+        """Delete those of an earlier execution of a scenario; raises ``OSError``."""
         self._file(index).unlink(missing_ok=True)
 
     def keep(self, index: int, line: int, at: float, state: FloatArray) -> None:
-        """Add a moment; raises ``OSError``."""
+        """Add a violation; raises ``OSError``."""
         moment = Moment(index, line, at, tuple(state.tolist()))
         self._folder.mkdir(exist_ok=True)
         with self._file(index).open("a", encoding="utf-8") as file:
             file.write(json.dumps(asdict(moment)) + "\n")
 
     def __iter__(self) -> Iterator[Moment]:
-        """Yield the moments, scenario by scenario; raises ``OSError`` or ``ValueError`` when they cannot be read."""
+        """Yield all, scenario by scenario; raises ``OSError`` or ``ValueError`` if a file cannot be read."""
         for path in sorted(self._folder.glob("*.jsonl")):
             for line in load_text(path, RESULT_SIZE).splitlines():
                 try:
                     fields = json.loads(line)
                     yield Moment(fields["index"], fields["line"], fields["at"], tuple(fields["state"]))
                 except (KeyError, TypeError) as error:
-                    raise ValueError(f"{path} holds something else than moments") from error
+                    raise ValueError(f"{path} does not contain moments") from error
 
     def _file(self, index: int) -> Path:
         return self._folder / f"{index:06}.jsonl"

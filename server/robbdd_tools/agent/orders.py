@@ -1,4 +1,4 @@
-"""The orders of the parent process, and the end of this process when the parent is gone."""
+"""Read the parent's orders, and end this process when the parent is gone."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from time import sleep
 from typing import TextIO
 
 PAUSE = 0.2
-"""Seconds between two looks at whether the parent process is still there, once it has closed its end."""
+"""Seconds between two checks that the parent process is alive, after it has closed the stream."""
 
 
 def read_orders(stream: TextIO) -> Iterator[str]:
-    """Yield the lines of a stream as they come.
+    """Yield the lines of a stream as they arrive.
 
-    Whatever is being executed, this process ends at once when the stream has ended and the parent process is gone. A
-    parent that has sent all that it wants gets it done.
+    When the stream has ended and the parent process is gone, this process exits immediately, whatever it executes. If
+    the parent is alive, all orders are completed.
     """
     lines: SimpleQueue[str | None] = SimpleQueue()
     threading.Thread(target=_read, args=(stream, os.getppid(), lines), daemon=True).start()

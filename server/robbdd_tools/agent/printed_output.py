@@ -1,4 +1,4 @@
-"""What users' code prints: it goes to the log of the process, and the first part of it to the parent as messages."""
+"""Output of users' code: all of it goes to the process's log, the first part also to the parent as messages."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from robbdd_tools.agent.channel import Reports
 
 MOST = 16_000
-"""Characters that are passed on of what one scenario prints."""
-CUT = "… more was printed: it is in the log of the run"
+"""Maximum characters of one scenario's output that are sent as messages."""
+CUT = "… the rest of the output is in the log of the run"
 
 
 class Printed(io.TextIOBase):
-    """A text stream in place of the standard output; lines are passed on when they are complete."""
+    """Replaces standard output; complete lines are sent as messages."""
 
     encoding = "utf-8"
 
@@ -33,16 +33,16 @@ class Printed(io.TextIOBase):
         self._left = MOST
 
     def writable(self) -> bool:
-        """Tell that it can be written to."""
+        """Return true."""
         return True
 
     def write(self, text: str) -> int:
-        """Write a text to the log, and pass its complete lines on."""
+        """Write a text to the log, and send its complete lines."""
         written = len(text)
         text = encodable(text)
         self._log.write(text)
         if "\n" in text:
-            # The process may be ended at any time.
+            # The process may be killed at any time.
             self._log.flush()
         self._begin()
         if self._left >= 0:
@@ -53,18 +53,18 @@ class Printed(io.TextIOBase):
         return written
 
     def flush(self) -> None:
-        """Write what is buffered to the log."""
+        """Flush the buffer to the log."""
         self._log.flush()
 
     def finish(self) -> None:
-        """Pass on a last line without an end."""
+        """Send a last line without a line break."""
         if self._line and self._left >= 0:
             self._pass_on(self._line)
         self._line = ""
         self.flush()
 
     def _begin(self) -> None:
-        """Each scenario has its own share."""
+        """Reset the limit at the start of each scenario."""
         if self._channel.scenario != self._scenario:
             self._scenario, self._line, self._left = self._channel.scenario, "", MOST
 
@@ -75,6 +75,6 @@ class Printed(io.TextIOBase):
 
 
 def finish_output() -> None:
-    """Pass on what was printed without the end of a line; called before a scenario is reported as finished."""
+    """Send output without a final line break; called before a scenario is reported as finished."""
     if isinstance(sys.stdout, Printed):
         sys.stdout.finish()

@@ -1,7 +1,7 @@
-"""``python -m robbdd_tools.agent.rejudge FOLDER RUN``: judges stored traces against other clauses, without simulating.
+"""``python -m robbdd_tools.agent.rejudge FOLDER RUN``: judge stored traces against other clauses, without simulating.
 
-FOLDER is a run folder whose scenarios are to be judged, with the results of the stored run RUN, which has the traces.
-Reports as the agent does.
+FOLDER is a run folder with the scenarios to judge and the results of the stored run RUN, which has the traces. Writes
+the same messages as the agent.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.traces.mcap_file import UnreadableTrace, read_trace
 
 UNKNOWN_SCENARIO = "the stored run has no scenario with these values"
-CHANGED = "{} changed since the run: only a new run can tell"
+CHANGED = "{} changed since the run: execute a new run"
 
 
 class StoredTraces:
-    """The traces of a run, and the verdicts on its behaviours; raises ``OSError``, ``ValueError`` or ``KeyError``."""
+    """A run's traces and its verdicts on behaviours; raises ``OSError``, ``ValueError`` or ``KeyError``."""
 
     def __init__(self, folder: Path, results: Path) -> None:
         self._folder = folder
@@ -71,7 +71,7 @@ class StoredTraces:
                 yield clause, _decided(clause, found, spec, stored)
 
     def _evidence(self, index: int, spec: ScenarioSpec, stored: ScenarioSpec) -> Evidence | Verdict:
-        """Return the trace of an execution, or the verdict on all of its clauses where there is none."""
+        """Return the trace of an execution; without a usable trace, the verdict on all of its clauses."""
         reason = _change(spec, stored)
         if reason:
             return unknown(reason, Cause.CHANGED)
@@ -81,12 +81,12 @@ class StoredTraces:
             return unknown(str(error), Cause.NO_RECORD)
 
     def duration(self, spec: ScenarioSpec) -> float:
-        """Return the simulated time (s) of the stored execution of a scenario, 0 when there is none."""
+        """Return the simulated time (s) of a scenario's stored execution, 0 without one."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
         return 0.0 if stored is None else self._results[index].get("duration") or 0.0
 
     def ranges(self, number: int, spec: ScenarioSpec) -> Iterator[MarginRanges]:
-        """Yield what the trace of a scenario says of clauses that prove little; ``number`` is the scenario's."""
+        """Yield margin ranges from the trace of scenario ``number``, to find clauses that prove little."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
         if stored is None or _change(spec, stored):
             return
@@ -101,7 +101,7 @@ class StoredTraces:
                 yield found
 
     def contacts(self, spec: ScenarioSpec) -> tuple[Contact, ...]:
-        """Return the contacts in the trace of a scenario that its clauses do not name."""
+        """Return the contacts in a scenario's trace that its clauses do not name."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
         if stored is None:
             return ()
@@ -115,7 +115,7 @@ class StoredTraces:
     def _done(
         self, clause: ClauseSpec, evidence: Evidence, index: int, spec: ScenarioSpec, stored: ScenarioSpec
     ) -> Verdict:
-        """Return the verdict on a When clause: an event of the trace, or what the run said of the behaviour."""
+        """Return the verdict on a When clause: from an event of the trace, or the stored result of the behaviour."""
         statement = statement_of(clause)
         if isinstance(statement, EventOccurrence):
             event, trace, iteration = statement.event, evidence.trace, iteration_of(clause)
@@ -134,7 +134,7 @@ class StoredTraces:
 def _stored_behaviour(
     clause: ClauseSpec, spec: ScenarioSpec, stored: ScenarioSpec, results: Sequence[Mapping[str, Any]]
 ) -> Mapping[str, Any] | None:
-    """Return the stored result of the same behaviour: the scenarios execute the same ones in the same order."""
+    """Return the stored result of the same behaviour: both scenarios execute the same ones in the same order."""
     then = [entry for one, entry in zip(stored.clauses, results, strict=True) if _is_behaviour(one)]
     now = [one for one in spec.clauses if _is_behaviour(one)]
     return then[now.index(clause)] if len(now) == len(then) else None
@@ -145,7 +145,7 @@ def _is_behaviour(clause: ClauseSpec) -> bool:
 
 
 def _change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
-    """Say why a trace is no evidence for a scenario any more."""
+    """Return why a trace is not evidence for an edited scenario; empty if it is."""
     if spec.scene != stored.scene:
         return CHANGED.format("the scene")
     if (spec.tree, spec.node) != (stored.tree, stored.node):
@@ -161,7 +161,7 @@ def _decided(clause: ClauseSpec, evidence: Evidence, spec: ScenarioSpec, stored:
         for event, iteration in occurrences(fluent.time):
             if event in spec.events and spec.events[event] != stored.events.get(event):
                 return unknown(f"the stored trace has no record of event {event}", Cause.NO_RECORD)
-            # The run went no further than its own clauses asked for.
+            # The run simulated only as far as its own clauses needed.
             if event in spec.events and not trace.finished and trace.event_time(event, iteration) is None:
                 return unknown(f"the stored trace ends at {trace.end:.2f} s, before event {event}", Cause.NO_RECORD)
     return decide(read, trace, evidence.regions, spec.events.keys())

@@ -1,13 +1,13 @@
-"""Pictures of a run folder, without a display.
+"""Render pictures of a run folder without a display.
 
 ``python -m robbdd_tools.agent.render_run RUN_FOLDER INDEX FILE.png`` renders the initial scene of scenario number INDEX
-(from 0); ``… RUN_FOLDER moments FOLDER`` the moment of every clause that was violated; ``… RUN_FOLDER videos FOLDER``
-every scenario from beginning to end, executed again: the same seed gives the same bits;
-``… RUN_FOLDER thumbnails FOLDER INDEX:LINE …`` small pictures of some violations (scenario, feature line).
+(from 0); ``… RUN_FOLDER moments FOLDER`` the moment of every violated clause; ``… RUN_FOLDER videos FOLDER`` every
+scenario from start to end, by a bit-identical second execution; ``… RUN_FOLDER thumbnails FOLDER INDEX:LINE …`` small
+pictures of some violations (scenario, feature line).
 
-Exit codes: 0 done; 2 the scene cannot be set up or a file not be read or written; 3 nothing here can render (the
-environment variable ``MUJOCO_GL`` chooses among ``egl``, ``osmesa`` and ``glfw``). Messages are on standard error,
-the names of the pictures on standard output.
+Exit codes: 0 done; 2 the scene cannot be set up or a file cannot be read or written; 3 no graphics back end works (the
+environment variable ``MUJOCO_GL`` selects ``egl``, ``osmesa`` or ``glfw``). Messages go to standard error, the names of
+the pictures to standard output.
 """
 
 from __future__ import annotations
@@ -38,17 +38,17 @@ USAGE = (
     "(INDEX FILE.png | moments FOLDER | videos FOLDER | thumbnails FOLDER INDEX:LINE …)"
 )
 SMALL = (300, 188)
-"""Width and height of a small picture, pixels."""
+"""Width and height of a thumbnail, pixels."""
 COARSE = np.uint8(0xFC)
-"""Bits of a small picture's colours that are kept: it is to be sent within a text of some ten thousand letters."""
+"""Colour bits kept in a thumbnail, which is sent within a text of some ten thousand characters."""
 
 
 def render(folder: Path, what: str, output: Path, chosen: Sequence[str] = ()) -> int:
-    """Write the pictures that are asked for; returns the exit code."""
+    """Write the requested pictures; return the exit code."""
     try:
         from robbdd_tools.agent.video import NoVideo
         from robbdd_tools.world.picture import NoPicture
-    except Exception as error:  # the engine chooses its back end when it is imported; each fails in its own way
+    except Exception as error:  # the engine selects its back end on import; each fails with its own exception type
         print(f"{type(error).__name__}: {error}", file=sys.stderr)
         return NO_GRAPHICS
     try:
@@ -123,7 +123,7 @@ def _stem(spec: ScenarioSpec) -> str:
 
 
 def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]], small: bool = False) -> Iterator[Path]:
-    """Write pictures of one scenario: of a moment, or of the initial scene; yields their paths."""
+    """Write pictures of one scenario: of moments, or of the initial scene; yield their paths."""
     from robbdd_tools.agent.beginning import calls_of
     from robbdd_tools.agent.execution import Execution
     from robbdd_tools.world.picture import Camera
@@ -143,7 +143,7 @@ def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]], 
 
 
 def _halved(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Return a picture of half the size in coarser colours: labels, too, are then half as large."""
+    """Return a picture of half the size in coarser colours; labels are halved, too."""
     height, width, _ = pixels.shape
     means = pixels.reshape(height // 2, 2, width // 2, 2, 3).mean(axis=(1, 3))
     return means.astype(np.uint8) & COARSE

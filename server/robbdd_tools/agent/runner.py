@@ -1,4 +1,4 @@
-"""Runs behave in this process on the scenarios of a prepared run folder, one after the other as they are ordered."""
+"""Run behave in this process on the ordered scenarios of a prepared run folder, one after the other."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ QUIET = ("--format=null", "--no-summary", "--no-capture", "--no-capture-stderr",
 
 
 def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
-    """Execute scenarios of a run folder and write messages to a file descriptor; returns the exit code."""
+    """Execute scenarios of a run folder and write messages to a file descriptor; return the exit code."""
     channel = Reports(descriptor)
     use_channel(channel)
     folder = Path(name)
@@ -63,7 +63,7 @@ def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
 
 
 def _behave(features: Features, orders: Iterable[str]) -> str:
-    """Let behave execute what is ordered; returns what kept it from working, else nothing."""
+    """Execute the ordered scenarios with behave; return why behave could not work, else an empty string."""
     configuration: Any = import_module("behave.configuration").Configuration
     behave: Any = import_module("behave.runner")
     config = configuration([*QUIET, str(features.folder / "features")], load_config=False)
@@ -71,8 +71,8 @@ def _behave(features: Features, orders: Iterable[str]) -> str:
     if not any((features.folder / "features").rglob("*.feature")):
         return f"behave cannot run the features: No feature files in {features.folder / 'features'}"
     try:
-        # What behave would load by itself is every Python file in the folder, which it also searches before the
-        # standard library.
+        # By itself, behave would load every Python file in the folder, and put the folder before the standard library
+        # in the search path.
         runner.base_dir = config.base_dir = str(features.folder / "features")
         runner.context = behave.Context(runner)
         runner.hooks.update((name, getattr(hooks, name)) for name in hooks.__all__)
@@ -81,13 +81,13 @@ def _behave(features: Features, orders: Iterable[str]) -> str:
         except (Exception, SystemExit) as error:
             return features.report_broken_steps(error)
         runner.run_model(features.ordered(orders, config.userdata))
-    except Exception as error:  # behave's own failures (a broken hooks or steps file) are of many types
+    except Exception as error:  # behave's own failures (a broken hooks or steps file) have many types
         return f"behave cannot run the features: {' '.join(str(error).split())}"
     return ""
 
 
 class Features:
-    """The features of a run folder, each parsed when it is first needed."""
+    """The features of a run folder, each parsed at first use."""
 
     def __init__(self, folder: Path, manifest: Manifest, channel: Reports) -> None:
         self.folder = folder
@@ -97,9 +97,9 @@ class Features:
         self._parsed: dict[str, tuple[Any, dict[int, Any]] | Exception] = {}
 
     def own_steps(self) -> list[Path]:
-        """Return the files of steps that users wrote, and let these import what lies beside the models.
+        """Return the files of user-defined steps, and let them import modules from the models' folders.
 
-        Raises ``UserCodeError`` where code of users must not be run.
+        Raises ``UserCodeError`` if users' code must not be run.
         """
         found = sorted((self.folder / "features" / "steps").glob(OWN_STEPS))
         for model in dict.fromkeys(spec.model for spec in self._manifest.scenarios) if found else ():
@@ -107,7 +107,7 @@ class Features:
         return found
 
     def ordered(self, orders: Iterable[str], userdata: dict[str, str]) -> Iterator[Any]:
-        """Yield one feature per order, with the one scenario that was ordered; every order gets its report."""
+        """Yield one feature per order, reduced to the ordered scenario; every order gets its report."""
         for line in orders:
             index = decode_order(line).index
             tree = self._manifest.scenarios[index].tree
@@ -118,18 +118,18 @@ class Features:
             userdata[EXECUTION] = str(index)
             try:
                 yield self._feature(index)
-            except Exception as error:  # an unreadable file, or a feature that is no Gherkin: behave's own types
+            except Exception as error:  # an unreadable file, or a feature that is not Gherkin: behave's own types
                 reason = f"behave cannot run the features: {' '.join(str(error).split())}"
                 self._channel.send(LogLine("error", reason))
                 self._unknown(index, reason)
             if index not in self._channel.finished:
                 self._unknown(index, "behave did not execute the scenario")
-            # The execution of a behaviour tree goes on in the next scenario that is judged from it.
+            # The execution of a behaviour tree continues in the next scenario judged from it.
             if tree is None:
                 end_descendants()
 
     def report_broken_steps(self, error: BaseException) -> str:
-        """Report that the users' steps cannot be loaded; returns the reason."""
+        """Report that the users' steps cannot be loaded; return the reason."""
         sources = {str((self.folder / copy).resolve()): source for copy, source in self._manifest.sources.items()}
         fault = original(fault_of(error, "steps"), sources)
         place = fault.place

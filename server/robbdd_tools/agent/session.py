@@ -1,4 +1,4 @@
-"""The state of a run while behave goes through it: the manifest, the scenario at hand, what has been judged."""
+"""State of a run during behave's execution: the manifest, the current scenario, the verdicts so far."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ UNKNOWN_SCENARIO = "the manifest of this run knows no such scenario; was the fea
 
 
 class ScenarioRun:
-    """One scenario being executed. ``texts`` are its steps in order: line, role (given, when, then) and sentence.
+    """The current scenario. ``texts`` are its steps in order: line, role (given, when, then) and sentence.
 
-    ``keep`` is the run folder that its trace goes to, if it is wanted.
+    ``keep`` is the run folder for its trace, if the trace is wanted.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class ScenarioRun:
         channel.send(ScenarioStarted(index))
 
     def set_up(self) -> None:
-        """Build the scene, unless that was done; raises ``SceneError``."""
+        """Build the scene if not yet done; raises ``SceneError``."""
         if self._broken:
             raise self._broken
         if self._execution is None:
@@ -103,7 +103,7 @@ class ScenarioRun:
                 self._execution = Execution(self._spec, calls, timing, course)
                 again = self._execution.simulation.world.resampled
                 if again and not self._execution.simulated:
-                    text = f"{self._spec.name}: {again} initial places overlapped and were drawn again"
+                    text = f"{self._spec.name}: {again} initial places overlapped and were resampled"
                     self._channel.send(LogLine("info", text))
                 self._report_left_out(self._execution)
                 self._show(self._execution)
@@ -112,15 +112,15 @@ class ScenarioRun:
                 raise
 
     def _report_left_out(self, execution: Execution) -> None:
-        """Name the elements that are not simulated, each once."""
+        """Report the elements that are not simulated, each once."""
         new = [name for name in execution.simulation.world.cast.left_out if name not in self._courses.left_out]
         self._courses.left_out.update(new)
         if new:
-            text = f"not simulated, as no clause speaks of them and no .scenex places them: {', '.join(new)}"
+            text = f"not simulated, as no clause uses them and no .scenex places them: {', '.join(new)}"
             self._channel.send(LogLine("warning", text))
 
     def _show(self, execution: Execution) -> None:
-        """Open a window on the scenario where one is wanted; verdicts stand without it."""
+        """Open a viewer window if requested; a failure does not affect verdicts."""
         if os.environ.get(VIEWER):
             try:
                 self._viewer = Viewer(execution.simulation)
@@ -128,7 +128,7 @@ class ScenarioRun:
                 self._channel.send(LogLine("warning", str(error)))
 
     def clause(self, line: int, text: str) -> Verdict:
-        """Run on as far as a Given or Then clause needs and judge it."""
+        """Simulate as far as a Given or Then clause needs, and judge it."""
         clause = self._clauses.get(line) or read_clause(text)
 
         def verdict(execution: Execution) -> Verdict:
@@ -141,7 +141,7 @@ class ScenarioRun:
         return self._judged(line, text, verdict)
 
     def behaviour(self, line: int, text: str) -> Verdict:
-        """Run to the end of a behaviour; its clause holds when the behaviour went through."""
+        """Simulate to the end of a behaviour; its clause holds if the behaviour succeeded."""
         index = list(self._calls).index(line) if line in self._calls else None
 
         def verdict(execution: Execution) -> Verdict:
@@ -162,7 +162,7 @@ class ScenarioRun:
         return self._judged(line, text, verdict)
 
     def event(self, line: int, text: str) -> Verdict:
-        """Run on until the event that a When step names has occurred."""
+        """Simulate until the event of a When step has occurred."""
         event, iteration = self._events.get(line, text), iteration_of(self._known.get(line))
 
         def verdict(execution: Execution) -> Verdict:
@@ -179,13 +179,13 @@ class ScenarioRun:
         return self._judged(line, text, verdict)
 
     def take_verdict(self, line: int, verdict: Verdict) -> None:
-        """Take the verdict of a user's step on a clause that has none yet."""
+        """Record the verdict of a user's step on a clause without a verdict."""
         self._report(line, verdict)
 
     def finish(self) -> None:
-        """Judge texts that a policy judges, report what is left open as unknown, and the scenario as finished."""
+        """Judge texts that have a policy, report open clauses as unknown, and report the scenario as finished."""
         for line, sentence in list(self._open.items()):
-            # behave knows no step for such a text.
+            # behave has no step for such a text.
             if line in self._texts and isinstance(self._clauses[line], Fluent):
                 self.clause(line, sentence)
         for line, sentence in list(self._open.items()):
@@ -211,7 +211,7 @@ class ScenarioRun:
         return unnamed_contacts(self._clauses.values(), trace, execution.regions)
 
     def _tell_ranges(self, execution: Execution) -> None:
-        """Tell how far the margins varied in all that happened, for clauses that could not have failed."""
+        """Report the margin ranges of the whole execution, to find clauses that could not have failed."""
         for line, clause in self._clauses.items():
             known = self._known.get(line)
             if known is None:
@@ -251,7 +251,7 @@ class ScenarioRun:
             assert self._execution is not None
             try:
                 found = verdict(self._execution)
-            except Exception as error:  # user code may be called; what it breaks is this clause's evidence only
+            except Exception as error:  # users' code may be called; its failure affects only this clause
                 fault = fault_of(error, text)
                 found = unknown(f"the step failed: {fault.summary}", Cause.USER_CODE, fault=fault)
         self._report(line, found)
@@ -280,14 +280,14 @@ def _broken(execution: Execution) -> Verdict:
 
 
 class Session:
-    """A run: finds the scenario of a manifest that behave is at.
+    """A run: finds behave's current scenario in the manifest.
 
     ``sources`` maps copies of files of users' steps to the originals, as absolute paths.
     """
 
     def __init__(self, folder: Path, manifest: Manifest, channel: Channel) -> None:
         self._channel = channel
-        # Repetitions share a feature's scenario; by hand, behave executes the first of them.
+        # Repetitions share a feature's scenario; behave run by hand executes the first of them.
         self._indices = {
             ((folder / spec.feature).resolve(), spec.line): index
             for index, spec in reversed(list(enumerate(manifest.scenarios)))
@@ -302,9 +302,9 @@ class Session:
     def start(
         self, feature: Path, line: int, texts: Sequence[tuple[int, str, str]], handed_out: int | None = None
     ) -> None:
-        """Begin the scenario whose heading stands there; without one in the manifest, its steps will fail.
+        """Begin the scenario at this line of a feature; if the manifest has none, its steps will fail.
 
-        ``handed_out`` is its number where the parent process asked for it.
+        ``handed_out`` is its number if the parent process ordered it.
         """
         self._present = None
         index = self._indices.get((feature.resolve(), line))
@@ -319,18 +319,18 @@ class Session:
 
     @property
     def scenario(self) -> ScenarioRun:
-        """The scenario at hand; raises ``SceneError`` when the manifest does not know it."""
+        """The current scenario; raises ``SceneError`` if it is not in the manifest."""
         if self._present is None:
             raise SceneError(UNKNOWN_SCENARIO)
         return self._present
 
     def take_verdict(self, line: int, verdict: Verdict) -> None:
-        """Take the verdict of a user's step on the clause of a line."""
+        """Record the verdict of a user's step on the clause of a line."""
         if self._present is not None:
             self._present.take_verdict(line, verdict)
 
     def finish(self) -> None:
-        """End the scenario at hand."""
+        """End the current scenario."""
         if self._present is not None:
             self._present.finish()
             self._present = None

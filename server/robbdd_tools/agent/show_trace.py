@@ -1,7 +1,7 @@
-"""``python -m robbdd_tools.agent.show_trace RUN INDEX``: prints what a stored trace shows as one JSON object.
+"""``python -m robbdd_tools.agent.show_trace RUN INDEX``: print the contents of a stored trace as one JSON object.
 
-It is what of ``docs/schemas/trace.schema.json`` only the trace knows: shapes, meshes, bodies, frames, workspaces.
-Exit codes: 0 done; 2 the trace cannot be read, which standard error explains.
+It is the part of ``docs/schemas/trace.schema.json`` that comes from the trace: shapes, meshes, bodies, frames,
+workspaces. Exit codes: 0 done; 2 the trace cannot be read, with the reason on standard error.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from robbdd_tools.world.arrays import array
 
 FAILED = 2
 FRAMES = 4000
-"""Instants of an answer; of longer executions it has every second one, every third …"""
+"""Maximum number of frames; longer executions are thinned to every second one, every third …"""
 
 
 def show(path: Path) -> dict[str, Any]:
-    """Return what is to be seen in a trace; raises ``UnreadableTrace``."""
+    """Return the displayable contents of a trace; raises ``UnreadableTrace``."""
     seen = read_views(path, ("/geometry", "/tf"))
     transforms = [message["transforms"] for _, message in seen["/tf"]]
     if not transforms or not seen["/geometry"]:
-        raise UnreadableTrace(f"{path} was stored by an older version and tells no shapes: run the scenario again")
+        raise UnreadableTrace(f"{path} was stored by an older version and has no shapes: run the scenario again")
     geometry = seen["/geometry"][0][1]
     start = {frame["child_frame_id"]: _pose(frame) for frame in transforms[0]}
     numbers = {name: number for number, name in enumerate(start)}

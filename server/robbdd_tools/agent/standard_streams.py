@@ -1,4 +1,4 @@
-"""Keeps the standard streams of an agent process for users' code, and the channel to the parent out of its reach."""
+"""Give users' code usable standard streams, and keep the channel to the parent out of its reach."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import os
 
 
 def reserve_channel() -> tuple[int, int]:
-    """Return copies of standard input and output that programs started from here do not inherit.
+    """Return copies of standard input and output that child processes do not inherit.
 
-    Whatever else reads or prints, behave, the engine and users' code included, finds an empty input, and prints to the
+    All other code, including behave, the engine and users' code, then reads an empty standard input and prints to the
     log.
     """
     orders, messages = os.dup(0), os.dup(1)

@@ -1,4 +1,4 @@
-"""Steps of behave, one for every sentence of the catalog."""
+"""behave steps, one for every sentence of the catalog."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from robbdd_tools.agent.session import ScenarioRun
 
 TABLES = ("a set of objects", "a set of workspaces", "a set of agents", "variable scene elements")
-"""Steps that list the scene for the reader; the manifest holds the same."""
+"""Steps that list the scene for the reader; the manifest has the same data."""
 
 
 def register() -> None:
     """Register the steps with behave; called from a file of the steps folder.
 
-    They are registered for all keywords at once: behave prefers what a user's file defines for one, and lets both be.
+    They are registered for all keywords: behave prefers a user's definition for one keyword and accepts both.
     """
     behave = import_module("behave")
     matchers = import_module("behave.matchers")
@@ -44,7 +44,7 @@ def register() -> None:
 
 
 def load_steps(files: Iterable[Path]) -> None:
-    """Register our steps and then those in files of users; raises whatever these raise."""
+    """Register our steps, then those in users' files; exceptions of these files pass through."""
     register()
     matchers = import_module("behave.api.step_matchers")
     names: dict[str, Any] = {"use_step_matcher": matchers.use_step_matcher, "step_matcher": matchers.step_matcher}
@@ -78,7 +78,7 @@ def _await_event(context: Any, **_words: str) -> None:
 
 
 def _check(context: Any, judge: Callable[[ScenarioRun, int, str], Verdict]) -> None:
-    """Fail the step unless the verdict on it is *holds*."""
+    """Fail the step unless its verdict is *holds*."""
     step = _present_step(context)
     try:
         verdict = judge(context.session.scenario, int(step.line), str(step.name))
@@ -89,7 +89,7 @@ def _check(context: Any, judge: Callable[[ScenarioRun, int, str], Verdict]) -> N
 
 
 def _present_step(context: Any) -> Any:
-    """Return the step that is being run: behave tells a step function only its words."""
+    """Return the current step, as behave passes a step function only its text."""
     return next(step for step in context.scenario.all_steps if step.status.is_untested())
 
 

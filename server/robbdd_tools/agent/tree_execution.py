@@ -1,4 +1,4 @@
-"""Executes behaviour trees: the only user of py_trees."""
+"""Execute behaviour trees. Only this module uses py_trees."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
 
 Attempt = Callable[["NodeSpec"], Generator[None, None, str]]
-"""Executes the behaviour of a leaf, one control tick after the other; returns why it failed, else nothing."""
+"""Executes the behaviour of a leaf, one control tick per step; returns why it failed, empty on success."""
 COMPOSITES: dict[str, type[Selector | Sequence]] = {"sequence": Sequence, "selector": Selector}
 NOT_REACHED = "precondition not reached"
 
@@ -27,9 +27,8 @@ NOT_REACHED = "precondition not reached"
 class TreeRun:
     """A behaviour tree in execution.
 
-    ``stamp`` is called with ``<node> start`` and ``<node> end`` (the node has succeeded) when they happen; ``active``
-    are the nodes, by IRI, whose behaviour is at work, innermost first. Raises ``SceneError`` when the tree cannot be
-    made.
+    ``stamp`` is called with ``<node> start`` and ``<node> end`` (on success) when they happen; ``active`` are the IRIs
+    of the nodes whose behaviour is running, innermost first. Raises ``SceneError`` when the tree cannot be built.
     """
 
     def __init__(self, spec: TreeSpec, attempt: Attempt, stamp: Callable[[str], None]) -> None:
@@ -56,23 +55,23 @@ class TreeRun:
             yield
 
     def has_begun(self, node: str) -> bool:
-        """Tell whether a node has been ticked."""
+        """Return whether a node has been ticked."""
         return self._nodes[node].id in self._begun
 
     def is_over(self, node: str) -> bool:
-        """Tell whether a node has succeeded, or will not any more: one that has failed may be tried again."""
+        """Return whether a node has succeeded, or the tree is over: a failed node may be tried again."""
         return self._is_over or self.has_succeeded(node)
 
     def has_succeeded(self, node: str) -> bool:
-        """Tell whether a node has succeeded."""
+        """Return whether a node has succeeded."""
         return self._nodes[node].id in self._succeeded
 
     def failure(self, node: str) -> str:
-        """Return why a node failed: the reason of its last part that did; nothing where none has."""
+        """Return why a node failed: the reason of its last failed descendant; empty if none failed."""
         return self._failure(self._nodes[node])[1]
 
     def unreached(self, node: str, remark: str) -> str:
-        """Say why a node was never ticked in a tree that is over; ``remark`` is the last word on what went wrong."""
+        """Return why a node of a finished tree was never ticked; ``remark`` is the latest problem."""
         found = self._nodes[node]
         while found.parent is not None and found.parent.id not in self._begun:
             found = found.parent
@@ -98,7 +97,7 @@ class TreeRun:
         return COMPOSITES[node.kind](name=node.name, memory=True, children=children)
 
     def _leaf(self, name: str) -> Behaviour:
-        """Make the leaf that executes what is linked to a node; raises ``ValueError`` for an unknown one."""
+        """Create the leaf that executes a node's behaviour; raises ``ValueError`` for an unknown node."""
         known = {node.name: node for node in self._spec.nodes}
         if name not in known:
             raise ValueError(f"the model declares no node '{name}' of this tree; it has {', '.join(known)}")
@@ -134,7 +133,7 @@ class TreeRun:
             raise UserError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
 
     def _take_note(self) -> None:
-        """Stamp what has begun or ended with this tick."""
+        """Record events for nodes that started or ended in this tick."""
         for behaviour in _preorder(self._root):
             if behaviour.status is Status.INVALID:
                 continue
@@ -150,7 +149,7 @@ class TreeRun:
 
 
 class _Leaf(Behaviour):
-    """Executes one behaviour, a control tick with each tick of the tree."""
+    """Executes one behaviour, one control tick for each tick of the tree."""
 
     def __init__(self, node: NodeSpec, run: Callable[[Behaviour, NodeSpec], Generator[None, None, str]]) -> None:
         super().__init__(node.name)
@@ -159,7 +158,7 @@ class _Leaf(Behaviour):
         self._steps: Generator[None, None, str] | None = None
 
     def initialise(self) -> None:
-        """Begin anew."""
+        """Start the behaviour anew."""
         self._steps = self._run(self, self._node)
 
     def update(self) -> Status:
@@ -173,7 +172,7 @@ class _Leaf(Behaviour):
 
 
 def _made(spec: TreeSpec, leaf: Callable[[str], Behaviour]) -> Behaviour:
-    """Let the user's function put a tree together from leaves; raises ``SceneError``."""
+    """Build a tree from leaves with the user's function; raises ``SceneError``."""
     source = spec.source
     assert source is not None
     place, model = at(source.origin), "" if source.origin is None else source.origin.file
@@ -192,7 +191,7 @@ def _find(root: Behaviour, name: str, spec: TreeSpec) -> Behaviour:
     found = [behaviour for behaviour in _preorder(root) if behaviour.name == name]
     if len(found) != 1:
         place = at(None if spec.source is None else spec.source.origin)
-        raise SceneError(f"{place}the behaviour tree has {len(found)} nodes called '{name}': it must have one")
+        raise SceneError(f"{place}the behaviour tree has {len(found)} nodes called '{name}', not one")
     return found[0]
 
 

@@ -1,4 +1,4 @@
-"""Moving pictures of an execution, with what happens written into them."""
+"""Videos of an execution, annotated with its events."""
 
 from __future__ import annotations
 
@@ -21,35 +21,35 @@ SIZE = (640, 400)
 STRIDE = 5
 """Control ticks between frames, which makes 12.5 frames per simulated second."""
 QUALITY = 70
-"""Of the compressed frames, in per cent."""
+"""Compression quality of the frames, in per cent."""
 TEXT, STRIP = 16, 26
-"""Height of letters and of the strip at the bottom that holds them, pixels."""
+"""Height of letters and of the text strip at the bottom, pixels."""
 DARK, WHITE, RED = (20, 22, 26), (255, 255, 255), (255, 110, 100)
 
 
 class NoVideo(Exception):
-    """What writes moving pictures is not installed."""
+    """The library that writes videos is not installed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """When (s) a clause of some name was violated."""
+    """The violation of the clause ``name`` at a time (s)."""
 
     at: float
     clause: str
 
 
 def write_video(path: Path, execution: Execution, title: str, violations: Sequence[Violation]) -> None:
-    """Write an execution that is over as an animated WebP picture that plays in real time.
+    """Write a finished execution as an animated WebP picture that plays in real time.
 
-    Each frame tells the scenario, the time, the latest event and the clauses violated by then. Raises ``NoVideo``
-    without Pillow, ``NoPicture`` where nothing can render, ``OSError`` when the file cannot be written.
+    Each frame shows the scenario, the time, the latest event and the clauses violated so far. Raises ``NoVideo``
+    without Pillow, ``NoPicture`` if no back end can render, ``OSError`` if the file cannot be written.
     """
     try:
         pillow = import_module("PIL.Image")
         draw, fonts = import_module("PIL.ImageDraw"), import_module("PIL.ImageFont")
     except ImportError as error:
-        raise NoVideo("moving pictures need Pillow: pip install 'robbdd-tools[video]'") from error
+        raise NoVideo("videos need Pillow: pip install 'robbdd-tools[video]'") from error
     font = fonts.load_default(TEXT)
     trace = execution.trace
     camera = Camera(execution.simulation, SIZE, plain=True)

@@ -1,9 +1,9 @@
-"""The command line's commands, one file each: all that prints is here. Same layer as ``cli``."""
+"""The commands of the command line, one file each. All printing is here. Same layer as ``cli``."""
 
 OK, FINDINGS, FAILED = 0, 1, 2
-"""Exit codes: all well; errors found, or a clause that does not hold; the work could not be done."""
+"""Exit codes: success; errors found, or a clause that does not hold; the command could not do its work."""
 
 
 def signal_code(number: int) -> int:
-    """Return the exit code of a command that a signal has ended, as shells have it."""
+    """Return the exit code of a command ended by a signal, as shells compute it."""
     return 128 + number

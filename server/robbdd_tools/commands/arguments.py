@@ -1,4 +1,4 @@
-"""Arguments that several commands share. Loads nothing until they are used."""
+"""Arguments shared by several commands. Imports nothing heavy until they are used."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 def allow_selection(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that select scenarios; the parser has ``--seed``."""
     selection = parser.add_argument_group("selection of scenarios")
-    text = "only scenarios with such values: 'robot=panda and target=~cube.*'"
+    text = "only scenarios with these values: 'robot=panda and target=~cube.*'"
     selection.add_argument("--where", metavar="EXPRESSION", help=text)
     amount = selection.add_mutually_exclusive_group()
     amount.add_argument("--first", metavar="N", type=positive, help="only the first N")
-    amount.add_argument("--sample", metavar="N", type=positive, help="N drawn at random by the seed")
-    text = "few that cover all combinations of 2 (default) or 3 variables"
+    amount.add_argument("--sample", metavar="N", type=positive, help="N drawn at random with the seed")
+    text = "a small set that covers all value combinations of any 2 (default) or 3 variables"
     amount.add_argument("--pairwise", metavar="2|3", type=int, nargs="?", const=2, choices=(2, 3), help=text)
 
 
 def wanted(options: argparse.Namespace) -> Wanted:
-    """Return the selection that the parsed arguments describe."""
+    """Return the selection of the parsed arguments."""
     from robbdd_tools.gherkin.select import Wanted
 
     found = Wanted(options.where, options.first, options.sample, options.pairwise)
@@ -31,7 +31,7 @@ def wanted(options: argparse.Namespace) -> Wanted:
 
 
 def positive(text: str) -> int:
-    """Read a number above 0; raises ``ArgumentTypeError``."""
+    """Parse a number above 0; raises ``ArgumentTypeError``."""
     number = int(text) if text.isdecimal() else 0
     if number < 1:
         raise argparse.ArgumentTypeError(f"'{text}' is not a number above 0")

@@ -1,4 +1,4 @@
-"""``robbdd check``: every finding about models and what they import."""
+"""``robbdd check``: print all findings about models and their imports."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robbdd_tools.workbench.model import NotAModel, load_all
 
 
 def check(paths: Sequence[Path], as_json: bool) -> int:
-    """Print the findings about files and folders; returns the exit code."""
+    """Print the findings about files and folders; return the exit code."""
     try:
         model = load_all(paths)
     except NotAModel as error:

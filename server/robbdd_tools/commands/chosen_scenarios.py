@@ -1,4 +1,4 @@
-"""Selects scenarios for a command that writes them, and prints what a covering array covers."""
+"""Select scenarios for commands that write them, and print the coverage of covering arrays."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def selection(model: AcceptanceModel, variants: Sequence[Variant], wanted: Wanted) -> Selected | None:
-    """Return the wanted scenarios of some variants; prints why, and returns ``None``, when there are none."""
+    """Return the selected scenarios of some variants; print the reason and return ``None`` if there are none."""
     try:
         selected = Selected(model, variants, wanted)
     except SelectionError as error:
@@ -28,6 +28,6 @@ def selection(model: AcceptanceModel, variants: Sequence[Variant], wanted: Wante
 
 
 def print_coverage(covers: Iterable[Coverage]) -> None:
-    """Print how many of the combinations of values each covering array covers."""
+    """Print how many value combinations each covering array covers."""
     for cover in covers:
         print_note(str(cover))

@@ -1,4 +1,4 @@
-"""``robbdd doctor``: prints versions, tests every part of the installation, and says how to fix what fails."""
+"""``robbdd doctor``: print versions, test every part of the installation, and say how to fix failures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ REPORT = "this is a fault of RobBDD: report it with the output of `robbdd doctor
 
 
 class State(StrEnum):
-    """How a part is. An optional part that is missing does not fail the command."""
+    """State of a part. A missing optional part does not fail the command."""
 
     WORKS = "works"
     MISSING = "missing"
@@ -30,7 +30,7 @@ SIGNS = {State.WORKS: "✔", State.MISSING: "–", State.FAILED: "✗"}
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One part of the installation, what was found out about it, and how to fix it (``""``: nothing to fix)."""
+    """One part of the installation, its test result, and how to fix it (empty: nothing to fix)."""
 
     name: str
     state: State
@@ -39,7 +39,7 @@ class Part:
 
 
 def doctor(path: Path, as_json: bool) -> int:
-    """Test the installation and the store of the project at ``path``; returns the exit code."""
+    """Test the installation and the store of the project at ``path``; return the exit code."""
     parts: list[Part] = []
     for part in _parts(path):
         parts.append(part)
@@ -62,12 +62,12 @@ def _parts(path: Path) -> Iterator[Part]:
 
 
 def examine(name: str, test: Callable[[], str]) -> Part:
-    """Return the state of a part; ``test`` returns what it found, or raises ``Unavailable`` or anything else."""
+    """Return the state of a part; ``test`` returns a description, or raises ``Unavailable`` or any other exception."""
     try:
         return Part(name, State.WORKS, test())
     except Unavailable as reason:
         return Part(name, State.MISSING if reason.optional else State.FAILED, str(reason), reason.fix)
-    except Exception as error:  # A doctor that falls ill helps nobody: whatever breaks here is what users report.
+    except Exception as error:  # Any failure is a result to report; doctor itself must not crash.
         return Part(name, State.FAILED, f"{type(error).__name__}: {error}", REPORT)
 
 

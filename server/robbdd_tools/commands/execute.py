@@ -1,4 +1,4 @@
-"""Follows a run, a replay or a judgement on the terminal; signals end it in good order."""
+"""Follow a run, a replay or a judgement on the terminal; signals end it cleanly."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ INTERRUPTED = "the run was interrupted"
 
 
 class Followed(Protocol):
-    """What a run, a replay and a judgement have in common."""
+    """Common interface of a run, a replay and a judgement."""
 
     progress: RunResults
     ending: str
@@ -32,7 +32,7 @@ class Followed(Protocol):
 
 
 def follow_run(run: Run) -> int:
-    """Execute a run and show it; returns the number of the signal that ended it, 0 without one."""
+    """Execute a run and show it; return the number of the signal that ended it, else 0."""
 
     def watching(display: Display) -> None:
         run.listen(display.watch)
@@ -41,7 +41,7 @@ def follow_run(run: Run) -> int:
 
 
 def follow(work: Followed, total: int | None = None) -> int:
-    """Show a replay or a judgement of ``total`` scenarios; returns as ``follow_run``. Raises ``OSError``."""
+    """Show a replay or a judgement of ``total`` scenarios; return as ``follow_run``. Raises ``OSError``."""
     return _follow(work, total, None)
 
 

@@ -1,4 +1,4 @@
-"""``robbdd graph``: a model as its knowledge graph."""
+"""``robbdd graph``: print a model's knowledge graph."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 PICTURE = "svg"
-"""The format that is a picture of the structure, not the graph itself."""
+"""Format of a picture of the structure; all others are formats of the graph."""
 
 
 def print_graph(path: Path, form: str, results: str | None) -> int:
-    """Print the graph of a model and its imports, with the results of a run if any; returns the exit code."""
+    """Print the graph of a model and its imports, with the results of a run if given; return the exit code."""
     from robbdd_tools.graph.rdf.serialize import UnwritableGraph, serialize
 
     model = sound_model(path)
@@ -39,7 +39,7 @@ def print_graph(path: Path, form: str, results: str | None) -> int:
 
 
 def _picture(snapshot: Snapshot, built: BuiltGraph, path: Path) -> str:
-    """Return the structure of a model as SVG, whose places name files from the model's folder."""
+    """Return the structure of a model as SVG; its places name files relative to the model's folder."""
     from robbdd_tools.graph.ask.structure import structure_of
     from robbdd_tools.graph.ask.svg import draw
 

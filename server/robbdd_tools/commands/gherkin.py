@@ -1,4 +1,4 @@
-"""``robbdd gherkin``: a folder of features that plain behave runs."""
+"""``robbdd gherkin``: write a folder of features that plain behave can run."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from robbdd_tools.gherkin.select import Wanted
 
 EVERY = 200
-"""Scenarios between two looks at the progress bar."""
+"""Scenarios between two updates of the progress bar."""
 LARGEST_CHECKED = 4 * 1024 * 1024
-"""Bytes of a feature that is parsed again, all of it in memory; features are written in constant memory."""
+"""Largest feature, in bytes, that is parsed again as a check. Parsing takes memory, writing does not."""
 
 
 @dataclass(frozen=True, slots=True)
 class GherkinOptions:
-    """Where to write what: ``template`` is the name of one of ours or a path; ``wanted.seed`` is also that of runs."""
+    """Output and template: ``template`` is the name of a built-in one or a path; runs use ``wanted.seed``, too."""
 
     path: Path
     folder: Path
@@ -33,7 +33,7 @@ class GherkinOptions:
 
 
 def write_gherkin(options: GherkinOptions) -> int:
-    """Write the features of a model with all that behave needs and print their paths; returns the exit code."""
+    """Write the features of a model with behave's files and print their paths; return the exit code."""
     from robbdd_tools.gherkin.feature_files import clause_origins, whole_plan
     from robbdd_tools.gherkin.render import TemplateProblem
     from robbdd_tools.gherkin.user_template import sheet
@@ -88,13 +88,13 @@ def _write(plan: FeaturePlan, total: int | None, options: GherkinOptions, json_l
 
 
 def _check_gherkin(feature: Path, *, template: str) -> None:
-    """Raise ``TemplateProblem`` when a user's template made something else than Gherkin; large files are believed."""
+    """Raise ``TemplateProblem`` if a user's template produced invalid Gherkin; large files are not checked."""
     from robbdd_tools.gherkin.render import OURS, TemplateProblem
 
     if template in OURS or feature.stat().st_size > LARGEST_CHECKED:
         return
     try:
         import_module("behave.parser").parse_file(str(feature))
-    except Exception as error:  # of behave's own types, which it does not declare
+    except Exception as error:  # behave raises exception types of its own, which it does not document
         said = " ".join(str(error).split())
-        raise TemplateProblem(template, 0, f"what it makes is no Gherkin: {said}") from None
+        raise TemplateProblem(template, 0, f"its output is not Gherkin: {said}") from None

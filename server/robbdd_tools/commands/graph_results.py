@@ -1,4 +1,4 @@
-"""Results of runs beside the graph of their model, for the commands that ask or print it."""
+"""Load a model's graph with run results, for the commands that query or print it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def graph_with_results(model: ModelFile, path: Path, results: str | None) -> BuiltGraph | None:
     """Return the graph of a model with the results of a run: a file, a run of the project's store, or none.
 
-    Says what is wrong with the results, and returns ``None``, where they cannot be used.
+    Prints the problem and returns ``None`` if the results cannot be used.
     """
     from robbdd_tools.graph.write.run_results import BadResults, add_results, read_results
 
@@ -41,6 +41,6 @@ def graph_with_results(model: ModelFile, path: Path, results: str | None) -> Bui
         print_note(f"robbdd: {error}")
         return None
     except BadResults as error:
-        print_note(f"robbdd: {file} holds no results of a run: {error}")
+        print_note(f"robbdd: {file} contains no results of a run: {error}")
         return None
     return built

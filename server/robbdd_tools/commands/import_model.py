@@ -1,4 +1,4 @@
-"""``robbdd import``: a graph as RobBDD text, with what the language cannot say."""
+"""``robbdd import``: convert a graph to RobBDD text and report what the language cannot express."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MODEL = "model.bdd"
 
 
 def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
-    """Write a model as RobBDD text to ``output`` and, where it has scenes, to a ``.scene`` beside it."""
+    """Write a model as RobBDD text to ``output`` and its scenes, if any, to a ``.scene`` with the same name."""
     from robbdd_tools.graph.rdf.records import Incomplete
     from robbdd_tools.graph.text.losses import compare
     from robbdd_tools.graph.text.model_text import write_model
@@ -45,9 +45,9 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     project = _opened(text, scene.name)
     fault = _first_error(project, scene.name)
     if fault is not None:
-        return fail(f"{path} cannot be written as text, which would have an error: {fault}")
+        return fail(f"{path} cannot be written as text, as the text would have an error: {fault}")
     losses, of_scene = (compare(graph, _graph(project, asked).graph, text.renamed) for asked in (_MODEL, scene.name))
-    # What no scenario uses is in the scene's own graph alone.
+    # Elements that no scenario uses are in the scene's own graph alone.
     _report(path, text, replace(losses, lost=tuple(line for line in losses.lost if line in set(of_scene.lost))))
     try:
         for file, content in ((output, text.criteria), (scene, text.scene)):
@@ -60,7 +60,7 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
 
 
 def _opened(text: ModelText, scene_name: str) -> Project:
-    """Return a project with a text, which is not written anywhere yet."""
+    """Return a project with an unsaved text."""
     project = Project()
     project.open(_FOLDER + _MODEL, 1, text.criteria)
     project.open(_FOLDER + scene_name, 1, text.scene)
@@ -68,14 +68,14 @@ def _opened(text: ModelText, scene_name: str) -> Project:
 
 
 def _graph(project: Project, name: str) -> BuiltGraph:
-    """Return the graph of the model, or of its scene, by the name of its file."""
+    """Return the graph of the model, or of its scene, selected by file name."""
     from robbdd_tools.graph.write.build import build_graph
 
     return build_graph(project.snapshot(), _FOLDER + name)
 
 
 def _first_error(project: Project, scene_name: str) -> str | None:
-    """Return the first syntax error or unresolved name of a text with its line, ``None`` if it has none."""
+    """Return the first syntax error or unresolved name of a text with its line, ``None`` if there is none."""
     snapshot = project.snapshot()
     for name in (scene_name, _MODEL):
         file = snapshot.file(_FOLDER + name)
@@ -90,8 +90,8 @@ def _report(path: Path, text: ModelText, losses: Losses) -> None:
     for node, reason in text.left_out.items():
         print_note(f"{path}: warning: {node} is not written: {reason} [left-out]")
     for old, new in losses.renamed:
-        print_note(f"{path}: warning: {old} becomes {new}: the language makes names so [renamed]")
+        print_note(f"{path}: warning: {old} becomes {new}, as the language forms names [renamed]")
     for line in losses.lost:
-        print_note(f"{path}: warning: the language cannot say: {line} [lost]")
+        print_note(f"{path}: warning: the language cannot express: {line} [lost]")
     for line in losses.added:
-        print_note(f"{path}: warning: the text says besides: {line} [added]")
+        print_note(f"{path}: warning: the text adds: {line} [added]")

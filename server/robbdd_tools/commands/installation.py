@@ -1,4 +1,4 @@
-"""The parts of ``robbdd doctor`` that are looked up: versions, libraries, extras, the editor."""
+"""Lookups of ``robbdd doctor``: versions, libraries, extras, the editor."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ DISTRIBUTION = "robbdd-tools"
 REINSTALL = f"python -m pip install --force-reinstall {DISTRIBUTION}"
 EXTENSION = "robbdd.robbdd-workbench"
 EDITORS = (".vscode", ".vscode-insiders", ".vscode-oss", ".vscode-server", ".cursor")
-"""Folders in the home folder in which editors of the VS Code family keep their extensions."""
+"""Folders in the home folder where editors of the VS Code family keep their extensions."""
 SECONDS = 120.0
-"""Wall time after which a program that is tested is taken to hang."""
+"""Seconds of wall time after which a tested program counts as hanging."""
 _NAME = re.compile(r"[\w.-]+")
 _EXTRA = re.compile(r"extra\s*==\s*['\"]([\w-]+)['\"]")
 _OPTIONAL = ("video", "fast-queries")
 
 
 class Unavailable(Exception):
-    """A part does not work; the message says why, ``fix`` what to do. An ``optional`` one may be missing."""
+    """A part does not work; the message gives the reason, ``fix`` the remedy. An ``optional`` part may be missing."""
 
     def __init__(self, reason: str, fix: str, *, optional: bool = False) -> None:
         super().__init__(reason)
@@ -40,12 +40,12 @@ class Unavailable(Exception):
 
 
 def package() -> str:
-    """Return version and place of this package."""
+    """Return version and location of this package."""
     return f"{DISTRIBUTION} {__version__} in {PACKAGE}"
 
 
 def python() -> str:
-    """Return version and place of the interpreter."""
+    """Return version and location of the interpreter."""
     return f"{platform.python_implementation()} {platform.python_version()} ({sys.executable})"
 
 
@@ -55,7 +55,7 @@ def system() -> str:
 
 
 def libraries() -> str:
-    """Return the versions of the libraries that are needed; raises ``Unavailable`` when one is missing."""
+    """Return the versions of the required libraries; raises ``Unavailable`` if one is missing."""
     found = _versions(_required(None))
     missing = [name for name, number in found.items() if number is None]
     if missing:
@@ -64,7 +64,7 @@ def libraries() -> str:
 
 
 def extras() -> str:
-    """Return the versions of the optional libraries; raises ``Unavailable`` when one is missing."""
+    """Return the versions of the optional libraries; raises ``Unavailable`` if one is missing."""
     words: list[str] = []
     missing: list[str] = []
     for extra in _OPTIONAL:
@@ -79,7 +79,7 @@ def extras() -> str:
 
 
 def editor() -> str:
-    """Return the VS Code extensions and the Node found here; raises ``Unavailable`` without an extension."""
+    """Return the installed VS Code extensions and Node; raises ``Unavailable`` without an extension."""
     node = f"Node {_node()}"
     found = list(_extensions())
     if not found:
@@ -94,11 +94,11 @@ def editor() -> str:
 
 
 def _required(extra: str | None) -> list[str]:
-    """Return the names of the distributions that this one, or an extra of it, needs."""
+    """Return the names of the distributions required by this one or by one of its extras."""
     try:
         stated = metadata.requires(DISTRIBUTION) or []
     except metadata.PackageNotFoundError:
-        raise Unavailable(f"{DISTRIBUTION} runs without being installed", REINSTALL) from None
+        raise Unavailable(f"{DISTRIBUTION} is not installed as a package", REINSTALL) from None
     found: list[str] = []
     for requirement in stated:
         name, belongs_to = _NAME.match(requirement), _EXTRA.search(requirement)
@@ -120,7 +120,7 @@ def _versions(names: list[str]) -> dict[str, str | None]:
 def _node() -> str:
     """Return the version of Node, which only the extension's developers need."""
     program = shutil.which("node")
-    # One in the working directory (Windows, or a relative entry of PATH) is not started.
+    # Do not start a program from the working directory (Windows, or a relative entry of PATH).
     if program is None or not Path(program).is_absolute():
         return "is not on PATH (only needed to build the extension)"
     try:
@@ -133,7 +133,7 @@ def _node() -> str:
 
 
 def _extensions() -> Iterator[tuple[Path, str]]:
-    """Yield the folders of the extension that editors have installed for this user, with their versions."""
+    """Yield folder and version of each installed copy of the extension."""
     for editor_folder in EDITORS:
         for manifest in sorted((Path.home() / editor_folder / "extensions").glob(f"{EXTENSION}-*/package.json")):
             try:

@@ -20,7 +20,7 @@ from robbdd_tools.workbench.stored import store_at
 
 @dataclass(frozen=True, slots=True)
 class JudgeOptions:
-    """The run (a number, ``latest`` or a folder), the edited model, where runs are kept, where results go."""
+    """The run (a number, ``latest`` or a folder), the edited model, the store of runs, the output file."""
 
     run: str
     path: Path
@@ -29,7 +29,7 @@ class JudgeOptions:
 
 
 def judge(options: JudgeOptions) -> int:
-    """Print the verdicts of a model's clauses on stored traces; returns the exit code as ``robbdd run``."""
+    """Print the verdicts of a model's clauses on stored traces; return the exit code as ``robbdd run``."""
     return guarded(Outputs(report=options.report), viewer=False, work=lambda: _judge(options))
 
 

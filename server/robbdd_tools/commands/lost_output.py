@@ -1,4 +1,4 @@
-"""Output that may get lost without taking the work with it: a closed pipe, a terminal that is gone, a full disk."""
+"""Survive lost output: a closed pipe, a vanished terminal, a full disk."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import Any, TextIO
 
 
 class _Expendable:
-    """A text stream that drops what can no longer be written; else it is the stream."""
+    """Text stream that drops output that can no longer be written; otherwise it behaves as the wrapped stream."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
     def write(self, text: str) -> int:
-        """Write a text, or drop it; returns its length."""
+        """Write a text, or drop it; return its length."""
         try:
             self._stream.write(text)
         except OSError:
@@ -24,7 +24,7 @@ class _Expendable:
         return len(text)
 
     def flush(self) -> None:
-        """Write what is buffered, or drop it."""
+        """Flush the buffer, or drop it."""
         try:
             self._stream.flush()
         except OSError:
@@ -34,7 +34,7 @@ class _Expendable:
         return getattr(self._stream, name)
 
     def _give_up(self) -> None:
-        """Let everything from now on, what is still buffered included, go nowhere."""
+        """Redirect all further output, including the buffer, to the null device."""
         with suppress(OSError, ValueError):
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, self._stream.fileno())
@@ -43,9 +43,9 @@ class _Expendable:
 
 @contextmanager
 def output_may_be_lost() -> Generator[None]:
-    """Let standard output and error fail without an effect on what is done inside."""
+    """Ignore failures of standard output and error in the block."""
     before = sys.stdout, sys.stderr
-    # They are the streams in all but failures.
+    # Outside of failures, they behave as the streams themselves.
     output: Any = _Expendable(sys.stdout)
     errors: Any = _Expendable(sys.stderr)
     sys.stdout, sys.stderr = output, errors

@@ -1,4 +1,4 @@
-"""Load the models that a command names, and print what is wrong with them."""
+"""Load the models that a command names, and print their errors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ HOSTS_FORM = 'a list of host names, such as ["example.org"]'
 
 
 def sound_model(path: Path) -> ModelFile | None:
-    """Load one model for a command that needs it whole; prints its errors and returns ``None`` if it has any."""
+    """Load one model for a command that needs it free of errors; print its errors and return ``None`` if it has any."""
     if path.is_dir():
         fail(f"{path} is a folder; name a file in it")
         return None
@@ -43,10 +43,10 @@ def print_findings(found: Iterable[Finding], print_: Callable[[str], None]) -> N
 
 
 def fetch_contexts(paths: Iterable[Path], hosts: Iterable[str]) -> str | None:
-    """Fetch the JSON-LD contexts of models from hosts that the user allows; returns what to say when one fails.
+    """Fetch the JSON-LD contexts of models from hosts that the user allows; return a message if a fetch fails.
 
-    Allowed are ``hosts`` and those of ``context-hosts`` in the user's own configuration; the setting of the model's
-    project is reported as ignored. What was fetched is kept, so that reading the models later needs no network.
+    Allowed are ``hosts`` and those of ``context-hosts`` in the user's own configuration; the setting in the model's
+    project is reported as ignored. Fetched contexts are kept, so that later reads need no network.
     """
     allowed = frozenset(hosts)
     for path in paths:

@@ -1,4 +1,4 @@
-"""``robbdd new``: begin a project from one of the examples."""
+"""``robbdd new``: start a project from an example."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from robbdd_tools.commands.output import fail, print_line
 
 
 def new_project(folder: Path, template: str) -> int:
-    """Begin a project in ``folder``; returns the exit code."""
+    """Create a project in ``folder``; return the exit code."""
     try:
         begin_project(folder, template)
     except ScaffoldProblem as problem:
@@ -24,7 +24,7 @@ def new_project(folder: Path, template: str) -> int:
 
 
 def list_templates() -> int:
-    """Print the templates with what they are about; returns the exit code."""
+    """Print the templates with their descriptions; return the exit code."""
     known = templates()
     width = max(map(len, known))
     for name, template in known.items():

@@ -1,4 +1,4 @@
-"""All that the command line prints goes through here, so that nothing in a model, path or reason acts on a terminal."""
+"""All output of the command line is escaped here, so that no model, path or reason can control a terminal."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from robbdd_tools.commands import FAILED
 
 
 def print_line(line: str) -> None:
-    """Print a line of a command's answer at once."""
+    """Print a line of a command's answer and flush."""
     print(printable(line), flush=True)
 
 
 def print_note(line: str) -> None:
-    """Print a line about the command's work, apart from its answer, on the standard error stream."""
+    """Print a line about the command's work to standard error."""
     print(printable(line), file=sys.stderr)
 
 
 def print_document(text: str) -> None:
-    """Print text in a format of its own, which has its own way to escape: JSON, Turtle, SVG, Python."""
+    """Print a document whose format has its own escapes: JSON, Turtle, SVG, Python."""
     sys.stdout.write(text)
 
 
 def fail(message: str) -> int:
-    """Print why a command cannot do its work, and return its exit code."""
+    """Print why a command failed, and return its exit code."""
     print_note(f"robbdd: {message}")
     return FAILED

@@ -1,4 +1,4 @@
-"""The terminal's view of a run: a progress bar, the verdicts as they come, the summary."""
+"""Terminal display of a run: progress bar, verdicts as they arrive, summary."""
 
 from __future__ import annotations
 
@@ -42,23 +42,23 @@ if TYPE_CHECKING:
     from robbdd_tools.run.results import RunResults, ScenarioResult
 
 BESIDE = len("  ✔   +1000.0 mm  at 10.00 s")
-"""Columns that a clause's sign, margin and instant take beside its sentence."""
+"""Columns of a clause's sign, margin and instant."""
 NARROWEST = 10
-"""Columns that a sentence has at least, however narrow the terminal."""
+"""Minimum columns of a sentence, however narrow the terminal."""
 MOST_PRINTED = 100
-"""Lines of what users' code prints in one scenario that are shown."""
+"""Maximum lines shown of users' code output in one scenario."""
 MOST_CONTACTS = 5
-"""Contacts of one scenario that are shown."""
+"""Maximum contacts shown for one scenario."""
 INDENT = (0, 0, 0, 6)
-"""What a reason has around it: it is set in below its clauses."""
+"""Padding of a reason, which is indented below its clauses."""
 STYLES = {Outcome.HOLDS: "green", Outcome.VIOLATED: "bold red", Outcome.UNKNOWN: "yellow"}
 
 
 class Display:
     """Prints a run.
 
-    A terminal that can move its cursor gets a bar and lines that break between words; else there are plain lines that
-    nothing breaks, so that other programs can read them.
+    A terminal with a movable cursor gets a bar and lines wrapped between words. Other output gets unwrapped plain
+    lines, so that other programs can read them.
     """
 
     def __init__(self, results: RunResults, total: int | None = None) -> None:
@@ -78,7 +78,7 @@ class Display:
             transient=True,
             disable=not self._drawn,
         )
-        # A run that goes on has some already.
+        # A resumed run has some already.
         finished = [scenario for scenario in results.scenarios if scenario.finished is not None]
         self._held = sum(scenario.verdict is Outcome.HOLDS for scenario in finished)
         self._failed = len(finished) - self._held
@@ -95,7 +95,7 @@ class Display:
         self._progress.stop()
 
     def watch(self, message: RunMessage) -> None:
-        """Count a message when it arrives, before its turn to be shown."""
+        """Count a message on arrival, before its turn to be shown."""
         match message:
             case ScenarioStarted():
                 self._fails.discard(message.index)
@@ -110,7 +110,7 @@ class Display:
                 pass
 
     def show(self, message: RunMessage) -> None:
-        """Show what a message means to a reader, after the results have taken it."""
+        """Show a message after the results have applied it."""
         match message:
             case RunStarted():
                 self._progress.update(self._task, counts=self._counts())
@@ -128,7 +128,7 @@ class Display:
                 pass
 
     def _fault(self, fault: Fault) -> None:
-        """Print an error in users' code with its traceback, once however many scenarios it spoils."""
+        """Print an error in users' code with its traceback; only once, even if it spoils several scenarios."""
         if fault.id in self._faults:
             return
         self._faults[fault.id] = number = len(self._faults) + 1
@@ -137,7 +137,7 @@ class Display:
             self._console.print(plain(line))
 
     def _output(self, lines: Sequence[str]) -> None:
-        """Print what users' code printed, set apart from what we say."""
+        """Print the output of users' code, visibly separate from ours."""
         for line in lines[:MOST_PRINTED]:
             self._console.print(plain(f"  │ {line}"))
         if len(lines) > MOST_PRINTED:
@@ -145,12 +145,12 @@ class Display:
             self._console.print(Text(f"  │ … {more} in the log of the run"))
 
     def broken(self, reason: str) -> None:
-        """Say why the run did not come to its end, and show the scenarios that it left open."""
+        """Print why the run is incomplete, and the scenarios left open."""
         self._progress.stop()
         self._console.print(plain(f"the run is incomplete: {reason}", STYLES[Outcome.VIOLATED]))
 
     def summary(self, results: RunResults) -> None:
-        """Print how many scenarios have which verdict in the end."""
+        """Print the final number of scenarios by verdict."""
         self._progress.stop()
         self._results = results
         substitutions = (scenario.spec.substitution for scenario in self._results.scenarios)
@@ -178,7 +178,7 @@ class Display:
         return Text.assemble((f"{self._held} hold", STYLES[Outcome.HOLDS]), ", ", failed)
 
     def _vacuous(self) -> Iterator[tuple[str, str]]:
-        """Yield name and reason of every clause that proves little, in the order of the model."""
+        """Yield name and reason of every clause that proves little, in model order."""
         clauses = (clause for scenario in self._results.scenarios for clause in scenario.spec.clauses)
         names = {clause.iri: clause.name for clause in clauses}
         reasons = self._results.vacuous()
@@ -219,15 +219,15 @@ class Display:
 
 
 class _Counts(ProgressColumn):
-    """The field ``counts`` of a task, which is text with styles of its own."""
+    """The field ``counts`` of a task, which is styled text."""
 
     def render(self, task: Task) -> Text:
-        """Return what the field holds now."""
+        """Return the current text of the field."""
         return task.fields["counts"]
 
 
 def _executions(finished: Iterable[ScenarioResult]) -> list[ScenarioResult]:
-    """Leave one of the scenarios that share an execution: that which went furthest in it."""
+    """Return one scenario for each shared execution: the one with the longest simulated time."""
     furthest: dict[int | str, ScenarioResult] = {}
     for number, scenario in enumerate(finished):
         key = number if scenario.spec.tree is None else scenario.spec.tree.name
@@ -243,7 +243,7 @@ def _clause_line(judged: ClauseJudged, sentence: str, width: int) -> Text:
 
 
 def _clause_cells(judged: ClauseJudged, sentence: str, width: int) -> Table:
-    """Lay a clause out where lines break: a long sentence goes on below itself, margin and instant stay whole."""
+    """Lay out a clause in a table: a long sentence wraps in its column; margin and instant do not."""
     cells = Table.grid(Column(width=4), Column(width=width), Column(no_wrap=True))
     sign, shown = _verdict(judged)
     cells.add_row(Text("  ").append(sign), Text(sentence), shown)
@@ -251,7 +251,7 @@ def _clause_cells(judged: ClauseJudged, sentence: str, width: int) -> Table:
 
 
 def _verdict(judged: ClauseJudged) -> tuple[Text, Text]:
-    """Return a clause's sign, and its margin and instant where it has them."""
+    """Return a clause's sign, and its margin and instant if it has them."""
     outcome = Outcome(judged.verdict)
     style = STYLES[outcome]
     shown = printable(margin(judged.robustness, judged.unit))

@@ -1,4 +1,4 @@
-"""``robbdd query``: ask the knowledge graph of a model in SPARQL."""
+"""``robbdd query``: query a model's knowledge graph with SPARQL."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 ROW_FORMS = ("table", "csv", "json")
 FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
-"""How a cell begins that a spreadsheet takes for a formula, the full-width forms included."""
+"""First characters of a cell that a spreadsheet reads as a formula, including full-width forms."""
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
 
 def query(path: Path, text: str | None, file: Path | None, name: str | None, form: str, results: str | None) -> int:
-    """Print the answer to one query, given as text, in a file, or by the name of a ready one; returns the exit code.
+    """Print the answer to one query, given as text, in a file, or as the name of a built-in one; return the exit code.
 
-    ``results`` of a run (see ``graph_with_results``) are asked together with the model.
+    The results of a run (see ``graph_with_results``) are part of the queried graph.
     """
     from robbdd_tools.graph.ask.query import BadQuery, run_query
 
@@ -57,7 +57,7 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
 
 
 def _save(rows: Rows, form: str) -> int:
-    """Print what a query made as a graph in one of its formats."""
+    """Print the graph that a query constructed in one of the graph formats."""
     from robbdd_tools.graph.rdf.serialize import UnwritableGraph, serialize
 
     if rows.graph is None:
@@ -70,7 +70,7 @@ def _save(rows: Rows, form: str) -> int:
 
 
 def _source(text: str | None, file: Path | None, name: str | None) -> tuple[str, str] | None:
-    """Return what to call the query and its text; says what is wrong when there is not exactly one."""
+    """Return a query's display name and text; print a message unless exactly one query is given."""
     from robbdd_tools.graph.ask.query import ready_queries, ready_query
 
     if sum(given is not None for given in (text, file, name)) != 1:
@@ -119,7 +119,7 @@ def _csv(rows: Rows) -> None:
 
 
 def _cell(value: str) -> str:
-    """Return a value as one line that no spreadsheet takes for a formula; a number stays one, whatever its sign."""
+    """Return a value as one line that no spreadsheet reads as a formula; numbers, also negative, stay unchanged."""
     cell = printable(value)
     return f"'{cell}" if cell.lstrip().startswith(FORMULA) and not NUMBER.fullmatch(cell) else cell
 

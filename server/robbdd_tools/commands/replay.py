@@ -1,4 +1,4 @@
-"""``robbdd replay``: simulate a stored run again and prove that the traces are the same to the last bit."""
+"""``robbdd replay``: simulate a stored run again and check that the traces are bit-identical."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from robbdd_tools.workbench.stored import store_at
 
 @dataclass(frozen=True, slots=True)
 class ReplayOptions:
-    """The run (a number, ``latest`` or a folder), the scenarios by name, where runs are kept, how to simulate.
+    """The run (a number, ``latest`` or a folder), the scenario names, the store of runs, the simulation policy.
 
-    ``force`` simulates with files as they are now, changed or not.
+    ``force`` simulates with the current files, even if they have changed.
     """
 
     run: str
@@ -32,7 +32,7 @@ class ReplayOptions:
 
 
 def replay(options: ReplayOptions) -> int:
-    """Print for each scenario whether its trace is the same; returns 0 when all are, 1 when one is not."""
+    """Print for each scenario whether its trace is identical; return 0 if all are, else 1."""
     return guarded(Outputs(), viewer=False, work=lambda: _replay(options))
 
 

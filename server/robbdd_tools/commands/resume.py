@@ -1,4 +1,4 @@
-"""``robbdd run --resume``: continue a run that did not finish, as if it had never been interrupted."""
+"""``robbdd run --resume``: continue an unfinished run as if it had never been interrupted."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ResumeOptions:
-    """The run (a number, ``latest`` or a folder) and the model, if they are named, and how to continue.
+    """The run (a number, ``latest`` or a folder) and the model, if given, and how to continue.
 
-    ``jobs``, ``timeout`` (s) and ``stop_on_failure`` replace those of the run where they are given.
+    ``jobs``, ``timeout`` (s) and ``stop_on_failure``, if given, replace those of the run.
     """
 
     run: str
@@ -35,7 +35,7 @@ class ResumeOptions:
 
 
 def resume(options: ResumeOptions) -> int:
-    """Execute what a run has left open; returns the exit code as ``robbdd run``."""
+    """Execute the open scenarios of a run; return the exit code as ``robbdd run``."""
     return guarded(options.outputs, viewer=options.viewer, work=lambda: _resume(options))
 
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """Where the results go: a JSON file, a JUnit XML file, a folder of pictures and films, the run's own place."""
+    """Output places: a JSON file, a JUnit XML file, a folder of pictures and videos, the run's own folder."""
 
     report: Path | None = None
     junit: Path | None = None
@@ -60,12 +60,12 @@ class RunOptions:
 
 
 def run(options: RunOptions) -> int:
-    """Run models; returns the exit code."""
+    """Run models; return the exit code."""
     return guarded(options.outputs, viewer=options.viewer, work=lambda: _run(options))
 
 
 def guarded(outputs: Outputs, *, viewer: bool, work: Callable[[], int]) -> int:
-    """Do the work of a run; print why it cannot be done, and return the exit code."""
+    """Do the work of a run; print why it failed, if so, and return the exit code."""
     problem = _unwritable(outputs) or (no_display() if viewer else "")
     if problem:
         return fail(problem)
@@ -84,7 +84,7 @@ def guarded(outputs: Outputs, *, viewer: bool, work: Callable[[], int]) -> int:
 
 
 def seen(policy: Policy, *, viewer: bool) -> Policy:
-    """Return the policy of a run that is followed in windows, one scenario after another, if ``viewer``."""
+    """Return the policy for a run shown in the viewer, one scenario after another, if ``viewer``."""
     if not viewer:
         return policy
     os.environ[VIEWER] = "1"
@@ -92,7 +92,7 @@ def seen(policy: Policy, *, viewer: bool) -> Policy:
 
 
 def conclude(run: Run, outputs: Outputs, ended_by: int) -> int:
-    """Write the reports of a run, say where it is kept, and return the exit code. Raises ``OSError``."""
+    """Write the reports of a run, print where it is kept, and return the exit code. Raises ``OSError``."""
     results = run.progress
     # First of all: a report that cannot be written costs no result.
     if run.place.kept:
@@ -138,7 +138,7 @@ def _run(options: RunOptions) -> int:
 
 
 def _unwritable(outputs: Outputs) -> str:
-    """Return why reports cannot be written where they are wanted; empty when they can."""
+    """Return why reports cannot be written to their places; empty if they can."""
     for report in (outputs.report, outputs.junit):
         if report is not None and not report.absolute().parent.is_dir():
             return f"cannot write {report}: there is no folder {report.parent}"
@@ -155,7 +155,7 @@ def _report(results: RunResults, outputs: Outputs) -> None:
 
 
 def _record(folder: Path, target: Path) -> None:
-    """Write the pictures; verdicts stand without them."""
+    """Write the pictures; failures do not affect verdicts."""
     for render, what, of in (
         (render_moments, "picture", "violated clauses"),
         (render_videos, "moving picture", "scenarios"),

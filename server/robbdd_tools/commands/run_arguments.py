@@ -1,4 +1,4 @@
-"""Arguments of ``robbdd run`` and of the commands about its runs. Loads nothing until they are used."""
+"""Arguments of ``robbdd run`` and related commands. Imports nothing heavy until they are used."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 CHOOSING = (
     "scenario", "seed", "repeat", "bhv", "rerun_failed", "where", "first", "sample", "pairwise", "no_store",
 )  # fmt: skip
-"""Arguments that say what a new run executes and whether it is kept."""
+"""Arguments that define what a new run executes and whether it is kept."""
 
 
 def allow_run(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of a run."""
     parser.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario or execution; repeats")
-    parser.add_argument("--seed", type=int, default=None, help="decides everything random (default: 1)")
-    text = "execute each scenario N times, with other random numbers each time"
+    parser.add_argument("--seed", type=int, default=None, help="seed of all random choices (default: 1)")
+    text = "execute each scenario N times, each with a different random seed"
     parser.add_argument("--repeat", metavar="N", type=positive, help=text)
     parser.add_argument("--rerun-failed", action="store_true", help="only what did not hold in the last stored run")
-    text = "go on with a run that was interrupted: its number or folder (default: the latest such run)"
+    text = "resume an interrupted run: its number or folder (default: the latest)"
     parser.add_argument("--resume", metavar="RUN", nargs="?", const="latest", help=text)
     text = "execute a catalog behaviour in place of this implementation of a .bddx, as with a ROS action; repeats"
     parser.add_argument("--bhv", metavar="NAME=BEHAVIOUR", type=_substitution, action="append", help=text)
@@ -37,7 +37,7 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     outputs = parser.add_argument_group("outputs")
     outputs.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     outputs.add_argument("--junit", metavar="OUT.xml", type=Path, help="write the results as JUnit XML")
-    text = "write a moving picture of each scenario and a picture of each violated clause's moment here"
+    text = "write a video of each scenario and a picture of each violation to this folder"
     outputs.add_argument("--record", metavar="DIR", type=Path, help=text)
     outputs.add_argument("--viewer", action="store_true", help="follow each scenario in a window, in real time")
     text = "keep features, manifest, logs and results here instead of in the store"
@@ -47,7 +47,7 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
 
 
 def misused(options: argparse.Namespace) -> str:
-    """Return what is wrong with the arguments of a run together; nothing when they go together."""
+    """Return a message about conflicting arguments; empty if there is none."""
     if options.resume is None:
         return "" if options.path is not None else "name a model or a folder to run, or --resume a run"
     given = [f"--{name.replace('_', '-')}" for name in CHOOSING if getattr(options, name) not in (None, False)]
@@ -58,7 +58,7 @@ def misused(options: argparse.Namespace) -> str:
 
 
 class TakesArguments(Protocol):
-    """What a parser and a group of its arguments have in common."""
+    """Common interface of a parser and an argument group."""
 
     def add_argument(self, *names: str, **options: Any) -> argparse.Action:
         """Add an argument, as ``argparse`` does."""
@@ -75,18 +75,18 @@ def allow_store(parser: TakesArguments) -> None:
 
 
 def allow_policy(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments that say how a run goes."""
+    """Add the arguments of the run policy."""
     text = "agent processes at a time (default: as many as there are cores)"
     parser.add_argument("--jobs", metavar="N", type=positive, help=text)
-    text = "wall time that a scenario may take (default: 300; 0: any)"
+    text = "wall time limit of a scenario (default: 300; 0: none)"
     parser.add_argument("--timeout", metavar="SECONDS", type=_seconds, help=text)
-    text = "MiB kept of what each agent process prints, half from the beginning and half from the end (default: 4)"
+    text = "MiB kept of each agent process's output, half from its beginning and half from its end (default: 4)"
     parser.add_argument("--log-limit", metavar="MIB", type=positive, help=text)
-    parser.add_argument("--stop-on-failure", action="store_true", help="leave out what comes after the first failure")
+    parser.add_argument("--stop-on-failure", action="store_true", help="skip all scenarios after the first failure")
 
 
 def run_options(options: argparse.Namespace) -> RunOptions:
-    """Return what the parsed arguments ask for."""
+    """Return the run options of the parsed arguments."""
     from robbdd_tools.commands.run import RunOptions
     from robbdd_tools.workbench.plan import Selection
 
@@ -107,12 +107,12 @@ def run_options(options: argparse.Namespace) -> RunOptions:
 
 
 def resume_options(options: argparse.Namespace) -> ResumeOptions:
-    """Return what the parsed arguments ask to be resumed."""
+    """Return the resume options of the parsed arguments."""
     from robbdd_tools.commands.resume import ResumeOptions
 
     run, path = options.resume, options.path
     if path is None and Path(run).suffix and Path(run).is_file():
-        # A model right behind --resume is taken for its value.
+        # argparse takes a model directly after --resume for its value.
         run, path = "latest", Path(run)
     return ResumeOptions(
         run,
@@ -133,7 +133,7 @@ def _outputs(options: argparse.Namespace, *, keep: bool = True) -> Outputs:
 
 
 def policy(options: argparse.Namespace) -> Policy:
-    """Return how the parsed arguments want a run to go."""
+    """Return the run policy of the parsed arguments."""
     from robbdd_tools.run.scheduler import Policy
 
     found = Policy(stop_on_failure=options.stop_on_failure)

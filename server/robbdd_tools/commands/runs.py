@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def list_runs(path: Path, store: Path | None) -> int:
-    """Print the stored runs, the newest last; returns the exit code."""
+    """Print the stored runs, newest last; return the exit code."""
     found = store_at(path, store)
     runs = found.runs()
     for run in runs:
@@ -29,7 +29,7 @@ def list_runs(path: Path, store: Path | None) -> int:
 
 
 def say_unfinished(run: StoredRun, status: RunStatus) -> None:
-    """Say on standard error how far a run is that has not finished everything."""
+    """Print the progress of an unfinished run to standard error."""
     if status.words():
         print_note(f"robbdd: run {run.number or run.folder}: {status.words()}")
 

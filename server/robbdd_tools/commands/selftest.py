@@ -1,4 +1,4 @@
-"""The parts of ``robbdd doctor`` that are tried out: our own commands on an example, in processes with a time limit."""
+"""Tests of ``robbdd doctor``: our own commands on an example, in processes with a time limit."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ _ENGINE = "python -m pip install --force-reinstall mujoco behave"
 
 
 def models(folder: Path) -> str:
-    """Make the example in ``folder``, parse and check it."""
+    """Create the example in ``folder``, parse and check it."""
     begin_project(folder, EXAMPLE)
-    # A project of its own, even if temporary files lie within another one.
+    # A project of its own, even if the temporary folder is inside another project.
     (folder / "robbdd.toml").touch()
     done = _robbdd("check", folder)
     if done.code != 0:
@@ -43,14 +43,14 @@ def models(folder: Path) -> str:
 
 
 def shapes(folder: Path) -> str:
-    """Let SHACL find a fault that only SHACL can find."""
+    """Check that SHACL finds an error that no other check finds."""
     faulty = folder.with_name("faulty")
     begin_project(faulty, EXAMPLE)
     model = faulty / MODEL
     replace_file(model, load_text(model).replace(_TASK, ""))
     done = _robbdd("check", model)
     if _MISSING_TASK not in done.output:
-        raise _broken("SHACL misses a fault that was planted", done)
+        raise _broken("SHACL misses a planted fault", done)
     return "SHACL finds a planted fault"
 
 
@@ -65,7 +65,7 @@ def features(folder: Path) -> str:
 
 
 def simulation(folder: Path) -> str:
-    """Execute one scenario of the example, and read its verdict back from the example's store."""
+    """Execute one scenario of the example, and read its verdict from the example's store."""
     done = _robbdd("run", folder / MODEL, "--first", "1", "--jobs", "1")
     try:
         run = store_beside(folder / MODEL).find("latest")
@@ -79,7 +79,7 @@ def simulation(folder: Path) -> str:
 
 
 def rendering(folder: Path) -> str:
-    """Render the example's scene by the first back end that works; raises ``Unavailable`` when none does."""
+    """Render the example's scene with the first working back end; raises ``Unavailable`` if none works."""
     failures: list[str] = []
     for back_end in back_ends():
         picture = folder.with_name(f"{back_end}.png")
@@ -91,7 +91,7 @@ def rendering(folder: Path) -> str:
 
 
 def server(_: Path) -> str:
-    """Begin and end a session with the language server."""
+    """Start and end a session with the language server."""
     messages = "".join(map(_message, _SESSION))
     done = _python("robbdd_tools.lsp.main", "--stdio", sent=messages)
     if done.code != 0 or '"serverInfo"' not in done.output:
@@ -102,7 +102,7 @@ def server(_: Path) -> str:
 
 
 def store(path: Path) -> str:
-    """Read all runs of a project's store, check its database, and try whether another run could be kept."""
+    """Read all runs of a project's store, check its database, and test whether it is writable."""
     found = store_beside(path)
     folder = found.folder
     unreadable = [str(reason) for run in found.runs() if (reason := _unreadable(run)) is not None]
@@ -112,11 +112,11 @@ def store(path: Path) -> str:
             file.write(b"robbdd")
     except OSError as error:
         reason = f"{folder} cannot be written: {error.strerror or error}"
-        raise Unavailable(reason, "change its permissions, or name another one by `--store DIR`") from None
-    # A run may be unreadable because of the database, which is then the thing to report.
+        raise Unavailable(reason, "change its permissions, or name another one with `--store DIR`") from None
+    # A run may be unreadable because of the database; then report the database.
     database = f"; {found.database.name}: {_checked(found.database)}" if found.database.exists() else ""
     if unreadable:
-        raise Unavailable("\n".join(unreadable), "delete these runs, or copy them again, whole")
+        raise Unavailable("\n".join(unreadable), "delete these runs, or copy them again completely")
     return f"{folder}: {len(found.runs())} runs, writable{database}"
 
 
@@ -127,7 +127,7 @@ def _checked(database: Path) -> str:
         fix = f"move it away: the next run begins a new one, and runs with a {RESULTS} can still be read"
         raise Unavailable(str(problem), fix) from None
     except DatabaseProblem as problem:
-        raise Unavailable(str(problem), "name another store by `--store DIR`") from None
+        raise Unavailable(str(problem), "name another store with `--store DIR`") from None
 
 
 def _unreadable(run: StoredRun) -> NoSuchRun | None:
@@ -158,7 +158,7 @@ def _broken(problem: str, done: Ending, fix: str = REINSTALL) -> Unavailable:
 
 
 def _last_line(done: Ending) -> str:
-    """Return how a command ended, and the last line that it wrote."""
+    """Return how a command ended, and its last line of output."""
     ending = f"ended after {SECONDS:g} s" if done.code is None else describe_exit(done.code)
     lines = [line.strip() for line in (done.errors or done.output).splitlines() if line.strip()]
     return f"{lines[-1]} ({ending})" if lines else ending
@@ -172,4 +172,4 @@ TESTS: Mapping[str, Callable[[Path], str]] = {
     "rendering": rendering,
     "server": server,
 }
-"""In the order in which they are run: all others work on the folder that the first one makes."""
+"""Tests in execution order: the first one creates the folder that the others use."""

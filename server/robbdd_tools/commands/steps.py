@@ -1,4 +1,4 @@
-"""``robbdd steps``: a skeleton of step functions for another robot or simulator."""
+"""``robbdd steps``: write a skeleton of step functions for another robot or simulator."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from robbdd_tools.commands.output import fail, print_document, print_line
 
 
 def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> int:
-    """Print the skeleton, or add to ``target`` what it lacks; returns the exit code.
+    """Print the skeleton, or add missing steps to ``target``; return the exit code.
 
-    ``undefined`` leaves out the sentences that the catalog knows.
+    ``undefined`` leaves out the sentences that the catalog defines.
     """
     from robbdd_tools.gherkin.skeleton import add_steps, free_patterns, patterns, skeleton
 
@@ -32,5 +32,5 @@ def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> 
         return fail(f"{target} is not UTF-8 text")
     except OSError as error:
         return fail(f"{target}: {error.strerror or error}")
-    print_line(f"{target}: {new} new step{'' if new == 1 else 's'}, {len(wanted) - new} there already")
+    print_line(f"{target}: {new} new step{'' if new == 1 else 's'}, {len(wanted) - new} already defined")
     return OK

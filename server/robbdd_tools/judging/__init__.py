@@ -1,1 +1,1 @@
-"""Decides clauses on a trace, recorded by a simulation or read from a file; knows no simulator."""
+"""Judge clauses on a trace, recorded by a simulation or read from a file, without a simulator."""

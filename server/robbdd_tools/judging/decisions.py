@@ -1,4 +1,4 @@
-"""Decides clauses on a trace: fluents by the monitor, junctions by strong Kleene logic."""
+"""Judge clauses on a trace: fluents by the monitor, junctions by strong Kleene logic."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
 
 NO_STEP = "no step definition"
-"""How the reason begins why a clause is unknown that nothing can judge."""
+"""Prefix of the reason for a clause that no step judges."""
 SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
 
 
 def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[str]) -> Verdict:
-    """Judge a clause on what has happened; ``events`` are those that something in the scenario emits."""
+    """Judge a clause on a trace; ``events`` are the events with an emitter in the scenario."""
     if trace.unreached:
         return unknown(trace.unreached, Cause.UNREACHED)
     numbers = count()
@@ -49,7 +49,7 @@ def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[s
 
 
 def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:
-    """Return how far the margin of each fluent of a clause varied over a whole trace, as far as that is known."""
+    """Return the range of each fluent's margin over a whole trace, where known."""
     found: list[Range] = []
     for fluent in fluents_of(clause):
         slots = fluent.predicate.slots
@@ -57,19 +57,19 @@ def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:
             each = [
                 margin_range(fluent.predicate, words, trace, regions) for words in _instances(slots, fluent.arguments)
             ]
-        except Exception:  # the same failure has made the clause unknown, with its words
+        except Exception:  # the same failure has already made the clause unknown, with this reason
             return ()
         found += [joined(known)] if (known := [one for one in each if one is not None]) else []
     return tuple(found)
 
 
 def is_closed(clause: Clause, trace: Trace, events: AbstractSet[str]) -> bool:
-    """Whether a longer trace could not tell more about a clause."""
+    """Return whether the verdict on a clause is final: a longer trace cannot change it."""
     return all(_closed(fluent, trace, events) for fluent in fluents_of(clause))
 
 
 def ways(fluent: Fluent) -> Iterator[Iterator[Arguments]]:
-    """Yield the ways in which a fluent may hold, each with the arguments for all of which it then must."""
+    """Yield the alternatives under which a fluent holds, each with the arguments that must all satisfy it."""
     slots = fluent.predicate.slots
     some = [slot for slot in slots if isinstance(fluent.arguments[slot.name], AnyOf)]
     return (_instances(slots, chosen) for chosen in _choices(fluent.arguments, some))
@@ -98,7 +98,7 @@ def _judged(fluent: Fluent, arguments: Arguments, trace: Trace, regions: Regions
         return unknown(str(error), Cause.UNOBSERVED)
     except UserCodeError as error:
         return unknown(str(error), Cause.USER_CODE, fault=error.fault)
-    except Exception as error:  # an evaluator may come from any package; its failure is missing evidence
+    except Exception as error:  # an evaluator may be third-party code; its failure is missing evidence
         fault = fault_of(error, fluent.predicate.name, fluent.predicate.evaluate)
         return unknown(
             f"the evaluator of '{fluent.predicate.name}' failed: {fault.summary}", Cause.USER_CODE, fault=fault
@@ -106,14 +106,14 @@ def _judged(fluent: Fluent, arguments: Arguments, trace: Trace, regions: Regions
 
 
 def _choices(arguments: Mapping[str, Filler], some: list[Slot]) -> Iterator[Mapping[str, Filler]]:
-    """Every way to choose one element for each existential slot."""
+    """Yield every choice of one element for each existential slot."""
     options = [filler.elements for slot in some if isinstance(filler := arguments[slot.name], AnyOf)]
     for chosen in product(*options):
         yield {**arguments, **{slot.name: element for slot, element in zip(some, chosen, strict=True)}}
 
 
 def _instances(slots: tuple[Slot, ...], arguments: Mapping[str, Filler]) -> Iterator[Arguments]:
-    """Arguments as the evaluators want them; a set where one element is wanted stands for each of them in turn."""
+    """Yield arguments in evaluator form; a set in a single-element slot is expanded to its elements."""
     options = [_options(slot.kind, arguments[slot.name]) for slot in slots]
     for values in product(*options):
         yield {slot.name: value for slot, value in zip(slots, values, strict=True)}

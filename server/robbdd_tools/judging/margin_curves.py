@@ -1,4 +1,4 @@
-"""The margins of a scenario's clauses over time, kept beside its trace as JSON."""
+"""Margins of a scenario's clauses over time, stored as JSON with its trace."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False) -> Iterator[Curve]:
-    """Yield the curve of each fluent of a clause: of a set the worst member's, where any will do the best one's."""
+    """Yield each fluent's curve: over a set, the worst element's, or the best one's where any element suffices."""
     match clause:
         case Fluent():
             yield _curve(clause, trace, regions, negated)
@@ -41,9 +41,9 @@ def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False
 def behaviour_curves(
     call: BehaviourCall, trace: Trace, emitters: Mapping[str, str], node: str = "", iteration: int = 0
 ) -> tuple[Curve, ...]:
-    """Return the duration of a behaviour, without a margin; ``emitters`` maps events to what emits them.
+    """Return the duration of a behaviour, without a margin; ``emitters`` maps events to their emitters.
 
-    ``node`` is that of the behaviour tree which executes it, if one does; ``iteration`` is 0 for a behaviour that is
+    ``node`` is the node of the behaviour tree that executes it, if any; ``iteration`` is 0 for a behaviour that is
     executed once.
     """
     limits = call.behaviour.events[0], call.behaviour.events[-1]
@@ -83,7 +83,7 @@ def _curve(fluent: Fluent, trace: Trace, regions: Regions, negated: bool) -> Cur
         try:
             worst = [np.min([predicate.evaluate(evidence, words) for words in group], axis=0) for group in every]
             best: FloatArray = np.max(worst, axis=0)
-        except Exception:  # no record, an empty set, users' code that fails: the verdict says so
+        except Exception:  # no record, an empty set, failing users' code: the verdict reports it
             return None
         return best
 

@@ -1,4 +1,4 @@
-"""What an execution says of clauses that prove little: how far margins varied, and what held from the start."""
+"""Find clauses that prove little in an execution: margin ranges, and clauses that held from the start."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ClauseSpec, ScenarioSpec
 
 BEGIN = "the behaviour begins"
-"""Name of the event that stands for the beginning of a behaviour."""
+"""Name of the artificial event at the beginning of a behaviour."""
 
 
 def margin_ranges(
     index: int, clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: Trace, regions: Regions
 ) -> MarginRanges | None:
-    """Return the message on a clause of scenario number ``index``, ``None`` when its trace says nothing of this."""
+    """Return the message on a clause of scenario number ``index``, ``None`` if the trace has no information on it."""
     if trace.unreached:
         return None
     found = ranges(clause, trace, regions)
@@ -35,10 +35,10 @@ def margin_ranges(
 
 
 def _held_before(clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: Trace, regions: Regions) -> bool | None:
-    """Tell whether a Then clause holds, and its predicates held when the first behaviour of its scope began as well.
+    """Return whether a Then clause holds and its predicates already held when its scope's first behaviour began.
 
-    ``None`` where that means nothing: for other clauses, for intervals, which say that something stays as it is, and
-    for what is set up or measured in windows only.
+    ``None`` where this is meaningless: for other clauses, for intervals, which require a state to persist, and for
+    predicates that are set up, or measured in windows only.
     """
     fluents = list(fluents_of(clause))
     if stated.role != "then" or not fluents:

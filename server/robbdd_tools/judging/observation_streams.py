@@ -1,4 +1,4 @@
-"""What a provider tells of a thing's position: at a rate, late, and not quite right."""
+"""Simulated observations of an element's position, with a provider's rate, latency and noise."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ SOURCES = {"topic": "a ROS topic", "entity-state": "ROS entity states", "transfo
 
 
 class Unobserved(Exception):
-    """There is nothing to judge on; the message says why."""
+    """There is nothing to judge on; the message gives the reason."""
 
 
 class Stream:
     """The observations of one element that are known at each sample of a window.
 
-    The provider looks at the times k / rate; what it saw is known a latency later, with noise on each axis that follows
-    from the seed, the observation and k alone. ``positions`` (n, 3) m are the last known ones, ``stamps`` (n,) s the
-    times at which they were taken. Raises ``Unobserved`` where the simulation has no such provider or nothing was
-    known yet.
+    The provider observes at the times k / rate; an observation is known after the latency, with noise on each axis that
+    depends only on the seed, the observation and k. ``positions`` (n, 3) m are the last known ones, ``stamps`` (n,) s
+    the times of observation. Raises ``Unobserved`` if the simulation has no such provider or no observation is known
+    yet.
     """
 
     def __init__(self, observation: Observation, target: str, evidence: Evidence, seed: int) -> None:
@@ -48,7 +48,7 @@ class Stream:
 
 
 def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:
-    """Positions (n, 3) m at the last samples at or before some times; of a workspace, that of its first region."""
+    """Return positions (n, 3) m at the last samples at or before some times; a workspace has its first region's."""
     regions = dict(zip(evidence.workspaces, map(evidence.regions, evidence.workspaces), strict=True)).get(target)
     if not regions:
         return evidence.position_at(target, stamps)
@@ -57,6 +57,6 @@ def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:
 
 
 def _noise(seed: int, name: str, count: int) -> FloatArray:
-    """Return normally distributed numbers (count, 3); a longer array begins as a shorter one."""
+    """Return normally distributed numbers (count, 3); a longer array starts with the shorter one."""
     digest = hashlib.sha256(f"{seed} {name}".encode()).digest()
     return np.random.default_rng(int.from_bytes(digest[:8], "big")).standard_normal((count, 3))

@@ -1,4 +1,4 @@
-"""Reads sentences that a person has written into a feature; every pattern derives from the catalog."""
+"""Parse sentences that a person has written into a feature; every pattern is derived from the catalog."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ TIME = (
     r'(?P<relation>before|after) event "(?P<event>[^"]*)"'
     r'|from "(?P<start>[^"]*)" until "(?P<end>[^"]*)")'
 )
-"""A time constraint as it ends a sentence."""
+"""A time constraint at the end of a sentence."""
 NOT, GROUP = r"not \( (?P<inner>.*) \)", r"\( (?P<inner>.*) \)"
 """A negation, and an alternative or enumeration."""
 OCCURS = r'event "(?P<event>[^"]*)" occurs'
 QUOTED = r'(?:[^"\\]|\\.)*'
-"""What stands between double quotes; a backslash takes the meaning from the next character."""
+"""Contents of double quotes; a backslash escapes the next character."""
 ANY = "any of "
 _ESCAPE = re.compile(r"\\(?:u([0-9a-f]{4})|(.))")
 _NAMED = {"n": "\n", "r": "\r", "t": "\t"}
@@ -55,7 +55,7 @@ def fluent_pattern(predicate: Predicate) -> str:
 
 
 def read_step(role: str, text: str) -> Statement | None:
-    """Read the sentence of a step; ``None`` for a When step that neither the catalog nor an event states."""
+    """Parse the sentence of a step; ``None`` for a When step that is neither in the catalog nor an event."""
     if role != "when":
         return read_clause(text)
     if (match := re.fullmatch(OCCURS, text)) is not None:
@@ -67,7 +67,7 @@ def read_step(role: str, text: str) -> Statement | None:
 
 
 def read_clause(text: str) -> Clause:
-    """Read the sentence of a Given or Then step; never raises."""
+    """Parse the sentence of a Given or Then step; never raises."""
     for predicate, pattern in _fluents():
         if (match := pattern.fullmatch(text)) is not None:
             return Fluent(predicate, _fillers(match, predicate.slots), _time(match))
@@ -87,7 +87,7 @@ def read_clause(text: str) -> Clause:
 
 
 def unescaped(text: str) -> str:
-    """Return a string as the user wrote it from what stands for it in a step."""
+    """Return a string as the user wrote it from its escaped form in a step."""
     return _ESCAPE.sub(lambda match: chr(int(match[1], 16)) if match[1] else _NAMED.get(match[2], match[2]), text)
 
 
@@ -128,7 +128,7 @@ def _time(match: re.Match[str]) -> TimeConstraint:
 
 
 def _balanced(text: str) -> bool:
-    """Whether a text closes no parenthesis that it has not opened (quotes hide them)."""
+    """Return whether no parenthesis outside quotes is closed before it is opened."""
     depth = 0
     for char in _outside_quotes(text):
         depth += (char == "(") - (char == ")")
@@ -138,7 +138,7 @@ def _balanced(text: str) -> bool:
 
 
 def _split(text: str, separator: str) -> list[str]:
-    """Split where a separator stands outside of quotes and parentheses."""
+    """Split at separators outside quotes and parentheses."""
     bare = _outside_quotes(text)
     parts: list[str] = []
     depth, start = 0, 0
@@ -151,5 +151,5 @@ def _split(text: str, separator: str) -> list[str]:
 
 
 def _outside_quotes(text: str) -> str:
-    """Blank out everything within double quotes and what a backslash escapes, keeping the length."""
+    """Blank out double-quoted text and escaped characters, keeping the length."""
     return _OPAQUE.sub(lambda match: "_" * len(match[0]), text)

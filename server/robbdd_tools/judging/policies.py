@@ -1,4 +1,4 @@
-"""Observation policies: how a ``.bddx`` wants clauses observed and judged, in place of the catalog's evaluators."""
+"""Observation policies: a ``.bddx`` replaces the catalog's observation and evaluation of clauses."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def with_policies(clause: Clause, spec: ScenarioSpec) -> Clause:
-    """Return a clause whose fluents are judged by the policies of the scenario's execution, where it has any."""
+    """Return a clause whose fluents are judged by the policies of the scenario's execution, if any apply."""
     policies = {} if spec.execution is None else {policy.clause: policy for policy in spec.execution.policies}
     return _attached(clause, policies, spec) if policies else clause
 
@@ -54,7 +54,7 @@ def _predicate(policy: Policy, spec: ScenarioSpec, arguments: Mapping[str, Any])
 class Judge:
     """Judges the windows of one clause of one scenario by a policy.
 
-    ``own`` is what the clause's slots and quantified variables stand for.
+    ``own`` are the values of the clause's slots and quantified variables.
     """
 
     policy: Policy
@@ -64,7 +64,7 @@ class Judge:
     def margins(self, evidence: Evidence, _arguments: Arguments) -> FloatArray:
         """Return the margin at each sample of a window, shape (n,).
 
-        Raises ``Unobserved`` where a simulation has nothing to judge on, ``UserCodeError`` where the user's code fails.
+        Raises ``Unobserved`` if a simulation cannot provide the observations, ``UserCodeError`` if users' code fails.
         """
         rule = self.policy.rule
         if rule.kind == "topic":
@@ -73,7 +73,7 @@ class Judge:
         if rule.kind == "python":
             return self._by_code(rule.name, Observed(evidence, {stream.target: stream for stream in streams}))
         if len(streams) != 2:
-            raise Unobserved(f"a distance is between two things; {len(streams)} are observed")
+            raise Unobserved(f"a distance is between two elements, but {len(streams)} are observed")
         return distance_margins(rule, *streams)
 
     def _streams(self, evidence: Evidence) -> list[Stream]:
@@ -96,7 +96,7 @@ class Judge:
 
 
 class Observed:
-    """The evidence of a window as its observations have it: where things were seen, not where they are."""
+    """The observed evidence of a window: observed positions instead of true ones."""
 
     def __init__(self, evidence: Evidence, streams: Mapping[str, Stream]) -> None:
         self._evidence = evidence
@@ -112,14 +112,14 @@ class Observed:
         return self._streams[name].positions
 
     def stamps(self, name: str) -> FloatArray:
-        """Time at which each of these observations was taken, s, shape (n,); raises ``KeyError``."""
+        """Time of each of these observations, s, shape (n,); raises ``KeyError``."""
         return self._streams[name].stamps
 
 
 def distance_margins(rule: Rule, one: Stream, other: Stream) -> FloatArray:
     """Return the margin (m) of a distance at each sample, shape (n,).
 
-    Raises ``Unobserved`` when the two were seen too far apart in time.
+    Raises ``Unobserved`` if the two observations are too far apart in time.
     """
     apart = np.abs(one.stamps - other.stamps)
     if rule.max_time_offset is not None and (worst := float(apart.max())) > rule.max_time_offset + 1e-9:
@@ -139,7 +139,7 @@ def distance_margins(rule: Rule, one: Stream, other: Stream) -> FloatArray:
 
 
 def _as_margins(name: str, evaluate: object, answer: Any, count: int) -> FloatArray:
-    """Return the user's answer as margins: numbers as they are, true and false as 1 and -1, one for all or one each."""
+    """Return the user's answer as margins, broadcast to all samples: numbers unchanged, true and false as 1 and -1."""
     values = np.asarray(answer)
     if values.dtype == bool:
         values = np.where(values, 1.0, -1.0)

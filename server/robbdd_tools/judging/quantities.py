@@ -1,4 +1,4 @@
-"""Which fluents of a clause ask for a quantity that is measured only on demand, and of which elements."""
+"""Find the fluents of a clause that need a quantity measured on demand, and their elements."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from robbdd_tools.protocol.clauses import AnyOf, Clause, Filler, Fluent, fluents
 
 
 def wanting(clause: Clause, quantity: str) -> Iterator[tuple[Fluent, Mapping[str, str]]]:
-    """Yield the fluents that need a quantity, once for every way to fill their slots with single elements."""
+    """Yield the fluents that need a quantity, once for each assignment of single elements to their slots."""
     for fluent in fluents_of(clause):
         if quantity in fluent.predicate.quantities:
             slots = tuple(fluent.arguments)

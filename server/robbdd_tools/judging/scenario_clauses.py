@@ -1,4 +1,4 @@
-"""The clauses of a scenario as they are to be judged: with its policies, in their iterations of ``for all``."""
+"""The clauses of a scenario in judgeable form: with its policies and the iterations of ``for all``."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ if TYPE_CHECKING:
 
 
 def statement_of(known: ClauseSpec) -> Statement | None:
-    """Return what a clause of the manifest states; the sentence is read where an earlier version wrote no more."""
+    """Return the statement of a manifest clause; parse its sentence if an earlier version stored nothing else."""
     return known.statement or _with_iris(read_step(known.role, known.sentence), known)
 
 
 def stated_by_step(role: str, text: str, known: ClauseSpec | None) -> Statement | None:
-    """Return what a step states: the clause ``known`` of its line, or, where a person has edited it, its sentence."""
+    """Return the statement of a step: that of the clause ``known`` of its line, or of its sentence if edited."""
     if known is None:
         return read_step(role, text)
     return statement_of(known) if known.sentence == text else _with_iris(read_step(role, text), known)
 
 
 def judged_clause(clause: Clause, known: ClauseSpec | None, spec: ScenarioSpec) -> Clause:
-    """Return a clause with the policies of the scenario's execution, its events those of its iterations."""
+    """Return a clause with the policies of the scenario's execution and the events of its iterations."""
     found = with_policies(clause, spec)
     return found if known is None else _in_iterations(found, known)
 
 
 def clause_of(known: ClauseSpec, spec: ScenarioSpec) -> Clause:
-    """Return a Given or Then clause of the manifest as it is to be judged; raises ``TypeError`` for a When clause."""
+    """Return a Given or Then clause of the manifest in judgeable form; raises ``TypeError`` for a When clause."""
     statement = statement_of(known)
     if statement is None or isinstance(statement, BehaviourCall | EventOccurrence):
         raise TypeError(f"{known.sentence} is a When clause")
@@ -43,7 +43,7 @@ def clause_of(known: ClauseSpec, spec: ScenarioSpec) -> Clause:
 
 
 def behaviour_calls(spec: ScenarioSpec) -> list[BehaviourCall]:
-    """Return the behaviours of a scenario in the order in which they are executed."""
+    """Return the behaviours of a scenario in execution order."""
     statements = (statement_of(clause) for clause in spec.clauses if clause.role == "when")
     return [statement for statement in statements if isinstance(statement, BehaviourCall)]
 
@@ -54,7 +54,7 @@ def iteration_of(known: ClauseSpec | None) -> int:
 
 
 def _with_iris(statement: Statement | None, known: ClauseSpec) -> Statement | None:
-    """Name the fluents and texts of a sentence that was read, in order."""
+    """Add the IRIs of ``known`` to the fluents and texts of a parsed sentence, in order."""
     if statement is None or isinstance(statement, BehaviourCall | EventOccurrence):
         return statement
     return _named(statement, iter(known.parts or (known.iri,)))

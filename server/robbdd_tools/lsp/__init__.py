@@ -1,1 +1,1 @@
-"""The language server: converts, publishes, schedules; knows nothing of the language itself."""
+"""The language server: converts, publishes and schedules; it contains no knowledge of the language itself."""

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 @dataclass
 class ActiveRun:
-    """A run from the moment it is requested.
+    """A run, from its request on.
 
-    ``progress`` is the token of its progress, unique among runs. ``judged`` are its scenarios by their position in the
+    ``progress`` is its progress token, unique among runs. ``judged`` are its scenarios by their position in the
     manifest.
     """
 
@@ -31,13 +31,13 @@ class ActiveRun:
         return self.options.token or self.progress
 
     def execute(self, run: Run) -> None:
-        """Set the prepared run; it may have been cancelled while it was prepared."""
+        """Set the prepared run; cancel it if a cancellation arrived during preparation."""
         self.run = run
         if self.cancelled:
             run.cancel()
 
     def cancel(self) -> None:
-        """End the run; one that is still being prepared ends as soon as it is."""
+        """Cancel the run; during preparation, cancel it as soon as it is prepared."""
         self.cancelled = True
         if self.run is not None:
             self.run.cancel()

@@ -1,4 +1,4 @@
-"""The one thread that holds the project: work in the order of the messages, what nobody waits for last."""
+"""The single thread that owns the project: urgent work in message order, other work when idle."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class _Job:
 
 
 class AnalysisThread:
-    """Does urgent work (edits and requests) in the order in which it comes, other work when there is none.
+    """Executes urgent work (edits and requests) in order of arrival, other work when there is none.
 
-    At a checkpoint work that is not urgent lets the urgent go first, and work whose caller was cancelled ends. So a
-    hover never waits for the diagnostics of a large file, and nothing is computed that nobody will see. An edit ends
-    there too when the next thing to do is another edit ``replacing`` the same.
+    At a checkpoint, non-urgent work yields to urgent work, and work whose caller was cancelled ends. So a hover never
+    waits for the diagnostics of a large file, and nothing is computed in vain. An edit also ends at a checkpoint if the
+    next item is another edit ``replacing`` the same text.
     """
 
     def __init__(self) -> None:
@@ -41,9 +41,9 @@ class AnalysisThread:
         threading.Thread(target=self._work, name="analysis", daemon=True).start()
 
     async def do(self, work: Callable[[], Result], urgent: bool = True, replacing: str | None = None) -> Result:
-        """Return the result of ``work``; when the caller is cancelled, it is left out or ends at a checkpoint.
+        """Return the result of ``work``; if the caller is cancelled, the work is skipped or ends at a checkpoint.
 
-        Raises ``Abandoned`` when other work ``replacing`` the same is done instead.
+        Raises ``Abandoned`` if other work ``replacing`` the same is done instead.
         """
         job = _Job(work, urgent, replacing)
         with self._changed:
@@ -56,7 +56,7 @@ class AnalysisThread:
             raise
 
     def stop(self) -> None:
-        """Begin nothing more."""
+        """Start no more work."""
         with self._changed:
             self._stopped = True
             self._urgent.clear()
@@ -79,7 +79,7 @@ class AnalysisThread:
         self._running.append(job)
         try:
             job.done.set_result(job.work())
-        # Whatever it is, it is the caller's: this thread must live.
+        # Any exception belongs to the caller: this thread must survive.
         except BaseException as error:
             job.done.set_exception(error)
         finally:
@@ -89,7 +89,7 @@ class AnalysisThread:
         job = self._running[-1]
         while not job.urgent and self._urgent:
             self._run(self._urgent.popleft())
-        # What was asked between two edits has to see the first one.
+        # A request between two edits must see the first one.
         replaced = job.replacing is not None and bool(self._urgent) and self._urgent[0].replacing == job.replacing
         if job.abandoned or replaced or self._stopped:
             raise Abandoned

@@ -1,4 +1,4 @@
-"""A thread for work that takes longer than a keystroke may wait: graphs, features, the model of a run."""
+"""Thread for work that must not delay keystrokes: graphs, features, the model of a run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 
 
 class Background:
-    """Works on a project of its own, so that it shares no state with the analysis of keystrokes."""
+    """Works on its own project, so that it shares no state with the analysis thread."""
 
     def __init__(self) -> None:
         self._project = Project()
@@ -23,9 +23,9 @@ class Background:
     async def work(
         self, texts: Mapping[str, tuple[int, str]], work: Callable[[Snapshot], Result], *unopened: str
     ) -> Result:
-        """Run ``work`` on the files on disk under the open ``texts`` (version and text by URI).
+        """Run ``work`` on the files on disk, overlaid with the open ``texts`` (version and text by URI).
 
-        The snapshot knows the open files, the ``unopened`` ones that are named, and what these import.
+        The snapshot contains the open files, the named ``unopened`` ones, and their imports.
         """
 
         def on_snapshot() -> Result:
@@ -40,5 +40,5 @@ class Background:
         return await asyncio.get_running_loop().run_in_executor(self._thread, on_snapshot)
 
     def stop(self) -> None:
-        """Begin nothing more."""
+        """Start no more work."""
         self._thread.shutdown(wait=False, cancel_futures=True)

@@ -1,4 +1,4 @@
-"""The client's settings for us: asked for where the client can be asked, else what it sends."""
+"""The client's settings for the server: requested where the client supports it, else as sent by it."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ class Settings:
         self._shapes: dict[str, tuple[str, ...]] = {}
         self._substitutions: dict[str, dict[str, str]] = {}
         self.sent: object = None
-        """What the client has sent by itself, for all folders."""
+        """Settings that the client has sent unasked, for all folders."""
 
     @property
     def patterns(self) -> dict[str, tuple[str, ...]]:
-        """The patterns of each folder that names any."""
+        """The patterns of each folder that has any."""
         return {folder: patterns for folder, patterns in self._shapes.items() if patterns}
 
     def set(self, folder: str, section: object) -> str | None:
-        """Take the section ``robbdd`` for a folder; returns what is wrong with it, if anything."""
+        """Apply the section ``robbdd`` of a folder; return what is wrong with it, if anything."""
         limits = use_limits(cast("dict[str, Any]", section).get("limits")) if isinstance(section, dict) else None
         if limits is not None:
             return limits
@@ -66,7 +66,7 @@ class Settings:
         return self._substitutions.get(self._folder_of(uri), {})
 
     def shapes(self, uri: str) -> EditorShapes:
-        """Return the shapes that the editor adds for a document; their patterns count from its workspace folder."""
+        """Return the shapes that the editor adds for a document; patterns are relative to its workspace folder."""
         folder = self._folder_of(uri)
         path = uri_to_path(folder) if folder else None
         if path is None:
@@ -92,7 +92,7 @@ def register_settings(server: RobbddServer) -> None:
 
 
 async def follow_settings(ls: RobbddServer) -> None:
-    """Read the settings for the first time, and subscribe to changes."""
+    """Read the settings initially, and subscribe to changes."""
     workspace = ls.client_capabilities.workspace
     changes = workspace.did_change_configuration if workspace else None
     if changes is not None and changes.dynamic_registration:
@@ -100,14 +100,14 @@ async def follow_settings(ls: RobbddServer) -> None:
         entry = types.Registration(
             id="robbdd-settings", method=types.WORKSPACE_DID_CHANGE_CONFIGURATION, register_options=options
         )
-        # A client that refuses says nothing of changes; its settings are read all the same.
+        # A client may refuse the subscription; its settings are read all the same.
         with suppress(JsonRpcException):
             await ls.client_register_capability_async(types.RegistrationParams(registrations=[entry]))
     await read_settings(ls)
 
 
 async def read_settings(ls: RobbddServer) -> None:
-    """Ask the client for its settings in each folder; of one that cannot be asked those count that it sent last."""
+    """Request the settings of each folder; without support for requests, use the last ones that the client sent."""
     before = ls.settings.patterns
     folders = ["", *ls.workspace.folders]
     workspace = ls.client_capabilities.workspace

@@ -1,6 +1,6 @@
 """Commands of the server, and the quick fix that offers one of them.
 
-All take one object with the ``uri`` of a model; those that run take the options of ``run_options.RunOptions`` too.
+All take one object with the ``uri`` of a model; those that run also take the options of ``run_options.RunOptions``.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def _register_runs(server: RobbddServer) -> None:
 
 
 def _checked(command: str, target: Any) -> dict[str, Any]:
-    """Return what a client sent as a command's argument; raises ``JsonRpcInvalidParams`` unless it names a model."""
+    """Return a command's argument as sent by the client; raises ``JsonRpcInvalidParams`` unless it names a model."""
     match target:
         case {"uri": str()}:
             return target
@@ -81,7 +81,7 @@ def _register_writing(server: RobbddServer) -> None:
 
 
 def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionParams) -> Iterator[types.CodeAction]:
-    """Yield the fix of clauses that no step can judge, before a run and after it."""
+    """Yield the fix for clauses that no step can judge, before a run and after it."""
     uri = params.text_document.uri
     file = snapshot.file(uri)
     span = ls.convert.span(document_of(snapshot, uri), params.range)
@@ -106,10 +106,10 @@ def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionPar
 
 
 async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
-    """Write the features of a model, with their line maps, beside it in ``features/``, and return their URIs."""
+    """Write the features of a model, with their line maps, to ``features/`` in its folder; return their URIs."""
     path = uri_to_path(uri)
     if path is None:
-        ls.tell("save the model first: its features are written beside it")
+        ls.tell("save the model first: its features are written to its folder")
         return []
     try:
         plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
@@ -121,10 +121,10 @@ async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
 
 
 async def _write_steps(ls: RobbddServer, uri: str) -> list[str]:
-    """Add functions for the clauses that the catalog cannot judge to a file beside the model; return its URI."""
+    """Add functions for clauses that the catalog cannot judge to a file in the model's folder; return its URI."""
     path = uri_to_path(uri)
     if path is None:
-        ls.tell("save the model first: its steps are written beside it")
+        ls.tell("save the model first: its steps are written to its folder")
         return []
     target = steps_file(path)
     try:

@@ -1,4 +1,4 @@
-"""Between our data and the protocol's: the only place that knows the client's units (UTF-8, UTF-16, UTF-32)."""
+"""Convert between our data and the protocol's; only this module knows the client's units (UTF-8, UTF-16, UTF-32)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from robbdd_tools.syntax.declaration import SymbolKind
 
 SOURCE = "robbdd"
 Texts = Snapshot | Mapping[str, Document]
-"""Where documents are taken from."""
+"""Source of documents."""
 _KINDS = types.CompletionItemKind
 _COMPLETION_KINDS: Mapping[str, types.CompletionItemKind] = {
     "keyword": _KINDS.Keyword,
@@ -56,7 +56,7 @@ _SYMBOL_KINDS: Mapping[str, types.SymbolKind] = {
 class Converter:
     """Conversions for one client: ``encoding`` is the one agreed at initialisation.
 
-    ``with_pages`` gives each diagnostic a link to the page about its code.
+    ``with_pages`` adds to each diagnostic a link to the page about its code.
     """
 
     encoding: types.PositionEncodingKind | str = types.PositionEncodingKind.Utf16
@@ -64,13 +64,13 @@ class Converter:
 
     @classmethod
     def of(cls, encoding: str | None, client: types.ClientCapabilities) -> Converter:
-        """Return the conversions for a client that can do this."""
+        """Return the conversions for a client's capabilities."""
         published = client.text_document.publish_diagnostics if client.text_document is not None else None
         with_pages = bool(published is not None and published.code_description_support)
         return cls(encoding or types.PositionEncodingKind.Utf16, with_pages)
 
     def offset(self, document: Document, position: types.Position) -> int:
-        """Return the code-point offset of a client position; beyond a line's end is its end."""
+        """Return the code-point offset of a client position; a position beyond a line's end is clamped to the end."""
         if position.line >= len(document.line_starts):
             return len(document.text)
         line = document.line_text(position.line)
@@ -122,14 +122,14 @@ class Converter:
         )
 
     def code_description(self, code: str) -> types.CodeDescription | None:
-        """Return the link to the page about a code, for a client that shows it."""
+        """Return the link to the page about a code if the client shows it."""
         page = code_page(code) if self.with_pages else None
         return None if page is None else types.CodeDescription(href=page)
 
     def completion(
         self, document: Document, completion: Completion, client: types.ClientCompletionItemOptions | None
     ) -> types.CompletionItem | None:
-        """Return a completion as the client can take it; matching goes by what it replaces."""
+        """Return a completion in the client's form; it is matched against the text that it replaces."""
         snippets = client is not None and bool(client.snippet_support)
         if completion.kind == "snippet" and not snippets:
             return None
@@ -174,7 +174,7 @@ class Converter:
 
 
 def document_of(texts: Texts, uri: str) -> Document:
-    """Return the document of a file; an empty one for a file without text, so that places in it are its start."""
+    """Return the document of a file; an empty one for an unreadable file, so that all its places are the start."""
     return texts.document(uri) if isinstance(texts, Snapshot) else texts.get(uri, Document(uri, 0, ""))
 
 
@@ -186,9 +186,9 @@ def _tags(code: str) -> list[types.DiagnosticTag] | None:
 
 @cache
 def code_page(code: str) -> str | None:
-    """Return the URI of the page about a diagnostic code, or about the family that the code belongs to.
+    """Return the URI of the page about a diagnostic code, or about its family of codes.
 
-    The pages come with the installation, so that they are of its version and can be read offline.
+    The pages are part of the installation: they match its version and can be read offline.
     """
     for name in (code, code.partition("-")[0]):
         try:
@@ -199,12 +199,12 @@ def code_page(code: str) -> str | None:
 
 
 def symbol_kind(kind: str) -> types.SymbolKind:
-    """Return the protocol's kind of symbol that is nearest to one of ours."""
+    """Return the protocol's symbol kind closest to one of ours."""
     return _SYMBOL_KINDS.get(kind, types.SymbolKind.Object)
 
 
 def markup(markdown: str, formats: Sequence[types.MarkupKind] | None) -> types.MarkupContent:
-    """Return a text in the format that a client prefers; its marks are left out where it knows no Markdown."""
+    """Return a text in the client's preferred format; plain text if it does not support Markdown."""
     if formats and types.MarkupKind.Markdown in formats:
         return types.MarkupContent(kind=types.MarkupKind.Markdown, value=markdown)
     plain = re.sub(r"^```.*\n?|\*\*|`|^> ", "", markdown, flags=re.MULTILINE)

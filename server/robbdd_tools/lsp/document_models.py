@@ -28,7 +28,7 @@ def feature_plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
 
 
 def reason(error: Exception) -> str:
-    """Return an error as one sentence for a message; the findings of a model are shown in its text already."""
+    """Return an error as one sentence for a message; the model's findings are already shown in its text."""
     if isinstance(error, ModelErrors):
         return f"the model has errors, the first: {error.findings[0].message}"
     return str(error)

@@ -1,4 +1,4 @@
-"""The protocol's methods that change texts: formatting, linked names, refactorings, moved files."""
+"""Protocol methods that change texts: formatting, linked editing, refactorings, file moves."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def refactorings(ls: RobbddServer, snapshot: Snapshot, uri: str, span: Span) -> 
 
 
 def edit_of(ls: RobbddServer, snapshot: Snapshot, fix: Fix) -> types.WorkspaceEdit | None:
-    """Return the change of a fix or refactoring; ``None`` where it makes a file and the client cannot."""
+    """Return the change of a fix or refactoring; ``None`` if it creates a file and the client cannot."""
     if fix.new_file is None:
         return ls.convert.workspace_edit(snapshot, fix.edits)
     return _with_new_file(ls, snapshot, fix, fix.new_file) if _creates_files(ls) else None
@@ -116,7 +116,7 @@ def _register_moves(server: RobbddServer) -> None:
 
         def find(snapshot: Snapshot) -> types.WorkspaceEdit | None:
             files: dict[str, FileIndex | ImportLines] = {file.document.uri: file for file in on_disk}
-            # What the project has read goes before the disk: it may be open and changed.
+            # Prefer the project's text to the disk: the file may be open and modified.
             files |= {uri: source for uri, source in snapshot.sources.items() if isinstance(source, FileIndex)}
             changes: dict[str, list[types.TextEdit]] = {}
             for edit in import_edits(files.values(), moves):

@@ -1,9 +1,8 @@
-"""What the server and the validation process say to each other.
+"""Messages between the server and the validation process.
 
-A frame is a length (4 bytes, big endian) and something pickled: towards the process a tuple of ``Request`` and
-``Forget``, in which a text stands once however many of them name it; from it a ``Begun`` or an ``Answer``. Both ends
-are the same installation. A request replaces an older one for the same file, even while that is being worked on, but
-not endlessly.
+A frame is a length (4 bytes, big endian) and a pickled object: to the process a tuple of ``Request`` and ``Forget``, in
+which a shared text is stored once; from it a ``Begun`` or an ``Answer``. Both ends are the same installation. A request
+replaces an older one for the same file, even during its validation, but only a limited number of times.
 """
 
 from __future__ import annotations
@@ -21,10 +20,10 @@ LENGTH = struct.Struct(">I")
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """Validate ``uri``; ``texts`` holds the version and text of every open file, ``shapes`` what the editor adds.
+    """Validate ``uri``; ``texts`` holds version and text of every open file, ``shapes`` the shapes added by the editor.
 
-    A file that is not open is ``surveyed``: all findings are wanted, with the texts that they stand in. Its
-    ``importers`` are the files that build on it, open or not, without which what only they use would seem unused.
+    An unopened file is ``surveyed``: all findings are wanted, with the texts that contain them. Its ``importers`` are
+    the files that import it, open or not; without them, declarations used only there would seem unused.
     """
 
     revision: int
@@ -37,24 +36,23 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Forget:
-    """Stop validating ``uri`` and drop what is known of it."""
+    """Stop validating ``uri`` and drop its state."""
 
     uri: str
 
 
 @dataclass(frozen=True, slots=True)
 class Begun:
-    """The process works on ``uri`` from now on, until it answers or begins something else (``""``: it waits)."""
+    """The process is now working on ``uri``, until it answers or begins another file (empty: it is idle)."""
 
     uri: str
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The findings about a file and its imports, or what went wrong inside.
+    """The findings about a file and its imports, or the internal error.
 
-    Of a surveyed file also the files that were ``reached``, looked at or missed, and the ``documents`` that the
-    findings name.
+    For a surveyed file also the files ``reached``, found or missing, and the ``documents`` that the findings refer to.
     """
 
     revision: int
@@ -66,6 +64,6 @@ class Answer:
 
 
 def frame(content: tuple[Request | Forget, ...] | Begun | Answer) -> bytes:
-    """Return messages as they are sent."""
+    """Return messages as one frame."""
     data = pickle.dumps(content)
     return LENGTH.pack(len(data)) + data

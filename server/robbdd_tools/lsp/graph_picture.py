@@ -1,7 +1,7 @@
-"""The request ``robbdd/graph``: the picture of a document's graph as it is being edited.
+"""The request ``robbdd/graph``: a picture of a document's graph during editing.
 
-Parameters: ``uri``; optionally ``position`` (of the cursor), ``iri`` (a node that was looked at) and ``most`` (nodes to
-draw). The answer is described by ``docs/schemas/graph.schema.json``.
+Parameters: ``uri``; optionally ``position`` (of the cursor), ``iri`` (a selected node) and ``most`` (nodes to draw).
+The answer is described by ``docs/schemas/graph.schema.json``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The protocol's methods, each a few lines between conversion and a feature."""
+"""The protocol's methods, each a thin layer between conversion and a feature."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _register_documents(server: RobbddServer) -> None:
         ls.trusted = able.get("trusted") is not False
         if not ls.trusted:
             distrust()
-        # What is registered by now is announced to the client.
+        # All methods registered so far are announced to the client.
         if can_pull(params.capabilities):
             register_pull(ls)
 
@@ -129,7 +129,7 @@ def _asked(only: Sequence[types.CodeActionKind | str] | None, kind: types.CodeAc
 
 
 def _is(kind: types.CodeActionKind | str | None, wanted: types.CodeActionKind | str) -> bool:
-    """Tell whether a kind of action is another one or below it."""
+    """Return whether a kind of action is another one or a sub-kind of it."""
     return f"{_value(kind)}.".startswith(f"{_value(wanted)}.")
 
 

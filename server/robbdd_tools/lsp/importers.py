@@ -1,4 +1,4 @@
-"""Takes the files on disk that import others into the project: those who ask for uses want them all, open or not."""
+"""Load importing files from disk into the project: searches for uses need all of them, open or not."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 LASTING = 2.0
-"""Seconds after which the disk is looked at again, for clients that do not tell of changes there."""
+"""Seconds until the disk is read again, for clients that do not report changes."""
 PATIENCE = 0.25
-"""Seconds for which what is nice to know is waited for."""
+"""Seconds to wait for optional information."""
 
 
 class Importers:
-    """Which files on disk import which, as it was found lately."""
+    """Import graph of the files on disk, as of the last read."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
         self._known: dict[str, tuple[float, ImportGraph]] = {}
         self._looking: asyncio.Task[bool] | None = None
         self.elsewhere = Elsewhere()
-        """The names that files of the workspace declare, loaded or not."""
+        """The names declared in files of the workspace, loaded or not."""
 
     async def graph(self, uri: str | None = None) -> ImportGraph:
-        """Return what the files of the workspace import; for a file outside of it, those in its folder and below."""
+        """Return the imports of the workspace's files; for a file outside it, those in its folder and below."""
         is_inside = uri is None or bool(self._server.folders(uri))
         near = "" if is_inside or uri is None else uri
         at, known = self._known.get(near, (-LASTING, ImportGraph({})))
@@ -52,7 +52,7 @@ class Importers:
         return known
 
     async def load(self, uris: Iterable[str]) -> bool:
-        """Take all files that import some others into the project; tell whether any was new. Requests go first."""
+        """Load all files that import the given ones; return whether any was new. Requests go first."""
         found: set[str] = set()
         for uri in uris:
             if uri_to_path(uri) is not None:
@@ -64,7 +64,7 @@ class Importers:
             for uri in fresh:
                 checkpoint()
                 project.load(uri)
-            # Whoever asks for uses looks at all of them; what they mean can be found out before anybody waits.
+            # Searches for uses read all of them; analyse them before anybody waits.
             loaded = project.snapshot()
             for uri in fresh:
                 checkpoint()
@@ -74,14 +74,14 @@ class Importers:
         return bool(found) and await self._server.analyse(read, urgent=False)
 
     async def analyse(self, uri: str, position: types.Position, work: Callable[[Snapshot], Result]) -> Result:
-        """Run ``work`` once all files are there that may use what the name at a position stands for."""
+        """Run ``work`` once all files are loaded that may use the name at a position."""
         await self._load_users(uri, position)
         return await self._server.analyse(work)
 
     async def are_there(self, uri: str, position: types.Position) -> bool:
-        """Wait for the files that may use what the name at a position stands for, but no longer than ``PATIENCE``.
+        """Wait at most ``PATIENCE`` for the files that may use the name at a position.
 
-        Tells whether they are all there; if not, they are read on.
+        Returns whether all are loaded; if not, loading continues.
         """
         finished, _ = await asyncio.wait([self._server.spawn(self._load_users(uri, position))], timeout=PATIENCE)
         return bool(finished)
@@ -96,15 +96,15 @@ class Importers:
         await self.load([await self._server.analyse(declaring)])
 
     async def look_around(self) -> None:
-        """Look on disk for the files that import open ones, and publish what these mean for them."""
+        """Load the files on disk that import open ones, and publish what changes through them."""
         await self._publish_after(self._begin())
 
     def begin_looking(self) -> None:
-        """Do as ``look_around``, behind what is asked for meanwhile."""
+        """Start ``look_around`` in the background; requests go first."""
         self._server.spawn(self._publish_after(self._begin()))
 
     async def looked_around(self) -> None:
-        """Wait for the look on disk that is under way, if any: whoever changes names must know all that use them."""
+        """Wait for a ``look_around`` in progress, if any: a rename must know all uses."""
         if self._looking is not None:
             await asyncio.wait([self._looking])
 

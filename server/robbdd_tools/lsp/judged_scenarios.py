@@ -1,4 +1,4 @@
-"""Verdicts of a run as the editor keeps and shows them."""
+"""Verdicts of a run in the form that the editor keeps and shows."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 def judged_scenario(
     spec: ScenarioSpec, uri: str, digests: Digests, *, run: int, index: int, seed: int | None
 ) -> JudgedScenario:
-    """Return scenario number ``index`` (from 0) of a run, without verdicts; ``seed`` is the one that the user gave."""
+    """Return scenario number ``index`` (from 0) of a run, without verdicts; ``seed`` is the seed given by the user."""
     execution = "" if spec.execution is None else spec.execution.iri
     return JudgedScenario(
         uri,

@@ -21,23 +21,21 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class KeptResults:
-    """What is kept of earlier sessions; ``seen`` is the last run that was read of each store (by its folder)."""
+    """Results of earlier sessions; ``seen`` is the last run read from each store (by its folder)."""
 
     scenarios: tuple[JudgedScenario, ...] = ()
     seen: Mapping[str, int] = field(default_factory=dict[str, int])
 
 
 def load_results(folders: Iterable[Path]) -> KeptResults:
-    """Return what is kept in some workspace folders; files that cannot be read are skipped."""
+    """Return the results kept in workspace folders; unreadable files are skipped."""
     found = [_read(folder / FOLDER / FILE) for folder in folders]
     scenarios = tuple(scenario for kept in found for scenario in kept.scenarios)
     return KeptResults(scenarios, {store: number for kept in found for store, number in kept.seen.items()})
 
 
 def save_results(folders: Iterable[Path], scenarios: Iterable[JudgedScenario], seen: Mapping[str, int]) -> None:
-    """Keep each scenario in the innermost workspace folder that holds its model; folders that cannot be written are
-    skipped.
-    """
+    """Write each scenario to the innermost workspace folder with its model; unwritable folders are skipped."""
     every = list(scenarios)
     for folder, own in _by_folder(sorted(folders, key=lambda path: -len(path.parts)), every):
         document = {"version": VERSION, "seen": dict(seen), "scenarios": [as_json(entry) for entry in own]}
@@ -73,7 +71,7 @@ def _read(path: Path) -> KeptResults:
 
 
 def _write(folder: Path, text: str) -> None:
-    """Replace the file as a whole, so that a reader never sees a half; nothing is made where nothing was run."""
+    """Replace the file atomically; create none if nothing was run."""
     folder.mkdir(exist_ok=True)
     ignored = folder / ".gitignore"
     if not ignored.exists():

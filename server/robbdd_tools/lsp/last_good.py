@@ -1,4 +1,4 @@
-"""What a request shows of a model as it is being edited: the last that was made of a text without errors."""
+"""Answers about a model during editing: the last one made from a text without errors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Json = dict[str, Any]
 
 
 class LastGood:
-    """Keeps an answer for each document and whatever else was asked for."""
+    """Keeps the last good answer by document and further keys."""
 
     def __init__(self) -> None:
         self._kept: dict[str, dict[Hashable, Json]] = {}
@@ -24,7 +24,7 @@ class LastGood:
     def of(
         self, snapshot: Snapshot, uri: str, key: Hashable, make: Callable[[], Json]
     ) -> tuple[Json | None, str | None]:
-        """Return what ``make`` says of a text without errors, else what it said last, with the first error."""
+        """Return ``make``'s answer for a text without errors, else the last good one with the first error."""
         error = _first_error(snapshot, uri)
         kept = self._kept.setdefault(uri, {})
         if error is None:
@@ -33,7 +33,7 @@ class LastGood:
         return kept.get(key), _told(snapshot, uri, error)
 
     def forget(self, uri: str) -> None:
-        """Drop what is kept of a document."""
+        """Drop the answers of a document."""
         self._kept.pop(uri, None)
 
 

@@ -1,4 +1,4 @@
-"""Code lenses and source actions: what can be run, at the scenarios and executions where they stand."""
+"""Code lenses and source actions that run scenarios and executions, at their declarations."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 class _Runnable:
     """A scenario variant or an execution of one: ``choice`` are the options of the command that runs it.
 
-    ``number`` is that of its scenarios, where it is known; ``variant`` is the IRI of a variant alone.
+    ``number`` is the number of its scenarios, if known; ``variant`` is the IRI of a plain variant.
     """
 
     definition: Definition
@@ -63,7 +63,7 @@ def register_lenses(server: RobbddServer) -> None:
                 place = ls.convert.range(document, one.definition.span)
                 found += [types.CodeLens(place, command) for command in _lenses(one, one.variant in recorded)]
                 if one.rate is not None:
-                    # A lens without a command is but a text.
+                    # A lens without a command is plain text.
                     words = types.Command(title=one.rate.label, command="")
                     found.append(types.CodeLens(place, words, data=appearance(one.rate)))
             return found
@@ -72,7 +72,7 @@ def register_lenses(server: RobbddServer) -> None:
 
 
 def source_actions(snapshot: Snapshot, uri: str, span: Span, findings: Findings) -> Iterator[types.CodeAction]:
-    """Yield what can be done with the scenarios in a part of a file, and with the file."""
+    """Yield the actions on the scenarios in a part of a file, and on the file."""
     every = list(_runnable(snapshot, uri, findings))
     commands = [one.command(one.title, RUN) for one in every if one.touches(span)]
     if any(one.variant is not None for one in every):

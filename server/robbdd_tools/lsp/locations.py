@@ -1,4 +1,4 @@
-"""Where the declarations of a file and its imports are, as a client's locations."""
+"""Client locations of the declarations in a file and its imports."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Places:
 
 
 def places_of(snapshot: Snapshot, convert: Converter, uri: str) -> Places:
-    """Return the places of a file and what it imports."""
+    """Return the places of a file and its imports."""
     declarations: dict[str, types.Location] = {}
     rows: dict[tuple[str, int], types.Location] = {}
     uris = tuple(file.document.uri for file in snapshot.closure(uri))

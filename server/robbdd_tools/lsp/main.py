@@ -1,4 +1,4 @@
-"""``robbdd-lsp``: starts the language server over standard input and output, or for a client at a TCP address."""
+"""``robbdd-lsp``: start the language server over standard input and output, or for a client at a TCP address."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--tcp",
         type=address,
         metavar="[HOST:]PORT",
-        help="wait for one client at this address; without a host on loopback only",
+        help="wait for one client at this address; without a host, on loopback only",
     )
     parser.add_argument("--log-file", type=Path, metavar="FILE", help="write a log to this file")
     options = parser.parse_args(arguments)
@@ -58,20 +58,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def address(text: str) -> tuple[str, int]:
-    """Read ``PORT`` or ``HOST:PORT``; raises ``ArgumentTypeError`` for anything else."""
+    """Parse ``PORT`` or ``HOST:PORT``; raises ``ArgumentTypeError`` for anything else."""
     host, colon, port = text.rpartition(":")
     if not port.isdecimal() or int(port) > LARGEST_PORT or (colon and not host):
-        raise argparse.ArgumentTypeError(f"'{text}' is no address: write PORT or HOST:PORT, such as 2087")
+        raise argparse.ArgumentTypeError(f"'{text}' is not an address: write PORT or HOST:PORT, such as 2087")
     return host.strip("[]") or LOOPBACK, int(port)
 
 
 def _log_to(file: Path | None) -> None:
-    """Log warnings to standard error, or everything of ours to a file; standard output belongs to the protocol."""
+    """Log warnings to standard error, or all records to a file; standard output belongs to the protocol."""
     handler = logging.StreamHandler(sys.stderr) if file is None else logging.FileHandler(file, encoding="utf-8")
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
     handler.addFilter(RefusalFilter())
     logging.getLogger().addHandler(handler)
-    # pygls warns of every cancelled request that was answered already, which is what editors do all the time.
+    # pygls warns about every cancelled request that was already answered, which is normal for editors.
     logging.getLogger("pygls").setLevel(logging.ERROR)
     logging.getLogger("robbdd_tools").setLevel(logging.WARNING if file is None else logging.DEBUG)
 

@@ -1,4 +1,4 @@
-"""The protocol's methods for finding one's way: references, rename, outline, folding."""
+"""Protocol methods for navigation: references, rename, outline, folding."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def _register_structure(server: RobbddServer) -> None:
                 for found in workspace_symbols(snapshot, roots, params.query)
             ]
 
-        # Reads what is not open: other requests go first.
+        # Reads unopened files: other requests go first.
         return await ls.analyse(find, urgent=False)
 
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)

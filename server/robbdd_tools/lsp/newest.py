@@ -1,4 +1,4 @@
-"""Work of which only the newest counts, but which comes to an end even if newer work never ceases to come."""
+"""Latest-wins task runner that cannot starve: a task is replaced at most ``MOST_REPLACED`` times in a row."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 
 Work = Callable[[], Coroutine[Any, Any, None]]
 MOST_REPLACED = 8
-"""Works in a row that a newer one may replace: about a second of fast typing, then users see findings all the same."""
+"""Replacements in a row: about a second of fast typing, after which a task may finish and show its findings."""
 
 
 class Newest:
-    """Runs one work at a time for each key; a newer one replaces it, or, after ``MOST_REPLACED``, waits for its end.
+    """Runs one task at a time for each key; a newer one replaces it, or, after ``MOST_REPLACED``, waits for its end.
 
     ``spawn`` starts a coroutine as a task.
     """
@@ -24,7 +24,7 @@ class Newest:
         self._waiting: dict[str, Work] = {}
 
     def begin(self, key: str, work: Work) -> None:
-        """Run ``work`` in place of what runs or waits for this key."""
+        """Run ``work`` instead of the running or waiting task of this key."""
         running = self._running.get(key)
         if running is not None:
             replaced = self._replaced.get(key, 0)
@@ -36,7 +36,7 @@ class Newest:
         self._start(key, work)
 
     def end(self, key: str) -> None:
-        """Leave what runs and waits for a key."""
+        """Cancel the running and the waiting task of a key."""
         self._waiting.pop(key, None)
         self._replaced.pop(key, None)
         running = self._running.pop(key, None)

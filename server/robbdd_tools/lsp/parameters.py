@@ -1,4 +1,4 @@
-"""Parameters of our own requests, which no schema of the protocol has checked."""
+"""Parameters of our own requests, which the protocol's schema does not check."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ LARGEST = 2**31 - 1
 
 
 class Parameters:
-    """What a client has sent, by name; each method raises ``JsonRpcInvalidParams`` for a value of another kind."""
+    """The parameters sent by a client; each method raises ``JsonRpcInvalidParams`` for a value of another type."""
 
     def __init__(self, given: Any) -> None:
-        # pygls makes a named tuple of a JSON object and leaves everything else as it is.
+        # pygls converts JSON objects to named tuples and leaves all other values unchanged.
         self._given = cast("Mapping[str, Any]", given._asdict() if hasattr(given, "_asdict") else {})
 
     def text(self, name: str) -> str:
-        """Return a text that must be there."""
+        """Return a required text."""
         found = self.optional_text(name)
         if found is None:
-            raise JsonRpcInvalidParams(f"'{name}' is missing: it is a text")
+            raise JsonRpcInvalidParams(f"'{name}' is missing: it must be a text")
         return found
 
     def optional_text(self, name: str) -> str | None:
-        """Return a text, ``None`` where it is left out."""
+        """Return an optional text, ``None`` if absent."""
         found = self._given.get(name)
         if found is not None and not isinstance(found, str):
             raise JsonRpcInvalidParams(f"'{name}' must be a text")
         return found
 
     def optional_number(self, name: str) -> int | None:
-        """Return a whole number that is not negative, ``None`` where it is left out."""
+        """Return an optional non-negative integer, ``None`` if absent."""
         found = self._given.get(name)
         if found is None:
             return None
@@ -43,7 +43,7 @@ class Parameters:
         return found
 
     def optional_position(self, name: str) -> types.Position | None:
-        """Return a position in a text, ``None`` where it is left out."""
+        """Return an optional text position, ``None`` if absent."""
         found = self._given.get(name)
         if found is None:
             return None
@@ -54,10 +54,10 @@ class Parameters:
         return types.Position(line, character)
 
     def run(self) -> str | None:
-        """Return which stored run is meant, a number or a word, ``None`` where it is left out."""
+        """Return the stored run, a number or a word, ``None`` if absent."""
         found = self._given.get("run")
         return str(self.optional_number("run")) if isinstance(found, int) else self.optional_text("run")
 
     def others(self, *names: str) -> dict[str, Any]:
-        """Return those of some values that are there."""
+        """Return the present ones of some values."""
         return {name: self._given[name] for name in names if self._given.get(name) is not None}

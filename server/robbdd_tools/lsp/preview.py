@@ -1,7 +1,7 @@
-"""The request ``robbdd/preview``: the Gherkin of a document as it is being edited.
+"""The request ``robbdd/preview``: the Gherkin of a document during editing.
 
-Parameters: ``uri``; optionally ``scenario`` (IRI of a variant) and ``most`` (scenarios to show).
-The answer is described by ``docs/schemas/preview.schema.json``.
+Parameters: ``uri``; optionally ``scenario`` (IRI of a variant) and ``most`` (scenarios to show). The answer is
+described by ``docs/schemas/preview.schema.json``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Previews:
         self.forget = self._kept.forget
 
     def show(self, snapshot: Snapshot, convert: Converter, asked: Parameters) -> dict[str, Any]:
-        """Return the answer to a request; text with errors is answered with the last preview without."""
+        """Return the answer to a request; for a text with errors, the last preview without errors."""
         uri = asked.text("uri")
         scenario = asked.optional_text("scenario")
         most = asked.optional_number("most") or MOST_SHOWN
@@ -55,7 +55,7 @@ def register_preview(server: RobbddServer) -> None:
 def _answer(snapshot: Snapshot, convert: Converter, made: Preview) -> dict[str, Any]:
     return {
         "text": made.text,
-        # The line that says how much is shown stands above all others.
+        # The line that says how much is shown comes first.
         "lines": [
             {
                 "line": entry.line + 1,
@@ -72,7 +72,7 @@ def _answer(snapshot: Snapshot, convert: Converter, made: Preview) -> dict[str, 
 
 def _remark(made: dict[str, Any], problem: str | None) -> str:
     if problem is not None:
-        made_of = "this was made before" if made["text"] else "there is nothing to show yet"
+        made_of = "this is the last preview without errors" if made["text"] else "there is nothing to show yet"
         return f"out of date: the model has an error ({' '.join(problem.split())}); {made_of}"
     if made["shown"] < made["total"]:
         return f"the first {made['shown']} of {made['total']} scenarios"
@@ -80,5 +80,5 @@ def _remark(made: dict[str, Any], problem: str | None) -> str:
 
 
 def _headed(made: dict[str, Any], remark: str) -> str:
-    """Put the line that the numbers of lines count on above a text."""
+    """Put a heading above a text; line numbers count it."""
     return f"# {remark}\n{made['text']}"

@@ -1,4 +1,4 @@
-"""The requests ``robbdd/templates`` and ``robbdd/newProject``: begin a project from the editor.
+"""The requests ``robbdd/templates`` and ``robbdd/newProject``: create a project from the editor.
 
 The first has no parameters and answers a list of ``name`` and ``about``. The second takes ``template`` and the ``uri``
 of a new or empty folder, and answers the URIs of the ``models`` written there, or the ``problem``.
@@ -34,7 +34,7 @@ def register_projects(server: RobbddServer) -> None:
         uri, template = asked.text("uri"), asked.text("template")
         folder = uri_to_path(uri)
         if folder is None:
-            return {"models": [], "problem": f"{uri} is not a folder of this machine"}
+            return {"models": [], "problem": f"{uri} is not a folder on this machine"}
         return await asyncio.to_thread(_begin, folder, template)
 
 

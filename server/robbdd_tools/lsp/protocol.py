@@ -1,4 +1,4 @@
-"""pygls' protocol with its costly part off the event loop: what is sent is written out in a thread of its own."""
+"""pygls' protocol with serialisation moved off the event loop into a separate thread."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ _LOG = logging.getLogger(__name__)
 
 
 class Protocol(LanguageServerProtocol):
-    """Messages leave in the order in which they are given to be sent."""
+    """Sends messages in the order in which they are submitted."""
 
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._outbox = ThreadPoolExecutor(1, thread_name_prefix="outbox")
 
     def set_writer(self, writer: Any, include_headers: bool = True) -> None:
-        """Send to this writer from now on."""
+        """Use this writer from now on."""
         if isinstance(writer, asyncio.StreamWriter):
             writer = LoopWriter(writer)
         super().set_writer(writer, include_headers)
 
     @lsp_method(types.EXIT)
     def lsp_exit(self, *arguments: Any) -> Generator[Any, Any, None]:
-        """End the server when all is sent; at once where the client takes nothing or work does not end."""
+        """End the server when everything is sent; immediately if the client reads nothing or work does not end."""
         end_soon(self.exit_code)
         self._outbox.shutdown(wait=True)
-        # pygls leaves the types of these arguments open.
+        # pygls does not declare the types of these arguments.
         yield from super().lsp_exit(*arguments)  # pyright: ignore[reportUnknownMemberType]
 
     @property
     def exit_code(self) -> int:
-        """The process's exit code: 0 if the client has asked for ``shutdown``, else 1, as the specification says."""
+        """The process's exit code: 0 if the client has requested ``shutdown``, else 1 (specification)."""
         return 0 if self._shutdown else 1
 
     def handle_message(self, message: Any) -> None:
@@ -56,7 +56,7 @@ class Protocol(LanguageServerProtocol):
             super().handle_message(message)
 
     def _exit(self, message: Any, turns: int = 100) -> None:
-        """Handle ``exit`` when the answers that are ready, such as that of ``shutdown``, have been given."""
+        """Handle ``exit`` after the answers that are ready, such as that of ``shutdown``."""
         if turns and self._request_futures:
             asyncio.get_running_loop().call_soon(self._exit, message, turns - 1)
         else:
@@ -66,12 +66,12 @@ class Protocol(LanguageServerProtocol):
         return JsonRpcInvalidRequest("the server is shut down: only 'exit' may follow")
 
     def structure_message(self, data: dict[str, Any]) -> Any:
-        """Read a message; one with unusable parameters is answered, as nobody else will."""
+        """Parse a message; a request with invalid parameters is answered here, as pygls does not answer it."""
         try:
             return super().structure_message(with_canonical_uris(data))
         except JsonRpcException as error:
             if "id" in data and "method" in data:
-                reason = f"the parameters of {data['method']} are not as the protocol has them"
+                reason = f"the parameters of {data['method']} do not match the protocol"
                 refusal = self._late() if self._shutdown else JsonRpcInvalidParams(reason)
                 self._send_response(data["id"], error=refusal.to_response_error())
             _LOG.warning("%s cannot be read: %s", data.get("method", "a response"), error)
@@ -80,7 +80,7 @@ class Protocol(LanguageServerProtocol):
     def _execute_handler(
         self, msg_id: Any, handler: Any, callback: Any, args: Any = None, kwargs: dict[str, Any] | None = None
     ) -> None:
-        """Call a handler and drop its future when it is done: pygls keeps those of edits for ever."""
+        """Call a handler and drop its future when done: pygls keeps futures of notifications forever."""
         super()._execute_handler(msg_id, handler, callback, args, kwargs)
         future = self._request_futures.get(msg_id)
         if future is None:
@@ -90,7 +90,7 @@ class Protocol(LanguageServerProtocol):
             if self._request_futures.get(msg_id) is future:
                 del self._request_futures[msg_id]
 
-        # Not at once: as it shuts down, pygls cancels all futures while it iterates over them.
+        # Not immediately: on shutdown, pygls cancels all futures while it iterates over them.
         loop = asyncio.get_running_loop()
         future.add_done_callback(lambda _: loop.call_soon(drop))
 
@@ -106,7 +106,7 @@ class Protocol(LanguageServerProtocol):
 
 
 def with_canonical_uris(message: Any) -> Any:
-    """Return a message in which every file has one URI, however its client writes it; documents' texts stay."""
+    """Return a message with one canonical URI for each file; the texts of documents are not changed."""
     match message:
         case str():
             return canonical_uri(message)
@@ -120,18 +120,18 @@ def with_canonical_uris(message: Any) -> Any:
 
 
 class LoopWriter:
-    """Writes to a stream of asyncio, which knows its event loop's thread only, from any thread."""
+    """Thread-safe writer to an asyncio stream, which may only be used in its event loop's thread."""
 
     def __init__(self, stream: asyncio.StreamWriter) -> None:
         self._stream = stream
         self._loop = asyncio.get_running_loop()
 
     def write(self, data: bytes) -> None:
-        """Write soon, in the order of the calls."""
+        """Schedule a write, in call order."""
         self._loop.call_soon_threadsafe(self._stream.write, data)
 
     async def close(self) -> None:
-        """Close when all is written: this runs after what was called for before."""
+        """Close after all scheduled writes."""
         self._stream.close()
         with suppress(ConnectionError):
             await self._stream.wait_closed()

@@ -1,7 +1,7 @@
-"""Diagnostics for clients that ask for them: of a document, and of the whole workspace.
+"""Pull diagnostics: of a document, and of the whole workspace.
 
-A client learns of these methods only if the server can also ask it to ask again (``workspace/diagnostic/refresh``),
-since the shapes' findings and results of runs come later than the text. All others get their diagnostics published.
+Used only if the server can also ask the client to pull again (``workspace/diagnostic/refresh``), since findings of
+shapes and results of runs arrive later than the text. For all other clients, diagnostics are published.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 
 def can_pull(client: types.ClientCapabilities) -> bool:
-    """Tell whether a client asks for diagnostics, and again when the server wants it to."""
+    """Return whether a client pulls diagnostics, and again at the server's request."""
     asks = client.text_document is not None and client.text_document.diagnostic is not None
     return asks and is_refreshed(client, DIAGNOSTICS)
 
 
 def register_pull(server: RobbddServer) -> None:
-    """Let the client ask for diagnostics from now on."""
+    """Register pull diagnostics with the client."""
     server.pulls = True
     options = types.DiagnosticOptions(inter_file_dependencies=True, workspace_diagnostics=False, identifier="robbdd")
 
@@ -38,7 +38,7 @@ def register_pull(server: RobbddServer) -> None:
     async def of_workspace(
         ls: RobbddServer, params: types.WorkspaceDiagnosticParams
     ) -> types.WorkspaceDiagnosticReport:
-        """Tell what the client does not know yet; when that is nothing, once there is something."""
+        """Return the files with changed diagnostics; if there are none, wait for a change."""
         known = {entry.uri: entry.value for entry in params.previous_result_ids}
         is_first, published = not known, False
         while True:
@@ -61,7 +61,7 @@ def _report(found: list[types.Diagnostic], previous: str | None) -> types.Docume
 
 
 def _changes(survey: Survey, known: Mapping[str, str]) -> list[types.WorkspaceFullDocumentDiagnosticReport]:
-    """Return the files of which the client does not know what is known by now."""
+    """Return the files whose diagnostics differ from those that the client has."""
     findings = survey.findings()
     gone = {uri: NOTHING for uri in known if uri not in findings}
     return [

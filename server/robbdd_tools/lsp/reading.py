@@ -1,4 +1,4 @@
-"""The protocol's methods that help to read and write a text: completion, hover, hints."""
+"""Protocol methods for reading and writing a text: completion, hover, hints."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _register_hover(server: RobbddServer) -> None:
         if found.judged is not None:
             link = replay_link(found.judged) if ls.shows_replays else ""
             pictures = await asyncio.to_thread(pictures_of, ls.stores, found.judged) if ls.shows_pictures else ""
-            # Hovers are low: what is to be seen stands right below the title.
+            # Keep hovers short: the most important content comes directly below the title.
             title, _, rest = markdown.partition("\n\n")
             title = " · ".join(filter(None, (title, link)))
             markdown = "\n\n".join(filter(None, (title, pictures, rest)))

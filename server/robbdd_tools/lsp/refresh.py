@@ -1,4 +1,4 @@
-"""Asks the client to ask again: for diagnostics, colours, hints and lenses that other files or results have changed."""
+"""Ask the client to refresh diagnostics, tokens, hints and lenses after changes in other files or results."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
 
 GATHERING = 0.03
-"""Seconds that a refresh waits for others that come right behind it."""
+"""Seconds in which several refreshes are combined."""
 SETTLING = 0.3
-"""Seconds after an edit within which what it changes in other files is asked for again."""
+"""Seconds after an edit within which other files are refreshed."""
 DIAGNOSTICS, COLOURS, HINTS, LENSES = "diagnostics", "semantic_tokens", "inlay_hint", "code_lens"
 
 
 def is_refreshed(capabilities: types.ClientCapabilities, what: str) -> bool:
-    """Tell whether a client can be asked to ask again for something."""
+    """Return whether a client supports refresh requests of a kind."""
     abilities = getattr(capabilities.workspace, what, None)
     return bool(abilities is not None and abilities.refresh_support)
 
 
 class Refreshes:
-    """Sends a refresh of each kind once however often it is wanted, and only if the client supports it."""
+    """Sends one refresh for each kind, however often it is requested, and only if the client supports it."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server

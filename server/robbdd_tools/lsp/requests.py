@@ -1,4 +1,4 @@
-"""What every handler has in common: errors stay inside, and answers about a text that has changed are not given."""
+"""Common parts of all handlers: errors are caught, and answers about an outdated text are withheld."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Handler = Callable[..., Any]
 
 @dataclass(eq=False)
 class _Waiting:
-    """A request in progress, with the document that it is about."""
+    """A request in progress, with its document."""
 
     method: str
     uri: str
@@ -28,21 +28,21 @@ class _Waiting:
 
 
 class Requests:
-    """The requests in progress. ``repeated`` are methods that the client asks again when the text has moved on."""
+    """The requests in progress. ``repeated`` are methods that the client repeats after a text change."""
 
     def __init__(self) -> None:
         self.repeated: frozenset[str] = frozenset()
         self._waiting: set[_Waiting] = set()
 
     def text_changed(self, uri: str) -> None:
-        """Answer with ``ContentModified`` what the client asks again anyway, and leave the work on it."""
+        """Answer requests that the client repeats anyway with ``ContentModified``, and cancel their work."""
         for waiting in self._waiting:
             if waiting.uri == uri and waiting.method in self.repeated and waiting.task is not None:
                 waiting.outdated = True
                 waiting.task.cancel()
 
     def guarded(self, method: str, handler: Handler) -> Handler:
-        """Return a handler whose errors are logged with their context; the client hears a sentence."""
+        """Return a handler whose errors are logged with their context; the client gets a one-sentence message."""
         if inspect.iscoroutinefunction(handler):
 
             @wraps(handler)
@@ -74,7 +74,7 @@ def _inside(method: str, arguments: tuple[Any, ...]) -> Generator[None]:
     try:
         yield
     except JsonRpcException:
-        # An answer of its own, such as a refused name.
+        # A deliberate error response, such as a refused name.
         raise
     except Exception as error:
         _LOG.exception("internal error in %s", _context(method, arguments))
@@ -83,7 +83,7 @@ def _inside(method: str, arguments: tuple[Any, ...]) -> Generator[None]:
 
 
 def log_background_error(task: asyncio.Task[Any], what: str) -> None:
-    """Log the error of a task that nobody waits for, if it had one."""
+    """Log the error, if any, of a task that nobody awaits."""
     if not task.cancelled() and (error := task.exception()) is not None:
         _LOG.error("internal error in %s", what, exc_info=error)
 
@@ -95,7 +95,7 @@ def _context(method: str, arguments: tuple[Any, ...]) -> str:
 
 
 def _uri(arguments: tuple[Any, ...]) -> str:
-    """Return the document that parameters speak of, if any."""
+    """Return the document of parameters, if any."""
     params = arguments[-1] if arguments else None
     if isinstance(params, dict):
         return str(cast("dict[str, Any]", params).get("uri", ""))

@@ -1,4 +1,4 @@
-"""What a client that shows pictures gets with a clause's last result: the violated moment, the margin over time."""
+"""Pictures for a clause's last result, if the client shows pictures: the violated moment, the margin over time."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
     from robbdd_tools.run.store import RunStore, StoredRun
 
 REPLAY = "robbdd.showReplay"
-"""A command of clients that say that they have it."""
+"""Command of clients that announce it."""
 THUMBNAILS = "thumbnails"
 LARGEST = 60_000
-"""Bytes of a picture within a text, of which clients read a hundred thousand letters."""
+"""Maximum bytes of an embedded picture; clients read a hundred thousand characters of a text."""
 MOST = 8
-"""Clauses of a run whose worst violation is pictured."""
+"""Maximum number of clauses of a run whose worst violation is pictured."""
 _LOG = logging.getLogger(__name__)
 
 
 def pictures_of(stores: Stores, judged: Judged) -> str:
-    """Return a result's pictures side by side as Markdown, nothing where the stored run is gone."""
+    """Return a result's pictures side by side as Markdown; empty if the stored run is gone."""
     scenario, judgement = judged
     try:
         run = _run_of(stores.of(scenario.model), scenario)
@@ -47,7 +47,7 @@ def pictures_of(stores: Stores, judged: Judged) -> str:
 
 
 def replay_link(judged: Judged) -> str:
-    """Return a link, in Markdown, that replays a result's execution; nothing where no stored run is known."""
+    """Return a Markdown link that replays a result's execution; empty without a stored run."""
     scenario, judgement = judged
     if not scenario.run:
         return ""
@@ -75,7 +75,7 @@ def _data(kind: str, data: bytes) -> str:
 
 
 def picture_violations(run: StoredRun, scenarios: Iterable[JudgedScenario]) -> None:
-    """Take a small picture of the worst violation of each clause, of the first ``MOST``; where that works."""
+    """Render a thumbnail of the worst violation of each of the first ``MOST`` clauses, if rendering works."""
     worst: dict[str, tuple[float, int, int]] = {}
     for scenario in scenarios:
         for iri, judgement in scenario.clauses.items():

@@ -1,4 +1,4 @@
-"""Shows a run in the client while it executes: results at the clauses, messages, progress."""
+"""Show a run in the client during its execution: results at the clauses, messages, progress."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class RunFollower:
         run.listen(self._hear)
 
     async def follow(self) -> None:
-        """Execute the run and show it to its end."""
+        """Execute the run and show it until its end."""
         uris = self._text.places.uris
         await self._progress.begin()
         try:
@@ -65,7 +65,7 @@ class RunFollower:
         self._ls.refreshes.want(LENSES)
 
     def summary(self) -> dict[str, Any]:
-        """Return how the run ended, as the answer to the client that asked for it."""
+        """Return how the run ended, as the answer to the requesting client."""
         outcomes = Counter(str(scenario.verdict) for scenario in self._results.scenarios)
         counts = {outcome: outcomes[outcome] for outcome in ("holds", "violated", "unknown")}
         total, cancelled = len(self._results.scenarios), self._active.cancelled
@@ -75,7 +75,7 @@ class RunFollower:
         self._loop.call_soon_threadsafe(self._take, message)
 
     def _conclude(self) -> None:
-        """Close what the run left open and remove results that no longer belong to the model."""
+        """Close the scenarios left open, and remove results that no longer belong to the model."""
         ending = self._run.ending
         for judged in self._results.close(ending):
             self._take(judged, open_after_cancel=self._active.cancelled)
@@ -91,7 +91,7 @@ class RunFollower:
         self._take(RunFinished(not ending))
 
     def _take(self, message: RunMessage, *, open_after_cancel: bool = False) -> None:
-        """Handle a message; a clause that a cancelled run left open is unknown in its report, but has no result."""
+        """Handle a message; a clause left open by cancellation is unknown in the report, but not stored."""
         self._results.apply(message)
         match message:
             case ScenarioStarted(index):
@@ -128,7 +128,7 @@ class RunFollower:
         return scenario
 
     def _fault(self, index: int | None, fault: Fault) -> None:
-        """Keep an error in users' code with the scenario that it stopped, or with all of them."""
+        """Store an error in users' code with the scenario that it stopped, or with all of them."""
         if index is None:
             self._shared_fault = fault.id
         for stopped in range(len(self._results.scenarios)) if index is None else (index,):

@@ -1,4 +1,4 @@
-"""The notification ``robbdd/runMessage``: what a run says, with the words and places that a client needs.
+"""The notification ``robbdd/runMessage``: a run message with the texts and places that a client needs.
 
 It is described by ``docs/schemas/runmessage.schema.json``.
 """
@@ -32,7 +32,7 @@ def for_client(
 ) -> dict[str, Any]:
     """Return the parameters of the notification about a message of run ``run``.
 
-    A clause with ``cancelled`` was left open by a run that was cancelled.
+    A clause with ``cancelled`` was left open by a cancelled run.
     """
     fields: dict[str, Any] = {"type": type(message).__name__, **asdict(message)}
     match message:
@@ -73,5 +73,5 @@ def for_client(
 
 
 def clause_at(results: RunResults, index: int, line: int) -> ClauseSpec | None:
-    """Return the clause of a scenario that stands on a feature line."""
+    """Return the clause of a scenario on a feature line."""
     return next((clause for clause in results.scenarios[index].spec.clauses if clause.line == line), None)

@@ -1,4 +1,4 @@
-"""The arguments of the commands that run scenarios, and the selection that they ask for."""
+"""Arguments of the commands that run scenarios, and the selection that they define."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class BadArgument(RobbddError):
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """What a client asks for; all but ``uri`` is optional.
+    """Options of a client; all but ``uri`` are optional.
 
     ``scenario`` is a variant or execution (local name, CURIE or IRI), ``variation`` the number of one scenario in its
     variant. Each entry of ``only`` has a ``variant`` (IRI) and optionally the numbers of scenarios (``variations``) and
-    one ``execution`` (IRI). ``failed`` selects what did not hold the last time. ``where``, ``first``, ``sample``,
-    ``pairwise``, ``seed``, ``repeat``, ``jobs`` and ``bhv`` (implementation to catalog behaviour) are those of
-    ``robbdd run``. ``record`` takes a picture of each violation. ``token`` is the run's name in its messages.
+    one ``execution`` (IRI). ``failed`` selects scenarios that did not hold in their last run. ``where``, ``first``,
+    ``sample``, ``pairwise``, ``seed``, ``repeat`` and ``jobs`` are those of ``robbdd run``. ``record`` renders a
+    picture of each violation. ``token`` is the run's name in its messages.
     """
 
     uri: str
@@ -66,7 +66,7 @@ class RunOptions:
 
     @property
     def is_whole(self) -> bool:
-        """Whether all scenarios of the variants run, so that results of other scenarios of theirs are obsolete."""
+        """Whether all scenarios of the variants run, so that other stored results of these variants are obsolete."""
         numbers = {self.variation, self.where, self.first, self.sample, self.pairwise}
         parts = (entry.get("variations") for entry in self.only or ())
         return not self.failed and numbers == {None} and all(part is None for part in parts)
@@ -78,10 +78,9 @@ def select(
     results: Iterable[JudgedScenario],
     substitutions: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[Selection, int | None]:
-    """Return what to select of a model, and the number of repetitions (``None``: as the model says).
+    """Return the selection for a model, and the number of repetitions (``None``: that of the model).
 
-    ``results`` are those of earlier runs; ``substitutions`` are those of the client's settings. Raises
-    ``NothingFailed``.
+    ``results`` are those of earlier runs. Raises ``NothingFailed``.
     """
     variants = [variant.iri for story in model.stories for variant in story.variants]
     names = () if options.scenario is None else (options.scenario,)
@@ -112,7 +111,7 @@ def select(
 
 
 def _failed(failed: Sequence[JudgedScenario]) -> Failed:
-    """Return how to execute scenarios again that did not hold, by the seed of the newest of their runs."""
+    """Return how to execute failed scenarios again, with the seed of their latest run."""
     if not failed:
         raise NothingFailed(NO_SCENARIO_FAILED)
     listed = [

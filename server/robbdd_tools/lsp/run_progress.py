@@ -1,4 +1,4 @@
-"""How far a run is, in the window of a client that shows such things."""
+"""Work-done progress of a run."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class RunProgress:
-    """Work-done progress under a ``token``; nothing is sent to a client that did not announce it or refuses it."""
+    """Work-done progress with a ``token``; nothing is sent to a client that does not support it or refuses it."""
 
     def __init__(self, server: RobbddServer, token: str) -> None:
         self._progress = server.work_done_progress
@@ -25,7 +25,7 @@ class RunProgress:
         if not self._is_shown:
             return
         try:
-            # pygls leaves the type of the client's (empty) answer open.
+            # pygls does not declare the type of the client's (empty) answer.
             await self._progress.create_async(self._token)  # pyright: ignore[reportUnknownMemberType]
         except JsonRpcException:
             self._is_shown = False
@@ -34,7 +34,7 @@ class RunProgress:
         self._progress.begin(self._token, begin)
 
     def report(self, done: int, failed: int, total: int) -> None:
-        """Tell how many scenarios are finished, and how many of these did not hold."""
+        """Report how many scenarios are finished, and how many of these did not hold."""
         if self._is_shown:
             words = f"{done}/{total} scenarios" + (f", {failed} not passed" if failed else "")
             self._progress.report(
@@ -42,8 +42,8 @@ class RunProgress:
             )
 
     def end(self, words: str) -> None:
-        """Take the progress from the client's window, with a last word."""
+        """End the progress with a final message."""
         if self._is_shown:
             self._progress.end(self._token, types.WorkDoneProgressEnd(message=words))
-        # pygls keeps the tokens for ever, and leaves the type of what belongs to them open.
+        # pygls keeps tokens forever, and does not declare the type of their values.
         self._progress.tokens.pop(self._token, None)  # pyright: ignore[reportUnknownMemberType]

@@ -1,4 +1,4 @@
-"""The plan of a run from the editor, and the text that the run is about."""
+"""Plan a run from the editor, and record the text that it judges."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RunText:
-    """The text of a run when it was planned: the places and digests of its declarations.
+    """The planned text of a run: the places and digests of its declarations.
 
-    ``variants`` and ``executions`` are the IRIs of all that the model has. ``seed`` is the one that the user gave this
-    run or, where failures are executed again, that of theirs; ``None`` without one. ``notes`` are shown when it starts.
+    ``variants`` and ``executions`` are the IRIs of all in the model. ``seed`` is the seed that the user gave for this
+    run or, when failures are executed again, for theirs; ``None`` without one. ``notes`` are shown when it starts.
     """
 
     uri: str
@@ -41,7 +41,7 @@ class RunText:
 
 @dataclass(frozen=True, slots=True)
 class PlannedRun:
-    """What to execute, how often (``repeat``; ``None``: as the model says), and of which text."""
+    """What to execute, how often (``repeat``; ``None``: that of the model), and from which text."""
 
     plan: Plan
     repeat: int | None

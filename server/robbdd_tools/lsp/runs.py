@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.run import Run
 
 PICTURES = "pictures"
-_BUSY = "a run is going on: cancel it first"
+_BUSY = "a run is in progress: cancel it first"
 
 
 async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) -> dict[str, Any]:
-    """Execute scenarios to the end and show their results; returns a summary, or why nothing was run."""
+    """Execute scenarios to the end and show their results; return a summary, or why nothing was run."""
     if not ls.trusted:
         return _refused(ls, await refuse_run(ls, {**argument, **more}))
     if ls.run is not None:
@@ -73,13 +73,13 @@ async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
 
 
 def _refused(ls: RobbddServer, problem: str, *, momentary: bool = False) -> dict[str, Any]:
-    """Show why nothing was run; a ``momentary`` reason says nothing about the scenarios."""
+    """Show why nothing was run; a ``momentary`` reason is unrelated to the scenarios."""
     ls.tell(problem)
     return {"problem": problem, "momentary": True} if momentary else {"problem": problem}
 
 
 async def _record(ls: RobbddServer, place: StoredRun) -> list[str]:
-    """Render the violations of a run into its folder and return the pictures' URIs."""
+    """Render the violations of a run into its folder; return the pictures' URIs."""
     pictures = place.folder / PICTURES
     try:
         await asyncio.to_thread(render_moments, place.folder, pictures)

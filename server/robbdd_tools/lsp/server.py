@@ -1,4 +1,4 @@
-"""The server's state: the project behind one analysis thread, what is published, what runs."""
+"""State of the server: the project behind its analysis thread, published data, running work."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ _LOG = logging.getLogger(__name__)
 class RobbddServer(LanguageServer):
     """One client's server.
 
-    All analysis happens in one thread, in the order of the messages, so that the event loop stays free and no
-    answer is older than the edits before it.
+    All analysis is done in one thread, in message order, so that the event loop stays free and no answer is older than
+    the edits before it.
     """
 
     def __init__(self) -> None:
-        # pygls leaves the types of its own further arguments open.
+        # pygls does not declare the types of its further arguments.
         super().__init__(  # pyright: ignore[reportUnknownMemberType]
             "robbdd-lsp", __version__, protocol_cls=Protocol
         )
@@ -62,10 +62,10 @@ class RobbddServer(LanguageServer):
         self.convert = Converter()
         self.settings = Settings()
         self.trusted = True
-        """Whether code of the workspace may be run: a client says otherwise with ``trusted`` as it starts us."""
+        """Whether workspace code may be run; the client may set ``trusted`` to false at start."""
         self.results = Results()
         self.findings = NOTHING
-        """What runs have found, as it is shown."""
+        """The displayed results of runs."""
         self.run: ActiveRun | None = None
         self.run_numbers = count(1)
         self.stores = Stores()
@@ -73,7 +73,7 @@ class RobbddServer(LanguageServer):
         self.shows_pictures = False
         """Whether the client shows pictures in Markdown."""
         self.shows_replays = False
-        """Whether the client has the command ``robbdd.showReplay``, in links of Markdown too."""
+        """Whether the client has the command ``robbdd.showReplay``, also in Markdown links."""
         self._shapes = ShapeFindings()
         self._analysis = AnalysisThread()
         self.requests = Requests()
@@ -84,7 +84,7 @@ class RobbddServer(LanguageServer):
         self.when_closed: list[Callable[[str], None]] = []
         """Called with the URI of each document that the client closes."""
         self.pulls = False
-        """Whether the client asks for diagnostics; else they are published, never both."""
+        """Whether the client pulls diagnostics; otherwise they are published, never both."""
         self.refreshes = Refreshes(self)
         self.importers = Importers(self)
         self.survey = Survey(self)
@@ -94,37 +94,37 @@ class RobbddServer(LanguageServer):
         self._changed: dict[str, None] = {}
 
     def feature(self, feature_name: str, options: Any | None = None) -> Callable[[Handler], Handler]:
-        """Register the handler of a method; its errors stay inside."""
+        """Register a method's handler; its errors are caught."""
         register = super().feature(feature_name, options)
         return lambda handler: register(self.requests.guarded(feature_name, handler))
 
     def command(self, command_name: str) -> Callable[[Handler], Handler]:
-        """Register a command; its errors stay inside."""
+        """Register a command; its errors are caught."""
         register = super().command(command_name)
         return lambda handler: register(self.requests.guarded(command_name, handler))
 
     def report_server_error(self, error: Exception, source: Any) -> None:
-        """Keep an error that no request waits for in the log; handlers have logged theirs with its context."""
+        """Log an error that no request waits for; handlers have already logged theirs with context."""
         if not isinstance(error, JsonRpcException):
             _LOG.error("internal error (%s)", source, exc_info=error)
 
     async def analyse(self, work: Callable[[Snapshot], Result], urgent: bool = True) -> Result:
-        """Run ``work`` on the newest snapshot in the analysis thread."""
+        """Run ``work`` on the latest snapshot in the analysis thread."""
         return await self._analysis.do(lambda: work(self.project.snapshot()), urgent)
 
     async def _in_thread(self, work: Callable[[], Result]) -> Result:
         return await self._analysis.do(work)
 
     async def in_background(self, work: Callable[[Snapshot], Result], *unopened: str) -> Result:
-        """Run ``work`` on the newest texts in a thread of its own: what is asked for meanwhile does not wait for it.
+        """Run ``work`` on the latest texts in a separate thread, so that requests do not wait for it.
 
-        Files that may not be open are to be named.
+        Files that may not be open must be named.
         """
         texts = await self._in_thread(self.project.texts)
         return await self._background.work(texts, work, *unopened)
 
     async def text_changed(self, uri: str, version: int, text: str) -> None:
-        """Take a new text of an open document and publish what it means."""
+        """Apply a new text of an open document and publish its effects."""
         is_new = uri not in self._opened
         self._opened.setdefault(uri)
         if is_new:
@@ -134,14 +134,14 @@ class RobbddServer(LanguageServer):
         try:
             await self._analysis.do(lambda: self.project.open(uri, version, text), replacing=uri)
         except Abandoned:
-            # The next text has come before this one was read.
+            # A newer text arrived before this one was parsed.
             return
         await self.publish(uri)
         self.survey.look([uri])
         await self.user_errors.refresh()
 
     async def text_closed(self, uri: str) -> None:
-        """Go back to the file on disk and take its diagnostics from the editor."""
+        """Return to the file on disk and remove its diagnostics from the editor."""
         self._opened.pop(uri, None)
         self._publishing.end(uri)
         self.validator.forget(uri)
@@ -155,7 +155,7 @@ class RobbddServer(LanguageServer):
         self.survey.closed(uri)
 
     async def files_changed(self, uris: Sequence[str]) -> None:
-        """Read files again that changed on disk, and publish what that means for the open ones."""
+        """Read changed files again, and publish the effects on open ones."""
 
         def forget() -> None:
             for uri in uris:
@@ -167,14 +167,14 @@ class RobbddServer(LanguageServer):
         await self.settings_changed(uris if all(language_of(uri) for uri in uris) else None)
 
     async def settings_changed(self, files: Sequence[str] | None = None) -> None:
-        """Look at all documents again, as what is asked of them may have changed, or only ``files`` have."""
+        """Check all documents again after a change of settings, or only those affected by changed ``files``."""
         self.survey.look(files)
         await self.user_errors.refresh()
         for uri in list(self._opened):
             await self.publish(uri)
 
     async def publish(self, changed: str) -> None:
-        """Publish the fast diagnostics of a document and of the open ones that import it; order the slow ones."""
+        """Publish the fast diagnostics of a document and of its open importers; request the slow ones."""
 
         def affected(snapshot: Snapshot) -> list[str]:
             importers = snapshot.importers(changed)
@@ -183,9 +183,9 @@ class RobbddServer(LanguageServer):
         uris = await self.analyse(affected)
         if any(uri != changed for uri in uris):
             self.refreshes.want(DIAGNOSTICS, COLOURS, HINTS, LENSES, after=SETTLING)
-        # Some may have been closed meanwhile.
+        # Some may have been closed in the meantime.
         for uri in filter(self.is_open, uris):
-            # What is being found in an older text is of hardly any use any more.
+            # Findings about an older text are of little use now.
             self._publishing.begin(uri, partial(self._publish_and_order, uri))
 
     async def _publish_and_order(self, uri: str) -> None:
@@ -196,26 +196,26 @@ class RobbddServer(LanguageServer):
         self.validator.request(request)
 
     def opened(self) -> list[str]:
-        """Return the files whose text the client holds."""
+        """Return the files that the client has open."""
         return list(self._opened)
 
     def is_open(self, uri: str) -> bool:
-        """Tell whether the client holds the text of a file."""
+        """Return whether the client has a file open."""
         return uri in self._opened
 
     async def survey_request(self, uri: str) -> Request:
-        """Return the request to look at a file that is not open."""
+        """Return the request to validate an unopened file."""
         importers = tuple(sorted((await self.importers.graph(uri)).importers(uri)))
         texts = await self.analyse(lambda _: self.project.texts(), urgent=False)
         return Request(next(self._orders), uri, texts, self.settings.shapes(uri), surveyed=True, importers=importers)
 
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
-        """Return the request to validate a file, with the texts that its answer will be about."""
+        """Return the request to validate a file, with the texts that its answer will refer to."""
         texts = {index.document.uri: index.document.text for index in snapshot.scope(uri).files}
         return Request(next(self._orders), uri, self.project.texts(), self.settings.shapes(uri)), texts
 
     def show_results(self, uris: Sequence[str]) -> None:
-        """Show new results of clauses in some files soon; many at a time are shown at once."""
+        """Show new results of clauses in some files soon; combine frequent updates."""
         if not self._changed:
             self.spawn(self._show_changed())
         self._changed |= dict.fromkeys(uris)
@@ -225,7 +225,7 @@ class RobbddServer(LanguageServer):
         await self.show_changed()
 
     async def show_changed(self) -> None:
-        """Show now what is waiting to be shown."""
+        """Show the waiting results now."""
         changed, self._changed = self._changed, {}
         self.findings = self.results.findings()
         self.refreshes.want(HINTS, LENSES)
@@ -233,7 +233,7 @@ class RobbddServer(LanguageServer):
         await self.user_errors.refresh()
 
     async def _show_diagnostics(self, uris: Iterable[str]) -> None:
-        """Bring the diagnostics of some files before the user again."""
+        """Send the diagnostics of some files to the client again."""
         if self.pulls:
             self.refreshes.want(DIAGNOSTICS)
             return
@@ -242,7 +242,7 @@ class RobbddServer(LanguageServer):
                 await self._publish_one(uri)
 
     def folders(self, uri: str | None = None) -> list[Path]:
-        """Return the workspace folders, with ``uri`` those that hold a file, the innermost first."""
+        """Return the workspace folders, with ``uri`` those that contain the file, innermost first."""
         paths = [path for folder in self.workspace.folders if (path := uri_to_path(folder)) is not None]
         file = None if uri is None else uri_to_path(uri)
         if uri is not None:
@@ -250,7 +250,7 @@ class RobbddServer(LanguageServer):
         return sorted(paths, key=lambda path: -len(path.parts))
 
     def tell(self, message: str) -> None:
-        """Tell the user why something was not done."""
+        """Show the user why something was not done."""
         self.window_show_message(types.ShowMessageParams(type=types.MessageType.Error, message=message))
 
     def exit_code(self) -> int:
@@ -259,7 +259,7 @@ class RobbddServer(LanguageServer):
         return protocol.exit_code
 
     def stop(self) -> None:
-        """End what runs beside the server."""
+        """Stop all threads and processes of the server."""
         if self.run is not None:
             self.run.cancel()
         self.validator.stop()
@@ -270,12 +270,12 @@ class RobbddServer(LanguageServer):
 
     async def _publish_one(self, uri: str) -> None:
         version, diagnostics = await self.diagnostics(uri)
-        # It may have been closed meanwhile.
+        # It may have been closed in the meantime.
         if self.is_open(uri):
             self.send(uri, version, diagnostics)
 
     async def diagnostics(self, uri: str) -> tuple[int, list[types.Diagnostic]]:
-        """Return all that is known of a file now, with the version of the text that it is about."""
+        """Return all current diagnostics of a file, with the version of its text."""
 
         broken = [scenario for scenario in self.results if scenario.faults]
 
@@ -289,12 +289,12 @@ class RobbddServer(LanguageServer):
         return await self.analyse(find, urgent=False)
 
     def _shapes_found(self, answer: Answer) -> None:
-        """Take an answer of the validation process."""
+        """Handle an answer of the validation process."""
         if self._shapes.take(answer):
             self.spawn(self._show_diagnostics(list(self._opened)))
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
-        """Start work that nobody waits for; it is kept from being collected until it ends."""
+        """Start a task that nobody awaits, and keep a reference to it until it ends."""
         task = asyncio.get_running_loop().create_task(work, name=work.__qualname__)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)

@@ -1,4 +1,4 @@
-"""What the validation process has found in the open files, wherever an edit since then leaves it in its place."""
+"""The validation process's findings about open files, moved along with later edits."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ UNCHECKED = "the shapes were not checked, because of an internal error: {}; they
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """What was found about a file, in itself and in its imports, and the texts that this is about, by URI."""
+    """Findings about a file and its imports, with the texts that they refer to, by URI."""
 
     revision: int
     diagnostics: tuple[Diagnostic, ...]
@@ -28,18 +28,18 @@ class _Found:
 
 
 class ShapeFindings:
-    """The newest findings about each open file. The event loop writes, the analysis thread reads."""
+    """The latest findings about each open file. The event loop writes, the analysis thread reads."""
 
     def __init__(self) -> None:
         self._found: dict[str, _Found] = {}
         self._requested: dict[str, dict[int, Mapping[str, str]]] = {}
 
     def request(self, uri: str, revision: int, texts: Mapping[str, str]) -> None:
-        """Note the texts that an answer about a file will be about."""
+        """Record the texts that an answer about a file will refer to."""
         self._requested.setdefault(uri, {})[revision] = texts
 
     def take(self, answer: Answer) -> bool:
-        """Take an answer; tells whether there is something to show or to remove."""
+        """Store an answer; return whether there is something to show or to remove."""
         requested = self._requested.get(answer.uri, {})
         before = self._found.get(answer.uri)
         if answer.revision not in requested or (before is not None and before.revision > answer.revision):
@@ -55,19 +55,19 @@ class ShapeFindings:
         return bool(diagnostics or (before and before.diagnostics))
 
     def forget(self, uri: str) -> None:
-        """Drop what is known about a file; an answer about it must not come any more."""
+        """Drop the findings about a file; a later answer about it is ignored."""
         self._found.pop(uri, None)
         self._requested.pop(uri, None)
 
     def valid(self, snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-        """Return the findings in a file, whichever open file they are about, except where its text has changed."""
+        """Return the findings in a file, from all open files, except where its text has changed."""
         text = document_of(snapshot, uri).text
-        # A list, since the other thread may add and remove meanwhile.
+        # A list, since the other thread may add and remove entries meanwhile.
         return [one for found in list(self._found.values()) for one in _in_place(found, uri, text)]
 
 
 def _in_place(found: _Found, uri: str, text: str) -> Iterator[Diagnostic]:
-    """Yield the findings in a file at their places in its present text."""
+    """Yield the findings in a file at their places in its current text."""
     old = found.texts.get(uri)
     here = [one for one in found.diagnostics if one.uri == uri] if old is not None else []
     if old is None or not here or old == text:
@@ -78,12 +78,12 @@ def _in_place(found: _Found, uri: str, text: str) -> Iterator[Diagnostic]:
     for one in here:
         span = _moved(one.span, start, end, grown)
         if span is not None:
-            # Other places, and what would fix it, come again with the next answer.
+            # Related places and fixes come with the next answer.
             yield replace(one, span=span, related=(), fixes=())
 
 
 def _moved(span: Span, start: int, end: int, grown: int) -> Span | None:
-    """Return where a place is after an edit between ``start`` and ``end``, ``None`` where the edit touches it."""
+    """Return a place after an edit between ``start`` and ``end``, ``None`` if the edit touches it."""
     if span.end < start:
         return span
     return span.shifted(grown) if span.start > end else None

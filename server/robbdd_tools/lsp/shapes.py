@@ -1,4 +1,4 @@
-"""Keeps the validation process busy with the newest revision and drops what comes late."""
+"""Run the validation process on the latest revision and drop late answers."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, fra
 from robbdd_tools.lsp.requests import log_background_error
 
 PAUSE = 0.02
-"""Seconds in which edits that follow one another at once, as an editor sends them for several cursors, become one."""
+"""Seconds in which successive edits, as from several cursors, are combined."""
 MOST_DEATHS = 2
-"""Deaths of the process over the same file after which that file is given up until it changes."""
+"""Deaths of the process over the same file after which the file is skipped until it changes."""
 # Not "-m": the messages' classes must have the same module name in both processes.
 _WORKER = "from robbdd_tools.lsp.worker import main; main"
 _LOG = logging.getLogger(__name__)
@@ -27,10 +27,10 @@ _LOG = logging.getLogger(__name__)
 class ShapeValidator:
     """Validates files in a worker process.
 
-    ``deliver`` gets each answer about a file that is still asked for, also one that tells of an error. With
-    ``in_passing`` the process leaves the processor to all others. A newer request is sent at once, so that the process
-    leaves the older one, unless it has left too many. The process is started with the first request; when it dies, or
-    hangs and is killed, it is started again with what it has not answered, except for the file that it fails over.
+    ``deliver`` receives each answer about a file that is still requested, including errors. With ``in_passing``, the
+    process has low priority. A newer request is sent immediately, and the process abandons the older one, unless it has
+    abandoned too many. The process is started at the first request. When it dies, or hangs and is killed, it is
+    restarted with its unanswered requests, except for the file that caused the failure.
     """
 
     def __init__(self, deliver: Callable[[Answer], None], in_passing: bool = False) -> None:
@@ -48,16 +48,16 @@ class ShapeValidator:
 
     @property
     def process_id(self) -> int | None:
-        """The process that validates, if there is one."""
+        """The id of the validation process, if there is one."""
         return None if self._process is None else self._process.pid
 
     def request(self, request: Request) -> None:
-        """Ask for a validation; an older request for the same file is forgotten."""
+        """Request a validation; replaces an older request for the same file."""
         self._open[request.uri] = request
         self._send(request)
 
     def forget(self, uri: str) -> None:
-        """Cancel what was asked about a file, and drop what is known of it."""
+        """Cancel the requests about a file, and drop its state."""
         self._open.pop(uri, None)
         if self._process is not None:
             self._send(Forget(uri))
@@ -85,7 +85,7 @@ class ShapeValidator:
             process = self._process or await self._start()
             messages, self._unsent = self._unsent, {}
             assert process.stdin is not None
-            # A process that is dead takes no more; what it owes is sent to its successor.
+            # A dead process reads no more; its successor gets the unanswered requests.
             with suppress(ConnectionError):
                 process.stdin.write(frame(tuple(messages.values())))
                 await process.stdin.drain()
@@ -123,7 +123,7 @@ class ShapeValidator:
         self._deliver(message)
 
     def _work_on(self, uri: str) -> None:
-        """Note what the process works on (``""``: nothing), and see to it that this comes to an end."""
+        """Record the worker's current file (empty: none) and arm its watchdog."""
         self._working = uri
         if self._watch is not None:
             self._watch.cancel()
@@ -144,7 +144,7 @@ class ShapeValidator:
         self._deaths[guilty] = self._deaths.get(guilty, 0) + 1
         _LOG.warning("the validation process ended unexpectedly and is started again")
         if self._deaths[guilty] >= MOST_DEATHS:
-            # One that dies before it begins anything would never answer.
+            # A process that dies before it begins any file would never answer.
             for uri in [guilty] if guilty else list(self._open):
                 self._give_up(uri, "the validation process ended over it")
         for request in self._open.values():

@@ -1,6 +1,7 @@
 """The requests ``robbdd/runs`` and ``robbdd/trace``: stored runs, and a recorded execution to be drawn.
 
-Both take the ``uri`` of a document of the project; docs/schemas/runs.schema.json and trace.schema.json say the rest.
+Both take the ``uri`` of a document of the project; for the rest, see docs/schemas/runs.schema.json and
+trace.schema.json.
 """
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ def _trace(store: RunStore, asked: Parameters) -> dict[str, Any]:
 
 
 def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: int) -> set[tuple[str, str]] | None:
-    """Return what a scenario states now by the first file that has its variant; ``None`` while that has errors."""
+    """Return a scenario's current statements from the first file with its variant; ``None`` if that file has errors."""
     from robbdd_tools.gherkin.stated import stated
 
     for uri in files:
@@ -93,7 +94,7 @@ def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: i
 
 
 async def _answered(work: Callable[[], Result]) -> Result:
-    """Do something in a thread; that there is nothing to show is the request's error, in words for the user."""
+    """Run work in a thread; convert its "nothing to show" errors to an error response for the user."""
     try:
         return await asyncio.to_thread(work)
     except (NoTrace, NoSuchRun) as error:

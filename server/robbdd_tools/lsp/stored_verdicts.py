@@ -1,4 +1,4 @@
-"""Shows the verdicts of stored runs, whoever executed them: the command line, or a server that ended during its run."""
+"""Show the verdicts of stored runs, also of the command line and of servers that ended during their run."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class FoundRun:
-    """The finished scenarios of a stored run; ``some_repetitions`` when it executed only some of their repetitions."""
+    """The finished scenarios of a stored run; ``some_repetitions`` if it executed only some of their repetitions."""
 
     scenarios: tuple[JudgedScenario, ...]
     some_repetitions: bool
 
 
 class StoredVerdicts:
-    """Keeps the server's results up to date with the stores of its projects."""
+    """Synchronises the server's results with the stores of its projects."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
@@ -44,7 +44,7 @@ class StoredVerdicts:
         self._loaded = asyncio.Event()
 
     async def load(self) -> None:
-        """Show what earlier runs have found in the workspace."""
+        """Show the results of earlier runs in the workspace."""
         try:
             await self._load()
         finally:
@@ -55,7 +55,7 @@ class StoredVerdicts:
         kept = await asyncio.to_thread(load_results, ls.folders())
         self._seen = dict(kept.seen)
         results = Results(kept.scenarios)
-        # A run in progress is newer than what is kept.
+        # A run in progress is newer than the kept results.
         in_progress = list(ls.run.judged.values()) if ls.run is not None else []
         for scenario in in_progress:
             results.drop(scenario.variant, scenario.variation, scenario.execution)
@@ -67,18 +67,18 @@ class StoredVerdicts:
         await self.look([*map(store_beside, paths), *(RunStore(Path(store)) for store in kept.seen)])
 
     async def loaded(self) -> None:
-        """Wait until the results of earlier runs are known."""
+        """Wait until the results of earlier runs are loaded."""
         await self._loaded.wait()
 
     async def look_beside(self, *uris: str) -> None:
-        """Read the stores of documents' projects, unless that was done before."""
+        """Read the stores of documents' projects, unless already read."""
         await self.loaded()
         paths = filter(None, map(uri_to_path, uris))
         stores = {store.folder: store for store in map(store_beside, paths)}
         await self.look([store for folder, store in stores.items() if folder not in self._known])
 
     async def look(self, stores: Iterable[RunStore]) -> None:
-        """Show the verdicts of the runs that ended since the stores were read the last time."""
+        """Show the verdicts of runs that have ended since the stores were last read."""
         ls = self._server
         async with self._reading:
             changed = False
@@ -95,7 +95,7 @@ class StoredVerdicts:
                 await self.save()
 
     async def save(self) -> None:
-        """Keep what is shown for the next session; nothing is written in an untrusted workspace."""
+        """Save the shown results for the next session; nothing is written in an untrusted workspace."""
         ls = self._server
         if ls.trusted:
             seen = {store: number for store, number in self._seen.items() if number}
@@ -103,13 +103,13 @@ class StoredVerdicts:
 
 
 def _read(store: RunStore, seen: int) -> tuple[list[FoundRun], int, int]:
-    """Return what runs after number ``seen`` found, the last run that was read, and the newest run of the store.
+    """Return the results of runs after number ``seen``, the last run read, and the newest run of the store.
 
-    Runs from one in progress on are read when that has ended.
+    A run in progress and later runs are read only when it has ended.
     """
     runs = store.runs()
     newest = runs[-1].number if runs else 0
-    # Numbers begin again in a store that was deleted.
+    # Numbers restart in a store that was deleted.
     seen = seen if seen <= newest else 0
     found: list[FoundRun] = []
     for run in runs:

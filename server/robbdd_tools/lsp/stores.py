@@ -1,4 +1,4 @@
-"""Where runs from the editor are kept: beside their models, or in a folder of the server's own where that fails."""
+"""Stores of runs from the editor: in their projects, or, if that fails, in a folder of the server."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, project_root,
 
 
 class Stores:
-    """The stores of the projects that one server works on."""
+    """The stores of one server's projects."""
 
     def __init__(self) -> None:
         self._own: dict[Path | None, RunStore] = {}
@@ -30,7 +30,7 @@ class Stores:
         return self._made(None) if path is None else store_beside(path)
 
     def replayable(self, uri: str) -> frozenset[str]:
-        """Return the IRIs of the variants whose executions a document's store can replay, whoever ran them.
+        """Return the IRIs of the variants that a document's store can replay, whoever ran them.
 
         A run is read again only when its results have changed.
         """
@@ -50,9 +50,9 @@ class Stores:
         return known[1]
 
     def begin(self, uri: str) -> tuple[StoredRun, str]:
-        """Make the folder of a new run; returns it, and what the user should know: why it goes with the server, if so.
+        """Create the folder of a new run; return it with a note for the user if it is lost with the server.
 
-        Raises ``OSError`` where not even that can be written.
+        Raises ``OSError`` if the fallback cannot be written either.
         """
         path = uri_to_path(uri)
         store = self.of(uri)
@@ -67,7 +67,7 @@ class Stores:
             return own.begin(), f"this run is kept in {own.folder} until the server ends: {why}"
 
     def close(self) -> None:
-        """Remove what goes with the server."""
+        """Remove the server's own folder."""
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)
 

@@ -1,7 +1,7 @@
-"""What is found in the model files of the workspace that are not open, looked at beside everything else.
+"""Findings in unopened model files of the workspace, computed in the background.
 
-A process of its own, of low priority, looks at one file after another: at all of them when the client has started, and
-later at those that build on what has changed, on disk or in an editor.
+A separate low-priority process validates one file after another: all of them when the client has started, and later
+those affected by changes, on disk or in an editor.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
 
 PAUSE = 1.0
-"""Seconds after the last change until files are looked at."""
+"""Seconds without changes until files are validated."""
 GATHERING = 0.25
 """Seconds in which findings are gathered before they are published."""
 AT_ONCE = 2
-"""Files that are asked for ahead, so that the process never waits for us."""
+"""Files requested ahead, so that the process never idles."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,14 +40,14 @@ class Findings:
 
     @classmethod
     def of(cls, diagnostics: Iterable[types.Diagnostic]) -> Findings:
-        """Give diagnostics their name."""
+        """Return the diagnostics with their id."""
         found = tuple(diagnostics)
         text = repr(found).encode("utf-8", "surrogatepass")
         return cls(found, blake2b(text, digest_size=12).hexdigest())
 
 
 class Survey:
-    """The findings in files that are not open, by file, as far as they have been looked at."""
+    """The findings in unopened files, by file, as far as validated."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
@@ -65,11 +65,11 @@ class Survey:
 
     @property
     def is_settled(self) -> bool:
-        """Whether all files have been looked at in their present state."""
+        """Whether all files have been validated in their current state."""
         return not (self._waiting or self._asked or self._timer or self._telling)
 
     def look(self, changed: Iterable[str] | None = None) -> None:
-        """Look soon at the files that build on ``changed`` ones, or at all."""
+        """Schedule validation of all files, or of those that depend on the ``changed`` ones."""
         self._changed.update(changed or ())
         self._everything |= changed is None
         if self._timer is not None:
@@ -77,7 +77,7 @@ class Survey:
         self._timer = asyncio.get_running_loop().call_later(PAUSE, self._begin)
 
     def closed(self, uri: str) -> None:
-        """Take over a file whose diagnostics have just been taken from the editor."""
+        """Take over a file that the editor has just closed."""
         self._published.pop(uri, None)
         self.look([uri])
 
@@ -89,11 +89,11 @@ class Survey:
         self._validator.stop()
 
     async def wait_for_news(self) -> None:
-        """Wait until more has been found, or all."""
+        """Wait for further findings, or until all files are validated."""
         await self._news.wait()
 
     def findings(self) -> dict[str, Findings]:
-        """Return what is known of each file that is not open; what several files tell of one is put together."""
+        """Return the findings of each unopened file, merged from all files that reach it."""
         parts: dict[str, list[Findings]] = {}
         for owner in sorted(self._found):
             if self._server.is_open(owner):
@@ -111,7 +111,7 @@ class Survey:
         self._server.spawn(self._order())
 
     async def _order(self) -> None:
-        """Find out which files are to be looked at."""
+        """Determine the files to validate."""
         changed, self._changed = self._changed, set()
         everything, self._everything = self._everything, False
         roots = list(self._server.workspace.folders)
@@ -119,7 +119,7 @@ class Survey:
         for gone in self._found.keys() - set(files):
             del self._found[gone]
             self._reached.pop(gone, None)
-        # What a changed file has begun to import has not been reached from there yet.
+        # New imports of a changed file have not been reached from it yet.
         imported = await asyncio.to_thread(imported_on_disk, changed)
         for uri in files:
             is_new = everything or uri not in self._found or uri in imported
@@ -130,7 +130,7 @@ class Survey:
 
     def _ask(self) -> None:
         while len(self._asked) < AT_ONCE:
-            # What has changed while it is being looked at waits for its turn, as the answer may be about the old state.
+            # A file that changes during validation is requeued, as the answer may be about its old state.
             uri = next((uri for uri in self._waiting if uri not in self._asked), None)
             if uri is None:
                 return
@@ -158,13 +158,13 @@ class Survey:
     def _converted(self, answer: Answer) -> dict[str, Findings]:
         convert, documents = self._server.convert, answer.documents
         found: dict[str, list[types.Diagnostic]] = {answer.uri: []}
-        # Remarks and hints are for whoever reads the file: elsewhere they would hide what has to be fixed.
+        # Hints matter only while editing a file; elsewhere they would hide errors and warnings.
         for one in (one for one in answer.diagnostics if one.severity <= Severity.WARNING):
             found.setdefault(one.uri, []).append(convert.diagnostic(documents, one))
         return {uri: Findings.of(diagnostics) for uri, diagnostics in found.items()}
 
     def tell_soon(self) -> None:
-        """Show soon what has been found."""
+        """Publish the findings soon."""
         if self._telling is None:
             self._telling = asyncio.get_running_loop().call_later(GATHERING, self._tell)
 
@@ -189,7 +189,7 @@ class Survey:
 def _together(parts: list[Findings]) -> Findings:
     if len(parts) == 1:
         return parts[0]
-    # The protocol's types cannot be put into a set.
+    # The protocol's types are not hashable.
     return Findings.of({repr(one): one for part in parts for one in part.diagnostics}.values())
 
 

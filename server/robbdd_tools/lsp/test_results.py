@@ -1,4 +1,4 @@
-"""The requests ``robbdd/testResults`` and ``robbdd/importResults``: what runs before, or elsewhere, have found.
+"""The requests ``robbdd/testResults`` and ``robbdd/importResults``: results of runs before, or elsewhere.
 
 The first has no parameters; the second takes the ``uri`` of a file that ``robbdd run --json`` or ``--junit`` wrote.
 Both answers are described by ``docs/schemas/testresults.schema.json``.
@@ -85,9 +85,9 @@ def _kept_scenario(scenario: JudgedScenario, now: Digests) -> dict[str, Any]:
 
 
 def _read(uri: str) -> list[ImportedScenario] | str:
-    """Return what a results file holds, or why that is not known."""
+    """Return the contents of a results file, or why it cannot be read."""
     path = uri_to_path(uri)
-    text = Unreadable("file-missing", f"'{uri}' is no file") if path is None else read_text(path)
+    text = Unreadable("file-missing", f"'{uri}' is not a file") if path is None else read_text(path)
     if isinstance(text, Unreadable):
         return text.reason
     try:
@@ -98,7 +98,7 @@ def _read(uri: str) -> list[ImportedScenario] | str:
 
 
 def _matched(snapshot: Snapshot, scenarios: Sequence[ImportedScenario], files: Sequence[str]) -> dict[str, Any]:
-    """Find the variants that results are about: by IRI, else by the names of story and variant; and the executions."""
+    """Match results with variants, by IRI, else by the names of story and variant, and with executions."""
     places: dict[str, list[tuple[str, str]]] = {}
     executions: dict[tuple[str, str], list[tuple[str, str]]] = {}
     for uri in files:
@@ -120,7 +120,7 @@ def _matched(snapshot: Snapshot, scenarios: Sequence[ImportedScenario], files: S
 
 
 def _place(scenario: ImportedScenario, candidates: Sequence[tuple[str, str]] | None) -> tuple[str, str] | None:
-    """Return file and IRI; of several files the one that the results name."""
+    """Return file and IRI; among several files, prefer the one named in the results."""
     candidates = candidates or ()
     name = scenario.model.replace("\\", "/").rsplit("/", 1)[-1]
     return next((place for place in candidates if name and place[0].endswith(f"/{name}")), next(iter(candidates), None))

@@ -1,8 +1,8 @@
-"""The request ``robbdd/tests``: what can be run, level by level, as a tree of tests shows it.
+"""The request ``robbdd/tests``: the runnable items, level by level, for a test tree.
 
-Without parameters it answers with the files that have any; with ``uri`` with the stories of a file and their variants,
-or with the executions of a ``.bddx``; with ``uri`` and ``variant`` (IRI) with scenarios, ``most`` of them from number
-``first`` on, and their clauses. The answer is described by ``docs/schemas/tests.schema.json``.
+Without parameters, the answer has the files with such items; with ``uri``, the stories of a file and their variants, or
+the executions of a ``.bddx``; with ``uri`` and ``variant`` (IRI), scenarios, ``most`` of them from number ``first`` on,
+and their clauses. The answer is described by ``docs/schemas/tests.schema.json``.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 TESTS = "robbdd/tests"
 MOST = 10_000
-"""Scenarios that one answer holds unless fewer are asked for."""
+"""Maximum number of scenarios in one answer unless fewer are requested."""
 
 
 def register_tests(server: RobbddServer) -> None:
@@ -55,7 +55,7 @@ def register_tests(server: RobbddServer) -> None:
 
 
 def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]:
-    """Answer with the stories of a file; text with errors has those that can be made out."""
+    """Answer with the stories of a file; for a text with errors, with those that can be recognised."""
 
     def story(listed: ListedStory) -> dict[str, Any]:
         return {
@@ -107,7 +107,7 @@ def _counted(count: int | None, word: str) -> str:
 
 
 def _ways(execution: PlacedExecution, count: int | None) -> Iterator[str]:
-    """Yield what an execution says beside its variant, in words."""
+    """Yield the settings of an execution, apart from its variant, as text."""
     node = execution.node
     yield _counted(count, "scenario")
     yield "" if node.repeat is None or node.repeat.value == 1 else f"{node.repeat.value} times each"
@@ -118,7 +118,7 @@ def _ways(execution: PlacedExecution, count: int | None) -> Iterator[str]:
 
 
 def _scenarios(snapshot: Snapshot, convert: Converter, uri: str, variant: str, first: int, most: int) -> dict[str, Any]:
-    """Answer with scenarios of a variant, or with why there are none."""
+    """Answer with scenarios of a variant, or with the reason why there are none."""
     from robbdd_tools.graph.acceptance_model import Iri
 
     try:
@@ -126,7 +126,7 @@ def _scenarios(snapshot: Snapshot, convert: Converter, uri: str, variant: str, f
     except RobbddError as error:
         return {"problem": reason(error), "files": [uri], "tests": []}
     places = places_of(snapshot, convert, uri)
-    # What a behaviour or an event is called in the text reads better than its IRI.
+    # Show the name of a behaviour or an event in the text instead of its IRI.
     names = {clause.iri: clause.name for file in places.uris for clause in clauses_in(snapshot, file)}
     listed = listed_scenarios(model, Iri(variant), first, most)
     tests = [_scenario(each, places.rows.get((variant, each.number)), places, names) for each in listed]

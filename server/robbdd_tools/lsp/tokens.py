@@ -1,7 +1,7 @@
-"""Semantic tokens on the wire: standard types, which every theme colours, with the language's concepts as modifiers.
+"""Semantic tokens: standard types, which every theme colours, with the language's concepts as modifiers.
 
-A theme that knows nothing of RobBDD colours by the type; one that does can tell a story from a template by the
-modifier (``class.story``), in any client.
+A theme without RobBDD support colours by type; others can distinguish a story from a template by the modifier
+(``class.story``), in any client.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ APPEARANCES: Mapping[str, tuple[str, ...]] = {
     SymbolKind.POLICY: (_TYPES.Function.value, "policy"),
     SymbolKind.EXECUTION: (_TYPES.Class.value, "execution"),
 }
-"""For each concept its token type, then its modifiers."""
+"""Concept → its token type, then its modifiers."""
 
 _DECLARATION = types.SemanticTokenModifiers.Declaration.value
 LEGEND = types.SemanticTokensLegend(
@@ -87,13 +87,13 @@ _NUMBERS = {
 
 @dataclass
 class SentTokens:
-    """The tokens that a client has of each document, so that only what has changed must be sent."""
+    """The tokens that a client has for each document, so that only changes must be sent."""
 
     _count: int = 0
     _sent: dict[str, tuple[str, Sequence[int]]] = field(default_factory=dict[str, tuple[str, Sequence[int]]])
 
     def whole(self, uri: str, data: Sequence[int]) -> types.SemanticTokens:
-        """Return all tokens of a document, to be known by a new result identifier."""
+        """Return all tokens of a document with a new result identifier."""
         self._count += 1
         self._sent[uri] = (str(self._count), data)
         return types.SemanticTokens(data=data, result_id=str(self._count))
@@ -101,7 +101,7 @@ class SentTokens:
     def difference(
         self, uri: str, previous: str, data: Sequence[int]
     ) -> types.SemanticTokens | types.SemanticTokensDelta:
-        """Return what has changed since a result, all tokens when that result is not known any more."""
+        """Return the changes since a result; all tokens if that result is no longer known."""
         known, before = self._sent.get(uri, ("", ()))
         now = self.whole(uri, data)
         if known != previous:
@@ -115,12 +115,12 @@ class SentTokens:
         return types.SemanticTokensDelta(edits=[edit] if changed else [], result_id=now.result_id)
 
     def forget(self, uri: str) -> None:
-        """Drop what is known of a closed document."""
+        """Drop the tokens of a closed document."""
         self._sent.pop(uri, None)
 
 
 def encoded(convert: Converter, document: Document, tokens: Sequence[Token]) -> list[int]:
-    """Return tokens as the protocol wants them: five numbers each, places relative to the token before."""
+    """Return tokens in protocol form: five numbers each, places relative to the previous token."""
     data: list[int] = []
     line, column = 0, 0
     for token in tokens:
@@ -136,13 +136,13 @@ def encoded(convert: Converter, document: Document, tokens: Sequence[Token]) -> 
 
 
 class Encoder:
-    """Encodes whole documents, each piece that stays the same but once."""
+    """Encodes whole documents; encodings of unchanged pieces are cached."""
 
     def __init__(self) -> None:
         self._kept: WeakKeyDictionary[Coloured, tuple[Converter, list[int]]] = WeakKeyDictionary()
 
     def whole(self, convert: Converter, document: Document, pieces: Sequence[tuple[int, Coloured]]) -> list[int]:
-        """Return the tokens of all pieces (behind their offsets) of a document."""
+        """Return the tokens of all pieces (given with their offsets) of a document."""
         data: list[int] = []
         line, column = 0, 0
         for offset, piece in pieces:
@@ -151,7 +151,7 @@ class Encoder:
             start = convert.position(document, offset + piece.tokens[0].span.start)
             known = self._kept.get(piece)
             if known is None or known[0] is not convert:
-                # Only where the first token stands depends on what is before the piece.
+                # Only the place of a piece's first token depends on the preceding pieces.
                 placed = [
                     Token(token.span.shifted(offset), token.concept, token.is_declaration) for token in piece.tokens
                 ]
@@ -199,7 +199,7 @@ def register_tokens(server: RobbddServer) -> None:
 
 
 def _common(one: Sequence[int], other: Sequence[int]) -> int:
-    """Return how many numbers two results begin with in common."""
+    """Return the length of the common prefix of two results."""
     same, different = 0, min(len(one), len(other)) + 1
     while different - same > 1:
         middle = (same + different) // 2

@@ -1,4 +1,4 @@
-"""Standard input as the protocol frames it: headers of any form, messages of a limited size, and an end that holds."""
+"""Standard input for pygls: tolerant of header forms, limited in message size, with a reliable end."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from typing import IO, BinaryIO, cast
 from robbdd_tools.base.limits import MESSAGE_SIZE
 
 LONGEST_HEADER = 4096
-"""Bytes of a header line that are kept; a longer one is none of the protocol's."""
+"""Maximum bytes of a header line; the protocol has no longer ones."""
 EXIT_SECONDS = 5.0
-"""Seconds that threads have to end after the client has gone or has said ``exit``."""
+"""Seconds that threads have to end after the client has gone or has sent ``exit``."""
 _CHUNK = 1 << 16
-# At the end of a line: what is left of a message whose length was wrong may be before it.
+# Matched at the end of a line: the rest of a message with a wrong length may precede it.
 _LENGTH = re.compile(rb"content-length[ \t]*:[ \t]*(\d{1,18})[ \t]*\r?\n$", re.IGNORECASE)
 _LOG = logging.getLogger(__name__)
 
 
 class BoundedInput:
-    """The lines and contents that pygls reads, with headers in the one form that it knows.
+    """The lines and contents that pygls reads, with normalised headers.
 
-    A message larger than the limit is skipped and logged. After a broken header the next sound one is found again.
+    A message above the limit is skipped and logged. After a broken header, reading resumes at the next valid one.
     """
 
     def __init__(self, stream: BinaryIO) -> None:
@@ -37,25 +37,25 @@ class BoundedInput:
         if stated is not None:
             length = int(stated[1])
             if length > MESSAGE_SIZE.value():
-                _LOG.error("a message of %d bytes is skipped; the limit is %d", length, MESSAGE_SIZE.value())
+                _LOG.error("skipped a message of %d bytes; the limit is %d", length, MESSAGE_SIZE.value())
                 return self._skip(length)
             self._has_length = length > 0
             return b"Content-Length: %d\r\n" % length if self._has_length else b"\n"
         if line and not line.strip():
             if not self._has_length:
-                _LOG.error("a message without 'Content-Length' is skipped")
+                _LOG.error("skipped a message without 'Content-Length'")
             return b"\r\n"
         return line
 
     def read(self, size: int) -> bytes:
-        """Return the content of a message, less at the end of the input."""
+        """Return the content of a message; shorter at the end of the input."""
         self._has_length = False
         return self._stream.read(size)
 
     def _line(self) -> bytes:
         line = self._stream.readline(LONGEST_HEADER)
         while len(line) >= LONGEST_HEADER and not line.endswith(b"\n"):
-            # The last bytes may be the beginning of a sound header.
+            # The last bytes may be the beginning of a valid header.
             line = line[-128:] + self._stream.readline(LONGEST_HEADER)
         return line
 
@@ -68,15 +68,15 @@ class BoundedInput:
 
 
 def bounded(stream: IO[bytes]) -> BinaryIO:
-    """Return a stream for pygls, which reads lines and contents and nothing else."""
+    """Return a stream for pygls, which only reads lines and contents."""
     return cast("BinaryIO", BoundedInput(cast("BinaryIO", stream)))
 
 
 def end_soon(code: int, seconds: float = EXIT_SECONDS) -> None:
-    """End the process with an exit code within some seconds, even while a thread or a worker hangs."""
+    """End the process with an exit code within some seconds, even if a thread or a worker hangs."""
 
     def end() -> None:
-        _LOG.error("a thread still works %g s after the end of the session: the process is ended", seconds)
+        _LOG.error("a thread is still running %g s after the end of the session: ending the process", seconds)
         os._exit(code)
 
     timer = threading.Timer(seconds, end)
@@ -85,10 +85,10 @@ def end_soon(code: int, seconds: float = EXIT_SECONDS) -> None:
 
 
 class RefusalFilter(logging.Filter):
-    """Keeps out of the log what is an answer: a request that is refused with a reason, such as a rename of nothing."""
+    """Logging filter that drops deliberate error responses, such as the refusal of an invalid rename."""
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Return whether a record is an error of ours."""
+        """Return whether a record is an error of the server."""
         error = record.exc_info[1] if record.exc_info else None
         if error is None or not record.name.startswith("pygls"):
             return True

@@ -1,4 +1,4 @@
-"""Untrusted workspaces: nothing of them is run; a refusal names the code that the run would execute."""
+"""Untrusted workspaces: their code is never run; a refusal names the code that a run would execute."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 _REFUSAL = "nothing was run, because this workspace is not trusted"
 _WITHOUT_PLACES = f"{_REFUSAL}: scenarios run the workspace's own steps, behaviours and models"
 _SEARCHED = 100
-"""Scenarios that are searched for code: those of one execution share theirs, and a refusal must be quick."""
+"""Maximum scenarios searched for code: those of one execution share theirs, and a refusal must be quick."""
 
 
 def distrust() -> None:
-    """Let no process that this one starts import code of users."""
+    """Forbid all processes started from here to import users' code."""
     os.environ[NO_USER_CODE] = UNTRUSTED
 
 
 async def refuse_run(ls: RobbddServer, argument: dict[str, Any]) -> str:
-    """Return why the run that a command requests is refused, with the places of its users' code where it has any."""
+    """Return why a requested run is refused, with the places of its users' code if it has any."""
     try:
         asked = RunOptions.of(argument)
         first = min(asked.first or _SEARCHED, _SEARCHED)

@@ -1,4 +1,4 @@
-"""Shows errors in users' code: in open models with their other diagnostics, in all other files beside the survey's."""
+"""Show errors in users' code: in open models with their other diagnostics, in other files with the survey's."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 CODE_EDITED = "robbdd/codeEdited"
-"""Notification of a client: the user edits a Python file, whose ``uri`` it tells, and has not saved it yet."""
+"""Notification of a client: the user edits the Python file ``uri`` and has not saved it yet."""
 END_OF_LINE = 10_000
-"""A character beyond any line's end, which clients take for that end."""
+"""A character beyond any line's end; clients clamp it to the end."""
 
 
 class UserErrors:
@@ -34,11 +34,11 @@ class UserErrors:
         self._elsewhere: Mapping[str, list[types.Diagnostic]] = {}
 
     def elsewhere(self) -> Mapping[str, list[types.Diagnostic]]:
-        """Return the errors by file, of files that the client has not opened."""
+        """The errors of unopened files, by file."""
         return {uri: found for uri, found in self._elsewhere.items() if not self._server.is_open(uri)}
 
     async def refresh(self) -> None:
-        """Find the errors again, after a run or a change of a file."""
+        """Collect the errors again, after a run or a change of a file."""
         scenarios = [scenario for scenario in self._server.results if scenario.faults]
         if not (scenarios or self._elsewhere):
             return
@@ -50,13 +50,13 @@ class UserErrors:
             self._server.survey.tell_soon()
 
     async def code_changed(self) -> None:
-        """Show the errors of code that is still as it was executed."""
+        """Show the errors of code that is unchanged since its execution."""
         if any(scenario.faults for scenario in self._server.results):
             await self.refresh()
             self._server.show_results(self._server.opened())
 
     async def code_edited(self, uri: str) -> None:
-        """Drop the errors in a file whose text is not any more what was executed."""
+        """Drop the errors in a file whose text has changed since its execution."""
         found = False
         for scenario in self._server.results:
             kept = tuple(fault for fault in scenario.faults if fault.place is None or _uri(fault.place.file) != uri)
@@ -137,7 +137,7 @@ def _related(error: UserError) -> list[types.DiagnosticRelatedInformation]:
 
 
 def _calls(error: UserError) -> list[types.DiagnosticRelatedInformation]:
-    """Return the other calls of the traceback in the user's files."""
+    """Return the other frames of the traceback in the user's files."""
     calls = [frame for frame in error.fault.frames if frame.own and frame != error.fault.place]
     return [
         types.DiagnosticRelatedInformation(
@@ -159,6 +159,6 @@ def _line(frame: Frame) -> types.Range:
 
 
 def _uri(file: str) -> str:
-    """Return a file's URI in the one form that is used here."""
+    """Return a file's canonical URI."""
     path = uri_to_path(file) if file.startswith("file:") else Path(file)
     return str(file) if path is None else path_to_uri(path)

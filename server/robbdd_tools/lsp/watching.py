@@ -1,4 +1,4 @@
-"""What changes outside of the open documents: files on disk, and the folders of the workspace."""
+"""Changes outside the open documents: files on disk, and the workspace folders."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
 
 WATCHED = f"**/{{{','.join((*(f'*.{name}' for name in LANGUAGES), '*.ttl', 'robbdd.toml', 'pyproject.toml'))}}}"
-"""Models, and what may hold a project's own rules about them."""
+"""Models, and files that may hold a project's own rules about them."""
 PYTHON = "**/*.py"
-"""Code that models may name: an error that it had in a run is out of date when it changes."""
+"""Code that models may name: its errors from a run are outdated when it changes."""
 RUNS = f"**/{FOLDER.as_posix()}/*/{RESULTS}"
-"""What a run has when it is stored, be it one of the command line."""
+"""Results file of a stored run, also of one from the command line."""
 
 
 def register_watching(server: RobbddServer) -> None:
@@ -30,7 +30,7 @@ def register_watching(server: RobbddServer) -> None:
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     async def files(ls: RobbddServer, params: types.DidChangeWatchedFilesParams) -> None:
-        # Nothing that is analysed depends on runs.
+        # No analysis depends on runs.
         every = [change.uri for change in params.changes]
         changed = [uri for uri in every if not uri.endswith((f"/{RESULTS}", ".py"))]
         if ended := [path for uri in every if uri.endswith(f"/{RESULTS}") and (path := uri_to_path(uri)) is not None]:
@@ -50,7 +50,7 @@ def register_watching(server: RobbddServer) -> None:
 
 
 async def watch_files(ls: RobbddServer) -> None:
-    """Subscribe to changes of files, where the client can be asked."""
+    """Subscribe to file changes if the client supports it."""
     workspace = ls.client_capabilities.workspace
     watched = workspace.did_change_watched_files if workspace is not None else None
     if watched is None or not watched.dynamic_registration:
@@ -61,6 +61,6 @@ async def watch_files(ls: RobbddServer) -> None:
     entry = types.Registration(
         id="robbdd-files", method=types.WORKSPACE_DID_CHANGE_WATCHED_FILES, register_options=options
     )
-    # A client that refuses says nothing of changes on disk.
+    # A client may refuse the subscription; then changes on disk go unnoticed.
     with suppress(JsonRpcException):
         await ls.client_register_capability_async(types.RegistrationParams(registrations=[entry]))

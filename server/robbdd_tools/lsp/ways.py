@@ -1,4 +1,4 @@
-"""The protocol's methods that lead on from a place: definition, implementation, call hierarchy and others."""
+"""Protocol methods that lead from a place to others: definition, implementation, call hierarchy and more."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _register_targets(server: RobbddServer) -> None:
     for method in (types.TEXT_DOCUMENT_DEFINITION, types.TEXT_DOCUMENT_DECLARATION):
         _register_target(server, method, _definitions)
     _register_target(server, types.TEXT_DOCUMENT_TYPE_DEFINITION, type_definition)
-    # What carries something out may be in files that nobody has opened.
+    # Implementations may be in unopened files.
     _register_target(server, types.TEXT_DOCUMENT_IMPLEMENTATION, implementation, everywhere=True)
 
 

@@ -18,13 +18,13 @@ from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, fra
 from robbdd_tools.names.project import Project, Snapshot
 
 MOST_LEFT = 8
-"""Validations of a file in a row that are left for a newer one: who types without end sees findings all the same."""
+"""Validations of a file in a row that may be abandoned for a newer one; then one finishes even during typing."""
 
 
 class Inbox:
-    """The newest request of each file, in the order in which the files were first asked for.
+    """The latest request of each file, in the order of first requests.
 
-    A thread reads while the process works, so that the work can tell that it is no longer wanted.
+    A thread reads during validation, so that work can detect that it is outdated.
     """
 
     def __init__(self, stream: BinaryIO) -> None:
@@ -35,13 +35,13 @@ class Inbox:
         threading.Thread(target=self._read, name="inbox", daemon=True).start()
 
     def take(self) -> Request | Forget | None:
-        """Wait for something to do; ``None`` when the input has ended."""
+        """Wait for a request; ``None`` at the end of the input."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._ended)
             return None if self._ended else self._waiting.pop(next(iter(self._waiting)))
 
     def has_news_of(self, uri: str) -> bool:
-        """Tell whether work on a file has become useless."""
+        """Return whether work on a file is outdated."""
         return self._ended or uri in self._waiting
 
     def _read(self) -> None:
@@ -60,21 +60,21 @@ class Inbox:
 
 @dataclass(slots=True)
 class Worker:
-    """What the process knows between two requests."""
+    """State of the process between requests."""
 
     inbox: Inbox
     project: Project = field(default_factory=Project)
     validations: dict[str, Validation] = field(default_factory=dict[str, Validation])
     left: dict[str, int] = field(default_factory=dict[str, int])
-    """How many validations of a file in a row were left because a newer one was asked for."""
+    """Number of abandoned validations in a row, by file."""
 
     def forget(self, uri: str) -> None:
-        """Drop what is known of a file."""
+        """Drop the state of a file."""
         self.validations.pop(uri, None)
         self.left.pop(uri, None)
 
     def answer(self, request: Request) -> Answer | None:
-        """Return the findings about a file; ``None`` when it was left because a newer request has come meanwhile."""
+        """Return the findings about a file; ``None`` if abandoned because of a newer request."""
         self.project.replace(request.texts)
         if request.surveyed:
             return self._survey(request)
@@ -90,13 +90,13 @@ class Worker:
         except Superseded:
             self.left[request.uri] = left + 1
             return None
-        except Exception as error:  # An error of ours must cost one answer, not the process.
+        except Exception as error:  # An internal error must cost one answer, not the process.
             del self.validations[request.uri]
             return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}")
         return Answer(request.revision, request.uri, tuple(found))
 
     def _survey(self, request: Request) -> Answer:
-        """Return everything about a file that is not open."""
+        """Return all findings about an unopened file."""
         for uri in (request.uri, *request.importers):
             self.project.load(uri)
         snapshot = self.project.snapshot()
@@ -113,18 +113,18 @@ class Worker:
 
 
 def _document(snapshot: Snapshot, uri: str) -> Document:
-    """Return a file as the snapshot has it; one that is no model, such as a configuration, from disk."""
+    """Return a file from the snapshot; one that is not a model, such as a configuration, from disk."""
     path = None if uri in snapshot.sources else uri_to_path(uri)
     text = None if path is None else read_text(path)
     return Document(uri, 0, text) if isinstance(text, str) else snapshot.document(uri)
 
 
 def main(in_passing: bool = False) -> None:
-    """Answer requests until the input ends; ``in_passing`` with what the others leave of the processor."""
+    """Answer requests until the input ends; ``in_passing`` runs at low priority."""
     if in_passing:
         lower_priority()
     stdout = sys.stdout.buffer
-    # Whatever a library prints must not get between the frames.
+    # Output of libraries must not get between the frames.
     sys.stdout = sys.stderr
     collect_rarely()
     worker = Worker(Inbox(sys.stdin.buffer))

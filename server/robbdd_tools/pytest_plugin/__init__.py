@@ -1,7 +1,7 @@
 """Pytest plugin: each execution of a scenario is a test (docs/pytest.md).
 
-Pytest loads this module in every session of an environment where the package is installed. It does nothing but add
-its options until ``--robbdd`` or the ini setting ``robbdd`` turns it on, and imports the rest only then.
+Pytest loads this module in every session of an environment where the package is installed. It only adds its options
+until ``--robbdd`` or the ini setting ``robbdd`` enables it, and imports the rest only then.
 """
 
 from __future__ import annotations
@@ -21,30 +21,30 @@ DEFAULTS: dict[str, object] = {
     "robbdd_store": None,
     "robbdd_no_store": False,
 }
-"""The options that need ``--robbdd``, with their values when they are not given."""
+"""Default values of the options that require ``--robbdd``."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the options, which are named like those of ``robbdd run``."""
+    """Add the options, named like those of ``robbdd run``."""
     text = "collect and run the scenarios of RobBDD models (.bdd, .bddx) as tests"
     parser.addini("robbdd", f"{text}: true or false", type="bool", default=False)
     group = parser.getgroup("robbdd", "RobBDD: acceptance tests of robots")
     group.addoption("--robbdd", action="store_true", default=False, help=text)
     text = "only this scenario or execution; repeats"
     group.addoption("--robbdd-scenario", metavar="NAME", action="append", help=text)
-    group.addoption("--robbdd-seed", metavar="N", type=int, help="decides everything random (default: 1)")
-    text = "execute each scenario N times, with other random numbers each time"
+    group.addoption("--robbdd-seed", metavar="N", type=int, help="seed of all random choices (default: 1)")
+    text = "execute each scenario N times, each with a different random seed"
     group.addoption("--robbdd-repeat", metavar="N", type=int, help=text)
     text = "execute a catalog behaviour in place of this implementation of a .bddx, as with a ROS action; repeats"
     group.addoption("--robbdd-bhv", metavar="NAME=BEHAVIOUR", action="append", help=text)
-    text = "only scenarios with such values: 'robot=panda and target=~cube.*'"
+    text = "only scenarios with these values: 'robot=panda and target=~cube.*'"
     group.addoption("--robbdd-where", metavar="EXPRESSION", help=text)
     group.addoption("--robbdd-first", metavar="N", type=int, help="only the first N of each scenario's variations")
-    text = "N variations of each scenario, drawn at random by the seed"
+    text = "N variations of each scenario, drawn at random with the seed"
     group.addoption("--robbdd-sample", metavar="N", type=int, help=text)
-    text = "few variations that cover all combinations of 2 or 3 variables"
+    text = "a small set of variations that covers all value combinations of any 2 or 3 variables"
     group.addoption("--robbdd-pairwise", metavar="2|3", type=int, help=text)
-    text = "wall time that a scenario may take (default: 300; 0: any)"
+    text = "wall time limit of a scenario (default: 300; 0: none)"
     group.addoption("--robbdd-timeout", metavar="SECONDS", type=float, help=text)
     text = "where the run is kept (default: .robbdd/runs in the project's root)"
     group.addoption("--robbdd-store", metavar="DIR", help=text)
@@ -52,7 +52,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register what collects and runs scenarios, if the plugin is on; raises ``UsageError``."""
+    """Register the hooks that collect and run scenarios if the plugin is enabled; raises ``UsageError``."""
     if config.getoption("robbdd") or config.getini("robbdd"):
         from robbdd_tools.pytest_plugin.session_hooks import Hooks
 

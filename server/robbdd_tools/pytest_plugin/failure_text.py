@@ -1,4 +1,4 @@
-"""What pytest prints of a scenario that does not hold."""
+"""Pytest output for a scenario that does not hold."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class Failure(Exception):
     """A scenario that does not hold, or cannot be executed.
 
-    The message is what pytest prints; ``summary`` is its line in the short summary, ``place`` the clause or scenario.
+    The message is the printed text; ``summary`` is the line in the short summary, ``place`` the clause or scenario.
     """
 
     def __init__(self, summary: str, text: str, place: Place | None) -> None:
@@ -42,7 +42,7 @@ class Unknown(Failure):
 
 
 def failure(executed: Executed, file: ModelFile, place: StoredRun) -> Failure:
-    """Return what is wrong with an execution that does not hold."""
+    """Return the failure of an execution that does not hold."""
     result = executed.result
     kind = Violated if result.verdict is Outcome.VIOLATED else Unknown
     failed = [clause for clause in result.clauses if clause.verdict is not Outcome.HOLDS]
@@ -68,7 +68,7 @@ def _summary(clause: ClauseResult) -> str:
 
 
 def _failed_lines(failed: Sequence[ClauseResult], file: ModelFile) -> Iterator[str]:
-    """Yield each clause with its place; a reason that several in a row have is given once, after the last of them."""
+    """Yield each clause with its place; a reason shared by successive clauses is printed once, after the last one."""
     for number, clause in enumerate(failed, start=1):
         yield f"{SIGNS[clause.verdict]} {printable(clause.name)}: {printable(plain_sentence(clause.sentence))}"
         place = file.place(clause.iri)
@@ -79,7 +79,7 @@ def _failed_lines(failed: Sequence[ClauseResult], file: ModelFile) -> Iterator[s
 
 
 def _verdict_words(clause: ClauseResult) -> str:
-    """Return the verdict with margin, instant and reason, as far as there are any."""
+    """Return the verdict with margin, instant and reason, where present."""
     return f"{_measured(clause)}: {printable(clause.reason)}" if clause.reason else _measured(clause)
 
 

@@ -10,11 +10,11 @@ from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.run.report import value_words
 
 LONGEST = 120
-"""Characters that the values in a name have at most."""
+"""Maximum characters of the values in a name."""
 
 
 def local_name(iri: str) -> str:
-    """Return the end of an IRI or CURIE, without what pytest splits node ids at."""
+    """Return the end of an IRI or CURIE, without the characters at which pytest splits node ids."""
     local = iri.replace("#", "/").rsplit("/", 1)[-1].rsplit(":", 1)[-1]
     return printable(local).replace("[", "(").replace("::", ":")
 
@@ -22,8 +22,8 @@ def local_name(iri: str) -> str:
 def scenario_names(specs: Sequence[ScenarioSpec]) -> list[str]:
     """Return the names of the executions of one story: ``part-to-bin[cube0-left_ws]``.
 
-    The values are in the order of the variables, after the execution's name if there is one. An execution keeps its
-    name when others are selected: from the second repetition on, the name has its number.
+    The values are in the order of the variables, after the execution's name if there is one. A name does not depend on
+    the selection: from the second repetition on, it includes the repetition number.
     """
     names = [_name(spec, numbered=False) for spec in specs]
     count = Counter(names)

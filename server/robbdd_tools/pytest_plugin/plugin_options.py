@@ -1,4 +1,4 @@
-"""What the command line of pytest asks of the plugin."""
+"""Read the plugin's options from pytest's command line."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from robbdd_tools.workbench.substitution import parse_substitution
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """The selection of scenarios, how often and how long each is executed (wall time, s), where the run is kept."""
+    """Selection of scenarios, number of repetitions, time limit of each (wall time, s), place of the run."""
 
     selection: Selection
     repeat: int | None

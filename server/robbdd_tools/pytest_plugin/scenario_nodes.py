@@ -1,4 +1,4 @@
-"""What pytest collects: a model file, its stories, and a test for each execution of a scenario."""
+"""Collected pytest nodes: a model file, its stories, and a test for each execution of a scenario."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 
 EXECUTOR = pytest.StashKey[Executor]()
 VERDICT = "robbdd_verdict"
-"""Name of the report's property that holds the verdict."""
+"""Name of the report property for the verdict."""
 
 
 N = TypeVar("N", bound=pytest.Collector | pytest.Item)
 
 
 def make_node(kind: type[N], parent: pytest.Collector, **arguments: Any) -> N:
-    """Return a node below another one; pytest leaves ``from_parent`` without types."""
+    """Return a child node; pytest's ``from_parent`` is untyped."""
     return cast(Any, kind).from_parent(parent, **arguments)
 
 
@@ -49,9 +49,9 @@ class ModelNode(pytest.File):
     """A model file; errors in it are collection errors."""
 
     file: ModelFile | None = None
-    """The model when it was collected, is sound and has scenarios."""
+    """The collected model, if it is free of errors and has scenarios."""
     unselected: SelectionError | None = None
-    """Why the selection leaves nothing of the model, if so."""
+    """Why the selection excludes the whole model, if so."""
 
     def collect(self) -> Iterator[StoryNode]:
         """Yield the stories with a selected scenario."""
@@ -101,7 +101,7 @@ class StoryNode(pytest.Collector):
     def collect(self) -> Iterator[ScenarioItem]:
         """Yield a test for each execution."""
         for name, spec in zip(scenario_names(self.specs), self.specs, strict=True):
-            # Newer versions of pytest tell values from names in an id that is stated, and compare such ids.
+            # Newer versions of pytest separate values from names in an explicit id, and compare such ids.
             item = make_node(ScenarioItem, self, name=name, nodeid=f"{self.nodeid}::{name}")
             item.describe(spec, self.file)
             yield item
@@ -121,13 +121,13 @@ class ScenarioItem(pytest.Item):
     _executed: Executed | None = None
 
     def describe(self, spec: ScenarioSpec, file: ModelFile) -> None:
-        """Say what the test executes."""
+        """Set the execution of the test."""
         self.spec = spec
         self.file = file
         for mark in _marks(spec, file):
             self.add_marker(mark)
         if spec.tree is not None and self.config.pluginmanager.hasplugin("xdist"):
-            # Scenarios of one behaviour tree share its execution, as far as one process has them.
+            # Scenarios of one behaviour tree share its execution within a process.
             self.add_marker(pytest.mark.xdist_group(spec.tree.name))
 
     def setup(self) -> None:
@@ -155,7 +155,7 @@ class ScenarioItem(pytest.Item):
             raise failure(self._executed, self.file, self.config.stash[EXECUTOR].place)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """Return what pytest prints: clauses of a failure, the reason of an error of use, else a traceback."""
+        """Return the text that pytest prints: clauses of a failure, the reason of a usage error, else a traceback."""
         error = excinfo.value
         if not isinstance(error, (Failure, RobbddError, OSError)):
             return super().repr_failure(excinfo, style)
@@ -177,13 +177,13 @@ class ScenarioItem(pytest.Item):
 
 
 class UnselectedItem(pytest.Item):
-    """Stands for models of which the selection leaves nothing: an error, so that a typing error does not pass."""
+    """Item for models excluded by the selection: it fails, so that a typing error is noticed."""
 
     error: SelectionError
     funcargs: Mapping[str, Any] = MappingProxyType({})
 
     def setup(self) -> None:
-        """Raise the error of the selection."""
+        """Raise the selection's error."""
         raise self.error
 
     def runtest(self) -> None:
@@ -196,7 +196,7 @@ class UnselectedItem(pytest.Item):
 
 
 def _marks(spec: ScenarioSpec, file: ModelFile) -> Iterable[pytest.MarkDecorator]:
-    """Yield a mark for each agent and behaviour of a scenario, so that ``-m "robbdd(agent='panda')"`` selects by it."""
+    """Yield a mark for each agent and behaviour of a scenario, for ``-m "robbdd(agent='panda')"``."""
     variant = next(one for story in file.acceptance.stories for one in story.variants if one.iri == spec.variant)
     agents = [local_name(agent) for agent in spec.scene.agents if agent not in spec.scene.unused]
     clauses = behaviour_clauses((*variant.template.clauses, *variant.clauses))

@@ -1,4 +1,4 @@
-"""The hooks of a pytest session that collects models."""
+"""Hooks of a pytest session that collects models."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.model import ModelFile
 
 MODELS = (".bdd", ".bddx")
-"""Ends of the names of files that are collected in folders; graphs are collected when they are named."""
+"""File name endings that are collected in folders; graphs are collected only when named."""
 POINTER, LOCK = "run.json", "lock"
 AGENTS_OF_A_WORKER = 1000
-"""Numbers of agents, which name their logs, that each worker of pytest-xdist has."""
+"""Number of agent numbers, which name logs, reserved for each worker of pytest-xdist."""
 WORDS = {("setup", "unknown"): ("error", "E", "UNKNOWN"), ("call", "violated"): ("failed", "F", "VIOLATED")}
-"""Phase and verdict to pytest's category, letter and word."""
+"""Phase and verdict → pytest's category, letter and word."""
 MARKER = (
     "robbdd(story, scenario, template, execution, agent, behaviour): set on each execution of a scenario; "
     "select by it: -m \"robbdd(agent='panda')\""
@@ -62,7 +62,7 @@ class Hooks:
         config.addinivalue_line("markers", MARKER)
 
     def pytest_collect_file(self, file_path: Path, parent: pytest.Collector) -> ModelNode | None:
-        """Collect models; graphs only when they are named, as other JSON files lie in folders as well."""
+        """Collect models; graphs only when named, as folders also contain other JSON files."""
         named = graph_format(file_path.name) and parent.session.isinitpath(file_path)
         if file_path.suffix not in MODELS and not named:
             return None
@@ -72,7 +72,7 @@ class Hooks:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Leave out what another model of the session executes already, as ``robbdd run`` does for a folder."""
+        """Skip executions that another model of the session contains, too, as ``robbdd run`` does for a folder."""
         scenarios = [item for item in items if isinstance(item, ScenarioItem)]
         self._refuse_unknown_substitutions()
         for node in self._models:
@@ -87,7 +87,7 @@ class Hooks:
             items[:] = [item for item in items if item not in doubled]
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
-        """Get ready to execute what was collected."""
+        """Prepare to execute the collected items."""
         items = [item for item in session.items if isinstance(item, ScenarioItem)]
         specs, files = [item.spec for item in items], self._files
         if self._worker is None:
@@ -101,13 +101,13 @@ class Hooks:
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_configure_node(self, node: Any) -> None:
-        """Say to a worker of pytest-xdist where it finds the run."""
+        """Pass the place of the run to a worker of pytest-xdist."""
         self._shared = self._shared or Path(tempfile.mkdtemp(prefix="robbdd-"))
         node.workerinput["robbdd_shared"] = str(self._shared)
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_xdist_node_collection_finished(self, ids: Sequence[str]) -> None:
-        """Make the folder of the run, before any worker gets a test."""
+        """Create the run folder before any worker gets a test."""
         models = [Path(name.partition("::")[0]) for name in ids]
         model = next((path for path in models if path.suffix in MODELS or graph_format(path.name)), None)
         if model is not None and self._shared is not None and not (self._shared / POINTER).exists():
@@ -117,14 +117,14 @@ class Hooks:
     def pytest_runtest_makereport(
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-        """Describe errors in the setup as those in the call: pytest asks for a traceback there."""
+        """Report errors of the setup as those of the call, which pytest would print with a traceback."""
         report = yield
         if isinstance(item, ScenarioItem | UnselectedItem) and report.failed and call.excinfo is not None:
             report.longrepr = item.repr_failure(call.excinfo)
         return report
 
     def pytest_report_teststatus(self, report: pytest.CollectReport | pytest.TestReport) -> tuple[str, str, str] | None:
-        """Call a violated scenario VIOLATED and one without evidence UNKNOWN."""
+        """Report a violated scenario as VIOLATED and one without evidence as UNKNOWN."""
         properties: list[tuple[str, object]] = getattr(report, "user_properties", [])
         verdict = next((value for name, value in properties if name == VERDICT), None)
         return WORDS.get((str(report.when), str(verdict))) if report.failed else None
@@ -152,7 +152,7 @@ class Hooks:
                 terminalreporter.write_line(line)
 
     def pytest_unconfigure(self) -> None:
-        """Remove what was shared with workers."""
+        """Remove the files shared with workers."""
         if self._shared is not None:
             shutil.rmtree(self._shared, ignore_errors=True)
 
@@ -169,7 +169,7 @@ class Hooks:
         return model_files(node.file for node in self._models if node.file is not None)
 
     def _doubled(self, items: Sequence[ScenarioItem]) -> Iterator[ScenarioItem]:
-        """Yield the tests of scenarios that the plan of all models takes from another one."""
+        """Yield the tests whose scenarios the joint plan takes from another model."""
         files = self._files
         if len(files) < 2 or not items:
             return

@@ -1,7 +1,7 @@
-"""The one stored run of a pytest session: who makes its folder, who executes its scenarios, who ends it.
+"""The single stored run of a pytest session: which process creates, executes and ends it.
 
-Without pytest-xdist one process does all of it. With it, the controller makes the folder and ends the run, and the
-workers execute: the first one that has a scenario prepares the folder, and each records what it executes.
+Without pytest-xdist, one process does everything. With it, the controller creates the folder and ends the run, and the
+workers execute: the first one with a scenario prepares the folder, and each records its own executions.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ PATIENCE = 120.0
 """Seconds that a worker waits while another one prepares the run."""
 
 Key = tuple[str, str, str, int, int]
-"""What an execution is found by: path of the model, variant, execution (IRIs), variation, repetition."""
+"""Key of an execution: path of the model, variant, execution (IRIs), variation, repetition."""
 
 
 def key_of(spec: ScenarioSpec) -> Key:
-    """Return what an execution is found by in the session."""
+    """Return the key of an execution in the session."""
     execution = "" if spec.execution is None else spec.execution.iri
     return spec.model, spec.variant, execution, spec.variation, spec.repetition
 
 
 class Owner:
-    """Makes the folder of the session's run when it is first needed, and ends the run."""
+    """Creates the folder of the session's run on first use, and ends the run."""
 
     def __init__(self, keeping: Keeping) -> None:
         self._keeping = keeping
@@ -49,17 +49,17 @@ class Owner:
 
     @property
     def remark(self) -> str:
-        """What the user should know of the store; empty without a run."""
+        """Note on the store for the user; empty without a run."""
         return "" if self._folder is None else self._folder.remark
 
     def open(self, model: Path) -> StoredRun:
-        """Return the folder of the run; ``model`` decides whose project's store it is in. Raises ``OSError``."""
+        """Return the run folder; ``model`` determines the project's store. Raises ``OSError``."""
         if self._folder is None:
             self._folder = new_folder(model, self._keeping)
         return self._folder.place
 
     def end(self) -> tuple[StoredRun, RunResults] | None:
-        """End the run; returns it with its results, ``None`` when no scenario was to be executed.
+        """End the run; return it with its results, ``None`` if no scenario was to be executed.
 
         Scenarios that were not executed are unknown. Raises ``OSError``.
         """
@@ -77,10 +77,10 @@ class Owner:
 
 
 class Executor:
-    """Executes the scenarios of a session, ``specs`` of the models ``files``, in this process.
+    """Executes the scenarios ``specs`` of the models ``files`` in this process.
 
-    ``open_place`` returns the run's folder. ``lock`` is a file that keeps others from preparing it at the same time,
-    where there are others; ``processes`` is how many there are, ``first_agent`` the number of this one's first agent.
+    ``open_place`` returns the run folder. ``lock`` is a lock file that serialises preparation between processes, if
+    there are several; ``processes`` is their number, ``first_agent`` the number of this process's first agent.
     """
 
     def __init__(
@@ -109,7 +109,7 @@ class Executor:
         return self._open_place()
 
     def execute(self, spec: ScenarioSpec) -> Executed:
-        """Execute one of the scenarios; raises ``RobbddError`` and ``OSError`` when nothing can be executed."""
+        """Execute one of the scenarios; raises ``RobbddError`` and ``OSError`` if nothing can be executed."""
         if self._problem is not None:
             raise self._problem
         try:
@@ -133,7 +133,7 @@ class Executor:
         try:
             if lock is None and self._lock is not None:
                 raise RobbddError(f"another process has been preparing {place.folder} for {PATIENCE:g} s")
-            # The process that made the folder ends the run and then releases its lock.
+            # The process that created the folder ends the run and then releases its lock.
             return self._join(replace(place, lock=None)) if place.began else self._prepare(replace(place, lock=None))
         finally:
             if lock is not None:
@@ -158,12 +158,12 @@ class Executor:
 def session_plan(
     files: tuple[ModelFile, ...], options: Options, only: Callable[[ScenarioSpec], bool] | None = None
 ) -> Plan:
-    """Return the plan of models, called like their folder if they are several; raises ``SelectionError``."""
+    """Return the plan of models; several are named after their common folder. Raises ``SelectionError``."""
     path = Path(files[0].name if len(files) == 1 else os.path.commonpath([file.name for file in files]))
     return Plan.of_files(str(path), path, files, replace(options.selection, only=only))
 
 
 def model_files(files: Iterable[ModelFile]) -> tuple[ModelFile, ...]:
-    """Return models, each once, those with executions first, as a folder's models are executed."""
+    """Return the models without duplicates; those with executions first, as for a folder."""
     found = {file.uri: file for file in files}
     return tuple(sorted(found.values(), key=lambda file: not file.uri.endswith(".bddx")))

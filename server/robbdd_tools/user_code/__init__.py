@@ -1,1 +1,1 @@
-"""Calls of code that users bring with their models; only the agent process imports it."""
+"""Call users' code that accompanies a model; only the agent process imports this package."""

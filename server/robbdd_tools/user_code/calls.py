@@ -1,4 +1,4 @@
-"""Calls of code that users brought with their model: it is imported here and nowhere else."""
+"""Import and call users' code that accompanies a model; no other module does so."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from robbdd_tools.monitor.fault import Fault, Frame
 from robbdd_tools.user_code.modules import NotImported, folder_of, refuse_hidden, search
 
 MOST_FRAMES = 20
-"""Frames that a fault keeps: of a deeper recursion the outermost and the innermost ones."""
+"""Maximum frames of a fault; of a deeper recursion, the outermost and the innermost are kept."""
 MOST_WORDS = 2000
-"""Characters of an exception's message that a fault keeps."""
+"""Maximum characters of an exception's message in a fault."""
 
 
 class UserCodeError(Exception):
-    """Code of the user failed; the message says what, how and where, for the user to read."""
+    """Users' code failed; the message tells the user what failed, how and where."""
 
     def __init__(self, message: str, fault: Fault) -> None:
         super().__init__(message)
@@ -33,9 +33,9 @@ class UserCodeError(Exception):
 
 
 def load_attribute(name: str, model: str) -> Callable[..., Any]:
-    """Return ``module:attribute``; modules beside the file ``model`` (a path or URI) are found, too.
+    """Return ``module:attribute``; modules in the folder of the file ``model`` (a path or URI) are found, too.
 
-    Raises ``UserCodeError``, also where another module has the name of one beside the model.
+    Raises ``UserCodeError``, also if another module has the name of one in that folder.
     """
     module_name, _, attribute = name.partition(":")
     folder = folder_of(model)
@@ -55,20 +55,20 @@ def load_attribute(name: str, model: str) -> Callable[..., Any]:
 
 
 def called(name: str, code: Callable[..., Any], *arguments: Any) -> Any:
-    """Return what user code returns; raises ``UserCodeError`` with file and line when it raises anything.
+    """Return the result of users' code; raises ``UserCodeError`` with file and line for any exception.
 
-    What it writes to the standard error goes where its ``print`` goes.
+    Standard error is redirected to the same place as its ``print`` output.
     """
     try:
         with redirect_stderr(sys.stdout):
             return code(*arguments)
-    except (Exception, SystemExit) as error:  # whatever it raises is the user's error
+    except (Exception, SystemExit) as error:  # any exception here is the user's error
         fault = fault_of(error, name, code)
         raise UserCodeError(f"{name} failed: {fault.summary}{_place(error, fault)}", fault) from error
 
 
 def refused(name: str, message: str, frames: tuple[Frame, ...] = ()) -> UserCodeError:
-    """Return the error for user code that raises nothing but gives an answer that it must not give."""
+    """Return the error for users' code that raises nothing but returns an invalid answer."""
     return UserCodeError(message, _with_digest(Fault("", message, name, frames)))
 
 
@@ -81,7 +81,7 @@ def definition_of(code: object) -> tuple[Frame, ...]:
 
 
 def fault_of(error: BaseException, name: str, code: object = None) -> Fault:
-    """Describe an exception that ``code``, called ``name``, raised."""
+    """Describe an exception raised by ``code``, called ``name``."""
     words = error.msg if isinstance(error, SyntaxError) else str(error)
     frames = tuple(_frames(error)) or tuple(frame for frame in definition_of(code) if not _is_ours(frame.file))
     if len(frames) > MOST_FRAMES:
@@ -90,13 +90,13 @@ def fault_of(error: BaseException, name: str, code: object = None) -> Fault:
 
 
 def original(fault: Fault, sources: Mapping[str, str]) -> Fault:
-    """Return a fault with the files that the user edits in place of the copies that ran; both are absolute paths."""
+    """Return a fault with the user's own files in place of the copies that ran; both are absolute paths."""
     frames = tuple(replace(one, file=sources.get(str(Path(one.file).resolve()), one.file)) for one in fault.frames)
     return _with_digest(replace(fault, frames=frames))
 
 
 def _frames(error: BaseException) -> Iterator[Frame]:
-    """Yield the calls outside of this package, without the import system's own."""
+    """Yield the frames outside this package, without those of the import system."""
     for call in extract_tb(error.__traceback__):
         if not call.filename.startswith("<") and call.filename != importlib.__file__ and not _is_ours(call.filename):
             yield Frame(call.filename, call.lineno or 1, call.name, call.line or "", not _is_library(call.filename))
@@ -124,6 +124,6 @@ def _with_digest(fault: Fault) -> Fault:
 
 
 def _place(error: BaseException, fault: Fault) -> str:
-    """Say where in the user's own files an error was raised."""
+    """Return the place in the user's own files where an error was raised, as text."""
     place = fault.place
     return "" if place is None or isinstance(error, ModuleNotFoundError) else f" ({place.file}:{place.line})"

@@ -1,4 +1,4 @@
-"""Where modules of users are found: behind the standard library and all installed packages."""
+"""Search path for users' modules: after the standard library and all installed packages."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from robbdd_tools.base.isolation import NO_USER_CODE, SEARCHED, UNTRUSTED
 from robbdd_tools.catalog.registry import load_catalog
 
 _folders: list[str] = []
-"""Folders of models whose code was asked for; they and ``_last``, those of ``PYTHONPATH``, end ``sys.path``."""
+"""Folders of models whose code was requested; these and ``_last``, those of ``PYTHONPATH``, end ``sys.path``."""
 _last: list[str] = []
 
 
 class NotImported(Exception):
-    """A module of a user is not imported; the message says why, ``file`` is the module if there is one."""
+    """A user's module cannot be imported; the message gives the reason, ``file`` is the module if it exists."""
 
     def __init__(self, message: str, file: Path | None = None) -> None:
         super().__init__(message)
@@ -26,26 +26,26 @@ class NotImported(Exception):
 
 
 def folder_of(model: str) -> Path | None:
-    """Return the folder of a model (a path or URI), ``None`` where that is no file."""
+    """Return the folder of a model (a path or URI), ``None`` if it is not a file."""
     path = uri_to_path(model) if model.startswith("file:") else Path(model)
     return None if not model or path is None else (started_in() / path).resolve().parent
 
 
 def search(folder: Path | None) -> None:
-    """Let modules in a folder be imported, and those in the environment's ``PYTHONPATH``: all others come first.
+    """Make modules in a folder and in the environment's ``PYTHONPATH`` importable, after all others.
 
-    Raises ``NotImported`` where this process must not run code of users.
+    Raises ``NotImported`` if this process must not run users' code.
     """
     reason = os.environ.get(NO_USER_CODE)
     if reason:
         why = "the workspace is not trusted" if reason == UNTRUSTED else "--no-user-code was given"
-        raise NotImported(f"code of users is not run: {why}")
-    # Words that packages add to the catalog are found on sys.path: only installed packages may add any.
+        raise NotImported(f"users' code is not run: {why}")
+    # The catalog's third-party words are found on sys.path: only installed packages may add any.
     load_catalog()
     if not _folders:
         _last.extend(entry for entry in inherited_paths() if entry not in sys.path)
         if _last:
-            # Programs that users' code starts have the environment that the user gave.
+            # Programs started by users' code get the environment that the user set.
             os.environ[SEARCHED] = os.pathsep.join(inherited_paths())
     if folder is not None and str(folder) not in _folders:
         _folders.append(str(folder))
@@ -54,7 +54,7 @@ def search(folder: Path | None) -> None:
 
 
 def refuse_hidden(name: str, folder: Path) -> None:
-    """Raise ``NotImported`` where a module beside the model cannot be imported because of another of its name."""
+    """Raise ``NotImported`` if a module in the model's folder is hidden by another one of the same name."""
     own = next((one for one in (folder / f"{name}.py", folder / name / "__init__.py") if one.is_file()), None)
     if own is None:
         return

@@ -1,4 +1,4 @@
-"""Diagnostics for people and programs outside the core: files, lines and columns instead of offsets."""
+"""Diagnostics for use outside the core: files, lines and columns instead of offsets."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Place:
 
     @property
     def path(self) -> Path | None:
-        """The file, ``None`` for a text that is no file."""
+        """The file, ``None`` for a text without a file."""
         return uri_to_path(self.uri)
 
     @property
@@ -41,7 +41,7 @@ class Place:
         return f"{self.file}:{self.line}:{self.column}"
 
     def as_json(self) -> dict[str, Any]:
-        """Return file and range as the documented JSON has them."""
+        """Return file and range in the documented JSON form."""
         start = {"line": self.line, "column": self.column}
         end = {"line": self.end_line, "column": self.end_column}
         return {"file": self.file, "range": {"start": start, "end": end}}
@@ -104,7 +104,7 @@ class Finding:
 
 
 def findings(snapshot: Snapshot, diagnostics: Iterable[Diagnostic]) -> tuple[Finding, ...]:
-    """Return diagnostics of a snapshot with lines and columns."""
+    """Return a snapshot's diagnostics with lines and columns."""
     return tuple(_finding(Places(snapshot), diagnostic) for diagnostic in diagnostics)
 
 

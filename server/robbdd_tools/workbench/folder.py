@@ -1,4 +1,4 @@
-"""Where a run is kept: the project's store, another store, a folder of its own, or nowhere."""
+"""Where a run is kept: the project's store, another store, a separate folder, or nowhere."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 class Keeping:
     """Where to keep a run.
 
-    ``folder`` is a folder of its own; else it goes to ``store`` (the project's without one), unless ``keep`` is false:
-    then its folder is temporary.
+    ``folder`` is a separate folder. Without it, the run goes to ``store`` (by default the project's), or to a temporary
+    folder if ``keep`` is false.
     """
 
     folder: Path | None = None
@@ -31,7 +31,7 @@ class Keeping:
 
 @dataclass(frozen=True, slots=True)
 class RunFolder:
-    """A fresh run folder; ``remark`` is what the user should know of it, ``remove`` deletes a temporary one."""
+    """A fresh run folder; ``remark`` is a note for the user, ``remove`` deletes a temporary folder."""
 
     place: StoredRun
     remark: str = ""
@@ -39,7 +39,7 @@ class RunFolder:
 
 
 def new_folder(model: Path, keeping: Keeping) -> RunFolder:
-    """Make the folder of a new run of a model; a temporary one where the store cannot be written.
+    """Create the folder of a new run of a model; a temporary one if the store cannot be written.
 
     Raises ``OSError``.
     """

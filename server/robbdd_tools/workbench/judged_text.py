@@ -1,4 +1,4 @@
-"""Digests of the text that a run judges, kept in its folder: they show later whether the text has changed since."""
+"""Digests of the judged text, kept in the run folder: they show later whether the text has changed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FILE = "text.json"
 
 @dataclass(frozen=True, slots=True)
 class JudgedText:
-    """The text of one model of a run: the ``name`` that the manifest calls it, its URI, its digests."""
+    """The text of one model of a run: its ``name`` in the manifest, its URI, its digests."""
 
     name: str
     uri: str
@@ -33,7 +33,7 @@ class JudgedText:
 
 @dataclass(frozen=True, slots=True)
 class JudgedTexts:
-    """The texts of a run; ``some_repetitions`` when it executed only some repetitions of its scenarios."""
+    """The texts of a run; ``some_repetitions`` if it executed only some repetitions of its scenarios."""
 
     texts: tuple[JudgedText, ...]
     some_repetitions: bool = False
@@ -45,7 +45,7 @@ class JudgedTexts:
 
 @dataclass(frozen=True, slots=True)
 class _Stored:
-    """A text in JSON: ``place`` is a path relative to the folder of the run, or the URI of a text that is no file."""
+    """A text in JSON: ``place`` is a path relative to the run folder, or the URI of a text without a file."""
 
     name: str
     place: str
@@ -56,21 +56,23 @@ class _Stored:
 
 
 def judged_texts(files: Iterable[tuple[str, Snapshot, str]], *, some_repetitions: bool = False) -> JudgedTexts:
-    """Return the texts of models, each with its name, a snapshot and the URI in there."""
+    """Return the texts of models, each given with its name, a snapshot and its URI."""
     texts = (JudgedText(name, uri, digests_of(snapshot, uri)) for name, snapshot, uri in files)
     return JudgedTexts(tuple(texts), some_repetitions)
 
 
 def write_texts(texts: JudgedTexts, folder: Path) -> None:
-    """Keep the texts of a run in its folder; raises ``OSError``."""
+    """Write the texts of a run into its folder; raises ``OSError``."""
     stored = [asdict(_stored(text, folder)) for text in texts.texts]
     document = {"texts": stored, "some_repetitions": texts.some_repetitions}
     replace_file(folder / FILE, printable_json(document) + "\n")
 
 
 def read_texts(folder: Path) -> JudgedTexts:
-    """Return what ``write_texts`` kept; raises ``OSError``, ``ValueError``, ``KeyError``, ``TypeError`` and
-    ``AttributeError`` where that is nothing or something else.
+    """Return the texts written by ``write_texts``.
+
+    Raises ``OSError``, ``ValueError``, ``KeyError``, ``TypeError`` and ``AttributeError`` if they are missing or
+    malformed.
     """
     document = json.loads(load_text(folder / FILE, RESULT_SIZE))
     texts = (_text(from_plain(_Stored, one), folder) for one in document["texts"])

@@ -40,11 +40,11 @@ class NothingToJudge(RobbddError):
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """What a model's clauses say of the executions of a stored run.
+    """The verdicts of a model's clauses on the executions of a stored run.
 
     ``results`` are in the order of the model's plan and have the ``index`` of the execution in the run, so that
-    ``run.trace(result)`` is its trace; they are not stored. ``ending`` says why clauses were left open
-    (they are unknown), empty when all were judged.
+    ``run.trace(result)`` is its trace; they are not stored. ``ending`` says why clauses were left open (they are
+    unknown), empty when all were judged.
     """
 
     results: tuple[ExecutionResult, ...]
@@ -56,11 +56,11 @@ class Judged:
 
 
 def judge(run: Run | PastRun, model: Model) -> Judged:
-    """Judge the executions of a run by the clauses that a model has now, without simulating.
+    """Judge the executions of a stored run by the model's current clauses, without simulating.
 
     An execution of the run belongs to the scenario of the model with the same variant, values, execution and
-    repetition; executions of other scenarios are left out. A clause whose trace is missing, or whose scene or
-    behaviour differs from the run's, is unknown. Blocks until all is judged: in an asyncio program, call it by
+    repetition; executions of other scenarios are left out. A clause whose trace is missing, or whose scene or behaviour
+    differs from the run's, is unknown. Blocks until all is judged: in an asyncio program, call it with
     ``asyncio.to_thread``.
 
     Raises ``ModelErrors``, ``NothingToRun``, ``NothingToJudge`` when no finished execution belongs to the model,
@@ -86,7 +86,7 @@ class Judgement:
     def __init__(self, place: StoredRun, model: Model, folder: Path) -> None:
         """Prepare in an empty ``folder``.
 
-        Raises ``NoSuchRun``, ``NothingToJudge``, ``UserCodeRefused``, and as ``Model.scenarios``.
+        Raises ``NoSuchRun``, ``NothingToJudge``, ``UserCodeRefused``, and the errors of ``Model.scenarios``.
         """
         self._place = place
         self._folder = folder
@@ -104,7 +104,7 @@ class Judgement:
             self._agent.terminate()
 
     def messages(self) -> Iterator[RunMessage]:
-        """Yield what the judging process reports, each message after ``progress`` has it."""
+        """Yield the judging process's messages, each after ``progress`` has applied it."""
         self._agent = agent = Agent(self._folder, module=JUDGE, arguments=[str(self._place.folder.absolute())])
         complaint = ""
         try:
@@ -120,7 +120,7 @@ class Judgement:
 
 
 def _possible(messages: Iterable[RunMessage], manifest: Manifest) -> Iterator[RunMessage]:
-    """Yield the messages; one that the judging process cannot mean becomes a line of the log."""
+    """Yield the messages; one that the judging process cannot have sent becomes a log message."""
     present = None
     for message in messages:
         present = message.index if isinstance(message, ScenarioStarted) else present
@@ -145,7 +145,7 @@ def _prepared(place: StoredRun, model: Model, folder: Path) -> Manifest:
         prepared = plan.prepare(folder, repeat=repeat if repeat > 1 else None)
     except NothingSelected:
         name = f"run {place.number or place.folder}"
-        raise NothingToJudge(f"no scenario of {model.path} has the values of one in {name}") from None
+        raise NothingToJudge(f"no scenario of {model.path} has the same values as one in {name}") from None
     refuse_user_code(prepared, folder, simulates=False)
     replace_file(folder / STORED_RESULTS, json.dumps(results))
     return prepared

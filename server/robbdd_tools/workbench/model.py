@@ -1,4 +1,4 @@
-"""Models as users handle them: a file, a folder or a text, with its findings and what it can run."""
+"""Models as users handle them: a file, a folder or a text, with its findings and scenarios."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ NO_SCENARIO = "the model has no scenario to run"
 
 
 class NotAModel(RobbddError):
-    """There is no such file, or its name does not end as that of a model."""
+    """The file does not exist, or its name does not have the ending of a model."""
 
 
 class ModelErrors(RobbddError):
@@ -40,12 +40,12 @@ class ModelErrors(RobbddError):
 
 
 class NothingToRun(RobbddError):
-    """None of several models has a scenario."""
+    """None of the models has a scenario."""
 
 
 @dataclass(frozen=True, eq=False)
 class ModelFile:
-    """One model of a snapshot; ``name`` is what reports call it: the path as it was given, or its URI."""
+    """One model of a snapshot; ``name`` is its name in reports: the path as given by the user, or its URI."""
 
     snapshot: Snapshot
     uri: str
@@ -98,14 +98,14 @@ class ModelFile:
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """The models that were loaded together from ``path`` (a file or a folder, or what a text is called)."""
+    """The models loaded together from ``path`` (a file, a folder, or the name of a text)."""
 
     path: Path
     files: Sequence[ModelFile]
 
     @cached_property
     def diagnostics(self) -> tuple[Finding, ...]:
-        """All findings, each once, in the order of files and places."""
+        """All findings, without duplicates, ordered by file and place."""
         found: dict[Finding, None] = {}
         for file in self.files:
             found |= dict.fromkeys(findings(file.snapshot, file.diagnostics))
@@ -122,7 +122,7 @@ class Model:
         errors = tuple(finding for finding in self.diagnostics if finding.is_error)
         if errors:
             raise ModelErrors(errors)
-        # An execution configures how its scenario runs, so that the plain scenario need not run as well.
+        # An execution configures how its scenario runs, so the plain scenario need not run as well.
         ordered = sorted(self.files, key=lambda file: not file.uri.endswith(".bddx"))
         found = tuple(file for file in ordered if file.has_scenarios)
         if not found and len(self.files) == 1:
@@ -134,7 +134,7 @@ class Model:
 
     @property
     def digest(self) -> str:
-        """The digest of all graphs that can be run; raises as ``runnable``."""
+        """The digest of all runnable graphs; raises the errors of ``runnable``."""
         from robbdd_tools.graph.write.digest import joint_digest
 
         return joint_digest(file.digest for file in self.runnable)
@@ -163,13 +163,13 @@ class Model:
         """Select scenarios to run.
 
         ``names`` are variants or executions (local name, CURIE or IRI; all without any). ``where`` is a condition on
-        the values (``"robot=panda and target=~cube.*"``). At most one of these reduces what fits: the ``first`` N, a
-        random ``sample`` of N, or the few that cover all combinations of values of any 2 or 3 variables (``pairwise``).
-        ``seed`` decides the sample, and the run unless that gets its own. ``substitutions`` maps behaviour
-        implementations of a ``.bddx`` to catalog behaviours that are executed instead
+        the values (``"robot=panda and target=~cube.*"``). At most one of these reduces the matches: the ``first`` N, a
+        random ``sample`` of N, or a small set that covers all combinations of values of any 2 or 3 variables
+        (``pairwise``). ``seed`` is the seed of the sample, and of the run unless the run has its own.
+        ``substitutions`` maps behaviour implementations of a ``.bddx`` to the catalog behaviours to execute instead
         (``{"my-server": "pick-place"}``).
 
-        Raises ``ModelErrors``, ``NothingToRun``, and ``SelectionError`` for a selection that cannot be made.
+        Raises ``ModelErrors``, ``NothingToRun``, and ``SelectionError`` for an invalid selection.
         """
         from robbdd_tools.workbench.plan import Plan, Selection
 
@@ -198,7 +198,7 @@ def load(path: str | os.PathLike[str], *, text: str | None = None) -> Model:
 
 
 def load_all(paths: Sequence[Path]) -> Model:
-    """Load files, and all models in folders, into one project; the model is called like the first path.
+    """Load files, and all models in folders, into one project; the model is named after the first path.
 
     Raises ``NotAModel``.
     """
@@ -215,7 +215,7 @@ def _model(path: Path, project: Project, files: Iterable[Path]) -> Model:
 
 
 def named_files(paths: Sequence[Path]) -> list[Path]:
-    """Return files, and instead of each folder the model files below it, in alphabetical order.
+    """Return the files, with each folder replaced by the model files below it, in alphabetical order.
 
     Hidden folders, installed packages and virtual environments are skipped. Raises ``NotAModel``.
     """

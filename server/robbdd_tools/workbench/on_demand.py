@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 
 class CannotRecord(RobbddError):
-    """Results cannot be stored any more; the message says why."""
+    """Results can no longer be stored; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Executed:
-    """One execution: its result, and what users' code has to do with it.
+    """One execution: its result, and errors and output of users' code.
 
     ``faults`` are errors in users' code that left clauses unknown, ``output`` the lines that this code printed, and
     ``log`` the warnings and errors of the agent.
@@ -44,11 +44,11 @@ class Executed:
 
 
 class OnDemand:
-    """Executes scenarios of a prepared run one at a time, in one agent process that stays for the next one.
+    """Executes scenarios of a prepared run one at a time, in one agent process that is reused.
 
-    Use it as a context manager; leaving it ends the agent. ``begin`` begins a run, ``join`` takes part in one that
-    another process has begun; ``end_run`` ends it. ``first_agent`` is the number of the first agent, different for each
-    process that executes scenarios of the run.
+    Use it as a context manager; leaving it ends the agent. ``begin`` begins a run, ``join`` joins one that another
+    process has begun; ``end_run`` ends it. ``first_agent`` is the number of the first agent, different for each process
+    that executes scenarios of the run.
     """
 
     def __init__(self, place: StoredRun, recording: Recording, timeout: float | None = None, first_agent: int = 1):
@@ -73,9 +73,9 @@ class OnDemand:
         first_agent: int = 1,
         processes: int = 1,
     ) -> Self:
-        """Begin the run of a plan in a run folder that the caller made; raises as ``begin_recording``.
+        """Begin the run of a plan in a run folder created by the caller; raises the errors of ``begin_recording``.
 
-        ``processes`` is how many processes will execute scenarios of the run.
+        ``processes`` is the number of processes that will execute scenarios of the run.
         """
         policy = Policy.of(jobs=processes, timeout=timeout)
         recording = begin_recording(plan, place, policy, repeat=repeat, models=models)
@@ -83,7 +83,7 @@ class OnDemand:
 
     @classmethod
     def join(cls, place: StoredRun, *, timeout: float | None = None, first_agent: int = 1) -> Self:
-        """Take part in a run that has begun; raises ``NoSuchRun`` and ``OSError``."""
+        """Join a run that has begun; raises ``NoSuchRun`` and ``OSError``."""
         return cls(place, Recording(place, place.manifest()), timeout, first_agent)
 
     @property
@@ -92,10 +92,10 @@ class OnDemand:
         return self._recording.manifest
 
     def execute(self, index: int) -> Executed:
-        """Execute a scenario and return its result when it is stored.
+        """Execute a scenario and return its result after it is stored.
 
-        Clauses without a verdict, such as those of an agent that died, are unknown. A scenario that was executed before
-        is executed again, and its result replaced. Raises ``CannotRecord``.
+        Clauses without a verdict, such as those of an agent that died, are unknown. A scenario that was already
+        executed is executed again, and its result replaced. Raises ``CannotRecord``.
         """
         faults: list[Fault] = []
         output: list[str] = []
@@ -104,7 +104,7 @@ class OnDemand:
         def collect(message: RunMessage) -> None:
             match message:
                 case UserCodeFailed(None, fault):
-                    # Code that all scenarios share fails once for each agent process.
+                    # Code that all scenarios share fails once in each agent process.
                     self._shared_faults.append(fault)
                 case UserCodeFailed(_, fault):
                     faults.append(fault)
@@ -137,7 +137,7 @@ class OnDemand:
         return Executed(result, tuple(faults), tuple(output), tuple(log))
 
     def close(self) -> None:
-        """End the agent and release the database; the run goes on."""
+        """End the agent and release the database; the run stays open."""
         self._scheduler.close()
         self._recording.close()
 
@@ -153,7 +153,7 @@ class OnDemand:
             self._listener(message)
 
     def _leave_unknown(self, index: int) -> None:
-        """Judge the clauses unknown that have no verdict because the scenario was not executed."""
+        """Judge the clauses *unknown* that have no verdict because the scenario was not executed."""
         scenario = self._results.scenarios[index]
         if scenario.finished is not None:
             return

@@ -1,4 +1,4 @@
-"""The one planner: which scenarios of which models a run executes, with which seeds, how often."""
+"""The only planner: which scenarios of which models a run executes, with which seeds, how often."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.run import Run
 
 NO_SCENARIO_FITS = "no scenario fits the selection"
-MODELS_CHANGED = "the model does not have these scenarios any more"
+MODELS_CHANGED = "the model no longer has these scenarios"
 
 
 class NothingSelected(SelectionError):
@@ -78,7 +78,7 @@ class Choice:
             yield from entries
 
     def admits(self, variant: str, number: int) -> bool:
-        """Whether a scenario is listed, by whatever execution."""
+        """Whether a scenario is listed, by any execution."""
         return any(entry.admits(number) for entry in self.entries(variant))
 
     def admits_spec(self, spec: ScenarioSpec) -> bool:
@@ -86,20 +86,20 @@ class Choice:
         return any(entry.admits_spec(spec) for entry in self.entries(spec.variant))
 
     def admits_execution(self, execution: Execution) -> bool:
-        """Whether scenarios are listed that an execution of the model runs."""
+        """Whether any scenario of an execution is listed."""
         return any(entry.execution in (None, execution.iri) for entry in self.entries(execution.variant))
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """What a user asks for; the empty selection takes everything.
+    """A user's selection; the empty selection takes everything.
 
     ``names`` are variants or executions by local name, CURIE or IRI. At most one of ``first``, ``sample`` and
     ``pairwise`` reduces the scenarios that satisfy ``where``. A scenario must be listed in each of ``choices`` and
-    satisfy ``only``. ``seed`` decides the sample and, unless the run has its own, the run; ``default_seed`` is used
-    where neither the user nor an execution of a model states one. ``substitutions`` maps behaviour implementations
-    (local name, CURIE or IRI) to catalog behaviours that are executed instead; ``default_substitutions`` does the same
-    and ignores implementations that the models lack.
+    satisfy ``only``. ``seed`` is the seed of the sample and, unless the run has its own, of the run; ``default_seed``
+    is used if neither the user nor an execution of a model gives one. ``substitutions`` maps behaviour implementations
+    (local name, CURIE or IRI) to the catalog behaviours to execute instead; ``default_substitutions`` does the same but
+    ignores implementations that the models lack.
     """
 
     names: Sequence[str] = ()
@@ -115,7 +115,7 @@ class Selection:
     default_substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def wanted(self) -> Wanted:
-        """Return the part of the selection that is made on the variations."""
+        """Return the part of the selection that applies to variations."""
         seed = self.default_seed if self.seed is None else self.seed
         return Wanted(self.where, self.first, self.sample, self.pairwise, seed)
 
@@ -126,7 +126,7 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """What a covering array covers: a variant's CURIE, its scenarios, the covered and the possible combinations."""
+    """Coverage of a covering array: a variant's CURIE, its scenarios, the covered and the possible combinations."""
 
     variant: str
     scenarios: int
@@ -142,7 +142,7 @@ class Coverage:
 class Plan:
     """What to execute of some models.
 
-    ``name`` is what reports call them together, ``path`` their file or folder, ``None`` for a text that is no file.
+    ``name`` is their common name in reports, ``path`` their file or folder, ``None`` for a text without a file.
     """
 
     name: str
@@ -172,14 +172,14 @@ class Plan:
 
     @cached_property
     def texts(self) -> JudgedTexts:
-        """The texts of the models, as they are when this is read for the first time."""
+        """The texts of the models, read at the first access."""
         listed = (entry for choice in self.selection.choices for entry in choice.every())
         files = ((file.name, file.snapshot, file.uri) for file in self.files)
         return judged_texts(files, some_repetitions=any(entry.repetitions is not None for entry in listed))
 
     @cached_property
     def scenarios(self) -> tuple[ScenarioSpec, ...]:
-        """The scenarios in execution order, with names, values and seeds, as a run without further options has them."""
+        """The scenarios in execution order, with the names, values and seeds of a run without further options."""
         with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
             return self.prepare(Path(folder)).scenarios
 
@@ -200,8 +200,8 @@ class Plan:
         """Return a run of the plan, to be used as a context manager.
 
         ``seed`` and ``repeat`` replace those of the model; ``jobs`` is the number of agent processes (default: the
-        number of cores), ``timeout`` the wall time (s) of one scenario (0: any). ``keeping`` says where the run is
-        kept, by default in the store of the model's project. Raises ``OSError`` and ``NothingSelected``.
+        number of cores), ``timeout`` the wall time limit of one scenario in s (0: none). ``keeping`` says where the run
+        is kept, by default in the store of the model's project. Raises ``OSError`` and ``NothingSelected``.
         """
         from robbdd_tools.workbench.folder import Keeping, new_folder
         from robbdd_tools.workbench.run import Run
@@ -213,10 +213,10 @@ class Plan:
     def prepare(
         self, folder: Path, *, seed: int | None = None, repeat: int | None = None, traces: bool = False
     ) -> Manifest:
-        """Write all that agents need into ``folder``; raises ``OSError`` and ``NothingSelected``.
+        """Write everything that agents need into ``folder``; raises ``OSError`` and ``NothingSelected``.
 
-        A ``seed`` replaces those of the selection and of executions, ``repeat`` their number of repetitions; ``traces``
-        keeps the traces.
+        ``seed`` replaces the seeds of the selection and of executions, ``repeat`` their number of repetitions;
+        ``traces`` keeps the traces.
         """
         chosen = self.selection.seed if seed is None else seed
         requests = [_with(request, chosen, repeat) for request in self.requests]
@@ -228,7 +228,7 @@ class Plan:
 
 
 def _with(request: RunRequest, seed: int | None, repeat: int | None) -> RunRequest:
-    """Return a request with a seed that also replaces those of executions, and a number of repetitions."""
+    """Return a request with a seed, which also replaces those of executions, and a number of repetitions."""
     if seed is not None:
         executions = tuple(replace(execution, seed=None) for execution in request.chosen_executions())
         request = replace(request, seed=seed, executions=executions)
@@ -327,7 +327,7 @@ class _Planner:
 
 
 def coverage(model: AcceptanceModel, covers: Mapping[Iri, Cover]) -> Iterable[Coverage]:
-    """Yield what each covering array of a selection covers."""
+    """Yield the coverage of each covering array of a selection."""
     for iri, cover in covers.items():
         yield Coverage(model.curie(iri), len(cover.indices), cover.covered, cover.possible)
 

@@ -35,12 +35,12 @@ COMPARE = "robbdd_tools.agent.compare_traces"
 
 
 class CannotReplay(RobbddError):
-    """A stored run cannot be replayed; the message says why."""
+    """A stored run cannot be replayed; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReplayedTrace:
-    """How the trace of one execution compares: ``difference`` is empty for traces equal to the last bit."""
+    """Comparison of one execution's traces: ``difference`` is empty if they are bit-identical."""
 
     index: int
     name: str
@@ -49,10 +49,10 @@ class ReplayedTrace:
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """How the traces of a replay compare with those of its run.
+    """Comparison of a replay's traces with those of its run.
 
     ``without_trace`` names finished scenarios that could not be replayed because the run kept no trace of them.
-    ``simulator`` is name and version of the one that replayed. ``ending`` says why scenarios were left open, empty
+    ``simulator`` is name and version of the replay's simulator. ``ending`` says why scenarios were left open, empty
     when all were simulated.
     """
 
@@ -63,7 +63,7 @@ class Replayed:
 
     @property
     def is_identical(self) -> bool:
-        """Whether every trace of the run came out the same, to the last bit."""
+        """Whether all traces of the run are bit-identical."""
         return not self.ending and not self.without_trace and not any(trace.difference for trace in self.traces)
 
 
@@ -73,9 +73,9 @@ def replay(
     """Simulate the finished executions of a run again and compare their traces bit by bit.
 
     ``names`` selects scenarios or variants by local name (all without any). ``jobs`` is the number of agent processes
-    (default: the number of cores), ``timeout`` the wall time (s) of one scenario (0: any). ``force`` simulates with the
-    run's files as they are now, changed or not. Blocks until all is simulated: in an asyncio program, call it by
-    ``asyncio.to_thread``.
+    (default: the number of cores), ``timeout`` the wall time limit of one scenario in s (0: none). ``force`` simulates
+    with the run's current files, even if they have changed. Blocks until all is simulated: in an asyncio program, call
+    it with ``asyncio.to_thread``.
 
     Raises ``CannotReplay`` when the model or its files have changed or no trace was kept, ``NoSuchRun`` when the run is
     damaged or was not kept, ``UserCodeRefused`` and ``OSError``.
@@ -90,10 +90,10 @@ def replay(
 
 
 class Replay:
-    """The replay of a stored run; consume ``messages`` once, then ask for ``traces``.
+    """The replay of a stored run; consume ``messages`` once, then call ``traces``.
 
-    ``names`` selects scenarios or variants, all without any; ``force`` simulates with files as they are now, changed or
-    not. ``folder`` is an empty folder to simulate in.
+    ``names`` selects scenarios or variants, all without any; ``force`` simulates with the current files, even if they
+    have changed. ``folder`` is an empty folder to simulate in.
     """
 
     def __init__(
@@ -126,7 +126,7 @@ class Replay:
 
     @property
     def total(self) -> int:
-        """The number of executions that are simulated again."""
+        """The number of executions to simulate again."""
         return len(self._indices)
 
     def cancel(self, reason: str = CANCELLED) -> None:
@@ -178,5 +178,5 @@ def _copy(source: str | Path, target: str | Path) -> None:
 
 
 def _links(folder: str, names: list[str]) -> list[str]:
-    """Return the links in a folder, which are skipped: a run folder that we wrote has none."""
+    """Return the symbolic links in a folder, to be skipped: a run folder that we wrote has none."""
     return [name for name in names if (Path(folder) / name).is_symlink()]

@@ -1,4 +1,4 @@
-"""Select again what failed in a stored run."""
+"""Select the failed scenarios of a stored run for another run."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class NothingFailed(RobbddError):
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """What did not hold, and how to execute it as then.
+    """Executions that did not hold, and the options to repeat them.
 
-    ``seed`` is the one that the user gave, ``repeat`` the number of repetitions; ``None`` without one. ``default_seed``
-    is that of scenarios without any. ``substitutions`` are those of the run.
+    ``seed`` is the seed given by the user, ``repeat`` the number of repetitions; ``None`` without one. ``default_seed``
+    is used for scenarios without their own. ``substitutions`` are those of the run.
     """
 
     choice: Choice
@@ -45,7 +45,7 @@ def last_run(store: RunStore, model: Path) -> StoredRun:
 
 
 def failed_in(place: StoredRun) -> Failed:
-    """Return what did not hold in a run; raises ``NothingFailed`` and ``NoSuchRun``."""
+    """Return the executions of a run that did not hold; raises ``NothingFailed`` and ``NoSuchRun``."""
     results, specs = place.results(), place.manifest().scenarios
     entries = zip(specs, results["scenarios"], strict=False)
     failed = [spec for spec, entry in entries if entry["verdict"] != Outcome.HOLDS]

@@ -27,15 +27,15 @@ if TYPE_CHECKING:
     from robbdd_tools.workbench.model import Model
 
 LOCK_PATIENCE = 1.0
-"""Seconds to wait for a lock that another process may hold only to test it."""
+"""Seconds to wait for a lock that another process may hold only for a test."""
 
 
 class CannotResume(RobbddError):
-    """A run cannot be resumed; the message says why."""
+    """A run cannot be resumed; the message gives the reason."""
 
 
 def unfinished_run(store: RunStore, word: str = LATEST, path: Path | None = None) -> StoredRun:
-    """Return the run that ``word`` names, or the latest unfinished one, of the model at ``path`` if given.
+    """Return the run that ``word`` names, else the latest unfinished one, of the model at ``path`` if given.
 
     Raises ``NoSuchRun``.
     """
@@ -55,7 +55,7 @@ def unfinished_run(store: RunStore, word: str = LATEST, path: Path | None = None
 
 
 def resume(place: StoredRun, policy: Callable[[RunStatus], Policy] | None = None) -> Run:
-    """Resume a run; ``policy`` derives jobs, timeout and stop rule from the stored run (default: as it was).
+    """Resume a run; ``policy`` derives jobs, timeout and stop rule from the stored run (default: unchanged).
 
     Raises ``CannotResume``, ``NoSuchRun`` and ``OSError``.
     """
@@ -70,7 +70,7 @@ def resume(place: StoredRun, policy: Callable[[RunStatus], Policy] | None = None
 
 
 def stored_policy(status: RunStatus) -> Policy:
-    """Return how a stored run was executed; one that stopped at its first failure continues past it."""
+    """Return a stored run's policy; one that stopped at its first failure continues past it."""
     return Policy(timeout=status.timeout, stop_on_failure=status.stop_on_failure and status.state != STOPPED)
 
 
@@ -78,7 +78,7 @@ def _resumed(place: StoredRun, policy: Callable[[RunStatus], Policy]) -> Run:
     manifest = place.manifest()
     status = read_status(place.database, place.number)
     if status is None:
-        raise CannotResume(f"run {_name(place)} was made by an earlier version, which kept nothing to resume from")
+        raise CannotResume(f"run {_name(place)} was made by an earlier version, whose runs cannot be resumed")
     if status.state == FINISHED:
         raise CannotResume(f"run {_name(place)} is finished")
     reason = _refusal(place, status)
@@ -96,7 +96,7 @@ def _resumed(place: StoredRun, policy: Callable[[RunStatus], Policy]) -> Run:
 
 
 def _refusal(place: StoredRun, status: RunStatus) -> str:
-    """Return why the remaining results would differ from those of an uninterrupted run; empty when they would not."""
+    """Return why the remaining results would differ from those of an uninterrupted run; empty if they would not."""
     model = model_now(place)
     reason = refusal(place, model)
     if reason or isinstance(model, str):

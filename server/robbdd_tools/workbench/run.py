@@ -1,4 +1,4 @@
-"""One run: agents execute a prepared folder, each finished execution is stored, then shown."""
+"""One run: agents execute a prepared folder; each finished execution is stored, then shown."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class Run(Recorded):
 
     Consume it once, in one of three ways: iterate over it (results as executions finish), over ``messages`` (messages
     in the manifest's order), or call ``wait``. ``cancel`` may be called from any thread. Leaving the context cancels
-    what is still open, and keeps what is finished. ``ending`` then says why executions were left open (empty for a
-    complete run), ``problem`` what kept the run from continuing, such as a full disk.
+    open executions and keeps finished ones. ``ending`` then says why executions were left open (empty for a complete
+    run), ``problem`` why the run could not continue, such as a full disk.
     """
 
     def __init__(
@@ -60,11 +60,11 @@ class Run(Recorded):
         self._thread: threading.Thread | None = None
         self._closed = False
         self.progress = results
-        """What is known so far; replaced by the stored results when the run ends."""
+        """The known results; replaced by the stored results when the run ends."""
         self.ending = ""
         """Why executions were left open; empty for a complete run."""
         self.problem = ""
-        """What kept the run from going on, such as a full disk; empty without one."""
+        """Why the run could not continue, such as a full disk; else empty."""
 
     @classmethod
     def begin(
@@ -77,7 +77,7 @@ class Run(Recorded):
         repeat: int | None = None,
         on_close: Callable[[], None] = lambda: None,
     ) -> Self:
-        """Prepare the run of a plan in a run folder, which is removed where that fails.
+        """Prepare the run of a plan in a run folder, which is removed on failure.
 
         Raises ``OSError``, ``NothingSelected`` and ``UserCodeRefused``.
         """
@@ -92,11 +92,11 @@ class Run(Recorded):
 
     @property
     def manifest(self) -> Manifest:
-        """What the agents are to execute."""
+        """The scenarios that the agents execute."""
         return self._manifest
 
     def listen(self, listener: Listener) -> None:
-        """Call ``listener`` with every message when it arrives, from the thread that consumes the run."""
+        """Call ``listener`` with every message on arrival, in the thread that consumes the run."""
         self._listeners.append(listener)
 
     def cancel(self, reason: str = CANCELLED) -> None:
@@ -105,7 +105,7 @@ class Run(Recorded):
         self._scheduler.cancel()
 
     def messages(self) -> Iterator[RunMessage]:
-        """Yield the messages of the run in the manifest's order, each after ``progress`` has it."""
+        """Yield the messages of the run in the manifest's order, each after ``progress`` has applied it."""
         try:
             for message in self._scheduler.messages():
                 if self._recording.is_news(message):
@@ -123,13 +123,13 @@ class Run(Recorded):
             self._conclude()
 
     def wait(self) -> Self:
-        """Execute everything; returns the run."""
+        """Execute everything; return the run."""
         for _ in self.messages():
             pass
         return self
 
     def __iter__(self) -> Iterator[ExecutionResult]:
-        """Yield the result of each execution when it finishes, in whatever order."""
+        """Yield the result of each execution as it finishes, in any order."""
         finished: SimpleQueue[ExecutionResult | BaseException | None] = SimpleQueue()
         known = RunResults(self._manifest)
 
@@ -154,14 +154,14 @@ class Run(Recorded):
             yield result
 
     async def __aiter__(self) -> AsyncIterator[ExecutionResult]:
-        """Yield as ``__iter__``, without blocking the event loop."""
+        """Yield results as ``__iter__`` does, without blocking the event loop."""
         results = iter(self)
         while (result := await asyncio.to_thread(next, results, None)) is not None:
             yield result
 
     @property
     def results(self) -> tuple[ExecutionResult, ...]:
-        """The results of all executions in the manifest's order; executes what nobody has executed yet."""
+        """The results of all executions in the manifest's order; executes those not yet executed."""
         if self._thread is not None:
             self._thread.join()
         elif not self._closed and not self.ending and not self.progress.complete:
@@ -169,7 +169,7 @@ class Run(Recorded):
         return execution_results(self.progress.as_json())
 
     def close(self) -> None:
-        """Cancel what is open and release the store."""
+        """Cancel open executions and release the store."""
         if self._closed:
             return
         self.cancel()
@@ -197,7 +197,7 @@ class Run(Recorded):
                 listener(message)
 
     def _conclude(self) -> None:
-        """Write the end of the run; ``progress`` becomes what is stored."""
+        """Record the end of the run; ``progress`` becomes the stored results."""
         try:
             self.progress = self._recording.end(self.ending, interrupted=bool(self._reason))
         except OSError as error:
@@ -209,12 +209,12 @@ class Run(Recorded):
 
 
 def begin_run(plan: Plan, place: StoredRun, *, repeat: int | None = None, jobs: int | None = None) -> Run:
-    """Prepare the run of a plan in a run folder that the caller made; raises as ``Run.begin``."""
+    """Prepare the run of a plan in a run folder created by the caller; raises the errors of ``Run.begin``."""
     return Run.begin(plan, place, Policy.of(jobs=jobs), repeat=repeat)
 
 
 def check_user_code(plan: Plan) -> None:
-    """Raise ``UserCodeRefused`` if a plan executes code of users where that is not allowed.
+    """Raise ``UserCodeRefused`` if a plan executes users' code without permission.
 
     Raises ``OSError`` and ``NothingSelected`` as well.
     """
@@ -231,10 +231,10 @@ def begin_recording(
     repeat: int | None = None,
     models: Sequence[Path] = (),
 ) -> Recording:
-    """Write all that agents need into a run folder, and the beginning of the run into its database.
+    """Write everything that agents need into a run folder, and the beginning of the run into its database.
 
-    ``models`` are the model files where they are not all of the plan's folder. Raises ``OSError``, ``NothingSelected``
-    and ``UserCodeRefused``.
+    ``models`` are the model files if they are not all models in the plan's folder. Raises ``OSError``,
+    ``NothingSelected`` and ``UserCodeRefused``.
     """
     manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept)
     refuse_user_code(manifest, place.folder)
@@ -252,7 +252,7 @@ def begin_recording(
 
 
 def _record(plan: Plan, folder: Path, manifest: Manifest, user_seed: int | None) -> RunRecord:
-    """Return what is run; a model that is no file is called by its name."""
+    """Return the record of a run; a model without a file is recorded by name."""
     path = plan.path
     shown, start = (plan.name, plan.name) if path is None else (shown_path(path), origin(path, folder))
     files = digests(manifest, folder)

@@ -25,7 +25,7 @@ class Recorded(ABC):
 
     @property
     def number(self) -> int:
-        """The number in the project's store, 0 for a run in a folder of its own."""
+        """The number in the project's store, 0 for a run in a separate folder."""
         return self.place.number
 
     @property
@@ -45,7 +45,7 @@ class Recorded(ABC):
     def trace(self, result: ExecutionResult | int) -> Trace:
         """Return the trace of an execution (its result or index): times, positions, orientations and events as arrays.
 
-        Raises ``UnreadableTrace`` where none was kept.
+        Raises ``UnreadableTrace`` if none was kept.
         """
         from robbdd_tools.traces.mcap_file import read_trace
 
@@ -54,26 +54,26 @@ class Recorded(ABC):
 
 
 class PastRun(Recorded):
-    """A run of the store, finished or not. Its properties raise ``NoSuchRun`` where its folder is damaged."""
+    """A stored run, finished or not. Its properties raise ``NoSuchRun`` if its folder is damaged."""
 
     @property
     def record(self) -> RunRecord:
-        """What was run: path, digest of the graph, seed, versions."""
+        """The record of the run: path, digest of the graph, seed, versions."""
         return self.place.record()
 
     @property
     def status(self) -> RunStatus:
-        """How far it is: state, number of executions, verdicts of the finished ones."""
+        """The progress of the run: state, number of executions, verdicts of the finished ones."""
         return self.place.status()
 
     @property
     def results(self) -> tuple[ExecutionResult, ...]:
-        """The results of all executions in the manifest's order; those that are not finished are unknown."""
+        """The results of all executions in the manifest's order; unfinished ones are unknown."""
         return execution_results(self.place.results())
 
 
 def runs(path: str | os.PathLike[str] = ".", *, store: str | os.PathLike[str] | None = None) -> tuple[PastRun, ...]:
-    """Return the stored runs of the project of a path, the oldest first; ``store`` is another folder of runs."""
+    """Return the stored runs of a path's project, oldest first; ``store`` is another folder of runs."""
     return tuple(map(PastRun, store_at(Path(path), store).runs()))
 
 
@@ -85,5 +85,5 @@ def find_run(
 
 
 def store_at(path: Path, store: str | os.PathLike[str] | None) -> RunStore:
-    """Return the store of the project of a path, or the one in the folder ``store``."""
+    """Return the store of a path's project, or the one in the folder ``store``."""
     return store_beside(path) if store is None else RunStore(Path(store))

@@ -1,4 +1,4 @@
-"""Whether a stored run's model and files are still what they were, so that it can be replayed or resumed."""
+"""Check that a stored run's model and files are unchanged, so that it can be replayed or resumed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def model_now(place: StoredRun) -> Model | str:
-    """Return the model of a stored run as it is now, or why it cannot be run; raises ``NoSuchRun``."""
+    """Return the current model of a stored run, or why it cannot be run; raises ``NoSuchRun``."""
     shown, paths = place.record().path, place.models()
     if not all(path.exists() for path in paths):
         return f"the model of the run, {shown}, is gone"
@@ -22,12 +22,12 @@ def model_now(place: StoredRun) -> Model | str:
         model = load_all(paths)
         _ = model.runnable
     except RobbddError as error:
-        return f"the model of the run, {shown}, cannot be run as it is now: {error}"
+        return f"the model of the run, {shown}, cannot be run in its current state: {error}"
     return model
 
 
 def refusal(place: StoredRun, model: Model | str) -> str:
-    """Return what changed since the run, with what to do; empty when nothing did. Raises ``NoSuchRun``."""
+    """Return what changed since the run and what to do; empty without a change. Raises ``NoSuchRun``."""
     record = place.record()
     others = [os.path.relpath(path) for path in changed(record.files, place.folder)]
     if others:
