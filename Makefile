@@ -20,21 +20,26 @@ lint: $(READY)
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright
 
-test-python: $(READY)
+# The VSIX is packed by a test, too, which needs the client's packages.
+test-python: $(READY) $(CLIENT_READY)
 	$(BIN)/pytest -m "not workbench" --numprocesses logical --dist worksteal
 
 test-client: $(CLIENT_READY)
 	cd $(CLIENT) && npm run --silent build && npm run --silent lint && npm test --silent
 
-# Drives Neovim and Emacs, then the extension in a real VS Code workbench; installs the editors and Chromium where they are missing.
-test-editors: $(READY) $(CLIENT_READY)
-	tests/editors/neovim/setup.sh
+# Drives Neovim and Emacs, then the extension in a real VS Code workbench.
+# Where both are asked for, `make -j test-client test-editors` runs them in this order: they write the same build output.
+test-editors: $(READY) $(CLIENT_READY) setup-editors | $(filter test-client,$(MAKECMDGOALS))
 	tests/editors/neovim/run.sh
-	tests/editors/emacs/setup.sh
 	tests/editors/emacs/run.sh
-	tests/editors/workbench/setup.sh
 	cd $(CLIENT) && npm run --silent package
 	tests/editors/workbench/run.sh
+
+# Installs the editors and Chromium where they are missing.
+setup-editors:
+	tests/editors/neovim/setup.sh
+	tests/editors/emacs/setup.sh
+	tests/editors/workbench/setup.sh
 
 # Edits models at random for as long as one likes: make fuzz SEQUENCES=100000
 SEQUENCES ?= 20000
