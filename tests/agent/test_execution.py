@@ -157,7 +157,7 @@ def test_a_thing_that_was_moved_away_is_missed() -> None:
     simulation = run.simulation
     simulation.data.qvel[simulation.model.body(CUBE).dofadr[0] + 1] = 2.0
     trace = to_the_end(run)
-    assert trace.remark.startswith("gripper closed beside env:cube1 at ")
+    assert trace.remark.startswith("gripper missed env:cube1 at ")
     assert "t:pick-end" not in names(trace)
 
 

@@ -166,9 +166,9 @@ def test_a_seed_of_the_model_outranks_that_of_the_run() -> None:
         ([(CUBE, "ee_speed", "1")], "'env:cube1' has no ee_speed: that is of an agent"),
         ([(PANDA, "mass", "1")], "'env:panda' has no mass: that is of a loose object"),
         ([("env:bench", "height_scale", "1")], "'env:bench' has no height_scale: that is of a bin, tray or shelf"),
-        ([("env:bolt", "mass", "1")], "'env:bolt', which is to have mass = 1, is not in the scene"),
-        ([(CUBE, "mass", "1"), (CUBE, "mass", "2")], "'env:cube1' is to have mass = 1 and 2"),
-        ([(CUBE, "position_range", "1.5 1.6 0 0.1")], "no part of 'env:bench', where 'env:cube1' is to be"),
+        ([("env:bolt", "mass", "1")], "'env:bolt', which should have mass = 1, is not in the scene"),
+        ([(CUBE, "mass", "1"), (CUBE, "mass", "2")], "'env:cube1' should have mass = 1 and 2"),
+        ([(CUBE, "position_range", "1.5 1.6 0 0.1")], "no part of 'env:bench', where 'env:cube1' should be"),
     ],
 )
 def test_what_cannot_be_set_up_is_explained(wanted: list[tuple[str, str, str]], message: str) -> None:

@@ -54,7 +54,7 @@ def test_two_things_in_one_another_are_named_with_their_depth() -> None:
     height = TABLE_TOP + RADIUS
     with pytest.raises(
         SceneError,
-        match=r"^cell\.scenex:7:5: 'env:ball1' and 'env:cube1' overlap by 12 mm: nothing may be in something else",
+        match=r"^cell\.scenex:7:5: 'env:ball1' and 'env:cube1' overlap by 12 mm: nothing may overlap",
     ):
         course(cube=(0.5, 0.1, height), ball=(0.5, 0.1 + HALF_CUBE + RADIUS - 0.012, height))
 

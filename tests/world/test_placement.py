@@ -92,7 +92,7 @@ def test_a_second_robot_faces_the_first_across_the_table() -> None:
             replace(SCENE, agents=tuple(f"t:panda{number}" for number in range(1, 6))),
             "room for 4 agents around 'env:bench', one at each side; place t:panda5 in a .scenex",
         ),
-        (replace(SCENE, places={CUBE: "env:void_ws"}), "'env:cube1' is to be at 'env:void_ws', but nothing"),
+        (replace(SCENE, places={CUBE: "env:void_ws"}), "'env:cube1' should be at 'env:void_ws', but nothing"),
         (replace(SCENE, workspaces={BIN_WS: ("env:bin9",)}), "carried by 'env:bin9', which is not in the scene"),
         (
             replace(SCENE, objects=(*SCENE.objects, "t:bin3", "t:bin4", "t:bin5")),

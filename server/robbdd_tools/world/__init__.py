@@ -1,1 +1,1 @@
-"""The simulated world: scene, objects, arms, grippers, motion, pictures; the only user of MuJoCo."""
+"""The simulated world: scene, objects, arms, grippers, motion, pictures. Only this package uses MuJoCo."""

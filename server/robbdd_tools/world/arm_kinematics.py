@@ -1,4 +1,4 @@
-"""Forward and inverse kinematics of one arm, on a model that holds nothing else."""
+"""Forward and inverse kinematics of one arm, on a model that contains only the arm."""
 
 from __future__ import annotations
 
@@ -18,24 +18,26 @@ CLOSE = 5e-5
 """Remaining pose error (m and rad) at which a solution is accepted."""
 ROUNDS = 60
 LEAST_DAMPING, DAMPING = 1e-6, 0.01
-"""Damping of the least squares: a floor, and a share of the squared pose error. It fades as the goal comes near,
-because damping lets the pull towards the posture leak into the pose."""
+"""Damping of the least squares: a minimum, and a share of the squared pose error.
+
+It fades near the goal, because damping lets the pull towards the posture leak into the pose.
+"""
 POSTURE = 0.2
-"""Share of the way back to the home posture that a redundant arm goes in each round."""
+"""Share of the way back to the home posture that a redundant arm moves in each iteration."""
 ARMS = 16
-"""Arms that are kept: a configured robot is one of its own."""
+"""Size of the cache of arms; every configured robot is a separate entry."""
 STRIDE = 0.3
-"""Largest change of a joint in one round, rad."""
+"""Largest change of a joint in one iteration, rad."""
 
 
 class Unreachable(BehaviourError):
-    """No joint positions within the limits put the tool there."""
+    """No joint positions within the limits reach the tool pose."""
 
 
 class Arm:
-    """An arm by itself; poses of its tool are in the frame of its base.
+    """An arm by itself; tool poses are in the frame of its base.
 
-    ``lower`` and ``upper`` (n,) are the joint limits, ``home`` (n,) the posture it prefers, all in rad.
+    ``lower`` and ``upper`` (n,) are the joint limits, ``home`` (n,) the preferred posture, all in rad.
     """
 
     def __init__(self, robot: RobotModel) -> None:
@@ -69,8 +71,8 @@ class Arm:
     def solve(self, seed: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:
         """Return joint positions (n,) near ``seed`` that put the tool at a pose; raises ``Unreachable``.
 
-        Damped least squares; what a redundant arm is free in is drawn towards the home posture, with its first
-        joint turned towards the goal. Joints that come to a limit stay there while the others make up for them.
+        Damped least squares. The redundancy pulls towards the home posture, with its first joint turned towards the
+        goal. Joints that reach a limit stay there, and the others compensate.
         """
         joints = np.minimum(np.maximum(seed, self.lower), self.upper)
         posture = self.towards(position)
@@ -89,7 +91,7 @@ class Arm:
         raise Unreachable(f"{1000 * error:.0f} mm short")
 
     def _turn_left(self, turn: FloatArray) -> None:
-        """Write the rotation vector (3,) rad, world frame, from the tool's present orientation to the goal's."""
+        """Write the rotation vector (3,) rad, world frame, from the tool's current orientation to the goal's."""
         goal, present = self._turns
         mujoco.mju_mat2Quat(present, self._rotation)
         mujoco.mju_subQuat(turn, goal, present)
@@ -111,7 +113,7 @@ class Arm:
         return np.minimum(np.maximum(moved, self.lower), self.upper)
 
     def _step(self, jacobian: FloatArray, gap: FloatArray, homewards: FloatArray) -> FloatArray:
-        """One round of damped least squares with a pull (n,) in the null space of the Jacobian (6, n)."""
+        """Return one step of damped least squares with a pull (n,) in the null space of the Jacobian (6, n)."""
         square = jacobian @ jacobian.T
         square.flat[::7] += LEAST_DAMPING + DAMPING * float(gap @ gap)
         pull = POSTURE * homewards
@@ -124,11 +126,11 @@ class Arm:
 
 @lru_cache(maxsize=ARMS)
 def arm_of(robot: RobotModel) -> Arm:
-    """Return the arm of a robot model; compiled when it is first asked for."""
+    """Return the arm of a robot model, compiled at first use."""
     return Arm(robot)
 
 
 def _largest(values: FloatArray) -> float:
-    """Return the largest magnitude; of a few numbers plain Python finds it faster."""
+    """Return the largest magnitude; for a few numbers, plain Python is faster than numpy."""
     numbers: list[float] = values.tolist()
     return max(map(abs, numbers))

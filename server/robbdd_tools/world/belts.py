@@ -1,5 +1,7 @@
-"""Driven belts. The engine knows no running surfaces, so a belt is a slab that a servo drives at the belt's speed, and
-that is set back by its way after each control tick: friction depends on its speed alone, which goes on.
+"""Driven belts.
+
+The engine has no running surfaces. So a belt is a slab that a servo drives at the belt's speed, and whose position is
+reset after each control tick: friction depends only on its speed, which continues.
 """
 
 from __future__ import annotations
@@ -14,11 +16,11 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, Vector
 
 STIFFNESS = 5000.0
-"""Force per difference in speed of a belt's servo, N s/m: a thing that is held back does not slow the belt."""
+"""Gain of a belt's speed servo, N s/m: an object that is held back does not slow the belt."""
 
 
 def add_belt(spec: Any, body: Any, name: str, surface: Vector) -> Any:
-    """Return a new part of a body that runs at the velocity ``surface`` (m/s, in the body's frame) when driven."""
+    """Add a part to a body that runs at the velocity ``surface`` (m/s, in the body's frame) when driven; return it."""
     speed = float(np.linalg.norm(surface))
     part = body.add_body(name=name)
     part.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[along / speed for along in surface])
@@ -40,10 +42,10 @@ def belt_speed(model: Any, servo: int) -> float:
 
 
 class Belts:
-    """The belts of a simulation; they stand still until they are started."""
+    """The belts of a simulation; they stand still until started."""
 
     def __init__(self, model: Any, names: list[str]) -> None:
-        """Take the belts of the objects ``names``."""
+        """Collect the belts of the objects ``names``."""
         servos = [servo for name in names for servo in belts_of(model, name)]
         joints = [int(model.actuator_trnid[servo, 0]) for servo in servos]
         self._servos = np.array(servos, dtype=int)
@@ -55,10 +57,10 @@ class Belts:
         return bool(self._servos.size)
 
     def start(self, data: Any) -> None:
-        """Let them run from now on."""
+        """Start the belts."""
         data.ctrl[self._servos] = self._speeds
         data.qvel[self._rates] = self._speeds
 
     def set_back(self, data: Any) -> None:
-        """Undo their way, not their speed."""
+        """Reset their positions, not their speeds."""
         data.qpos[self._places] = 0.0

@@ -1,4 +1,4 @@
-"""Asks the engine's own collision detection whether an arm would hit something."""
+"""Collision checks of arms with the engine's collision detection."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 class Clearance:
-    """Collision checks of one robot with the world as it is in ``state`` when this is made; nothing is stepped."""
+    """Collision checks of one robot with the world in ``state`` at construction; nothing is stepped."""
 
     def __init__(self, simulation: Simulation, robot: Robot, spare: str, state: Any) -> None:
-        """Leave contacts with the object ``spare`` out: it is the one to be gripped."""
+        """Ignore contacts with the object ``spare``: it is the one to be gripped."""
         self._model: Any = simulation.model
         self._data: Any = simulation.scratch
         self._state: FloatArray = state.qpos.copy()
@@ -30,7 +30,7 @@ class Clearance:
         self._ignored = self._model.geom_bodyid == self._model.body(spare).id
 
     def depth(self, joints: FloatArray) -> float:
-        """Return how deep (m) the arm with open fingers would be in something else; 0 when it is clear."""
+        """Return the penetration (m) of the arm with open fingers into anything else; 0 without a collision."""
         self._data.qpos[:] = self._state
         self._data.qpos[self._robot.joints] = joints
         self._simulation.open_fingers(self._robot, self._data)

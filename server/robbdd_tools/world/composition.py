@@ -1,4 +1,4 @@
-"""Composes one simulated world: robots on their pedestals, tables, bins and objects, in one model."""
+"""Compose one simulated world of robots on pedestals, tables, bins and objects, in one model."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ FLOOR = TABLE_TOP - HEIGHT
 THINGS = 1
 """Collision group (bit) of objects; the n-th robot has the bit ``2 << n``."""
 COLUMN = "robbdd-column"
-"""Name of the body that a robot stands on, among those of the robot's file."""
+"""Name of the pedestal's body, among those of the robot's file."""
 TORSION, ROLLING = 0.005, 0.0005
-"""Torsional and rolling friction of objects, m; without the latter a ball never comes to rest."""
+"""Torsional and rolling friction of objects, m; without rolling friction, a ball never comes to rest."""
 
 
 @dataclass(frozen=True, slots=True)
 class World:
     """A compiled scene.
 
-    ``model`` is the engine's; ``bases`` are the poses of the robots' bases, ``poses`` those of the objects before
-    they settle. ``seed`` is the one that decided everything random in it; ``resampled`` counts the random places that
-    were drawn again because they overlapped or were out of reach.
+    ``model`` is the engine's; ``bases`` are the poses of the robots' bases, ``poses`` those of the objects before they
+    settle. ``seed`` is the seed of all random choices; ``resampled`` counts the random places that were resampled
+    because they overlapped or were out of reach.
     """
 
     model: Any
@@ -56,10 +56,10 @@ class World:
 
 
 def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance: SceneInstance | None = None) -> World:
-    """Build the world of a scene; everything random in it follows from ``seed``, or from that of its configuration.
+    """Build the world of a scene; all random choices derive from ``seed``, or from the seed in its configuration.
 
-    ``actor`` is the agent that objects are laid out for, by default the first; ``instance`` says what elements are
-    and where. Raises ``SceneError`` when an element has no model, a place does not exist or there is no room.
+    ``actor`` is the agent that objects are laid out for, by default the first; ``instance`` gives models and places of
+    elements. Raises ``SceneError`` when an element has no model, a place does not exist or there is no room.
     """
     staging = None if instance is None else Staging(instance, _seed_of(scene, seed))
     cast = cast_scene(scene, staging)
@@ -74,13 +74,13 @@ def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance:
 
 
 def _seed_of(scene: SceneSpec, seed: int) -> int:
-    """Return the seed that the scene is configured with, if any."""
+    """Return the seed configured for the scene, if any."""
     written = next((config.value for config in scene.config if config.name == "seed"), "")
     return int(written) if written.isdecimal() else seed
 
 
 def mjcf_path(robot: RobotModel) -> Path:
-    """Return the robot's model file; raises ``SceneError`` when it is missing."""
+    """Return the robot's model file; raises ``SceneError`` if it is missing."""
     from robbdd_tools.catalog import robots
 
     own = Path(robots.__path__[0]) / robot.mjcf
@@ -91,7 +91,7 @@ def mjcf_path(robot: RobotModel) -> Path:
 
 
 def load_robot(robot: RobotModel) -> Any:
-    """Return the engine's editable description of a robot; raises ``SceneError`` when its file is broken."""
+    """Return the engine's editable description of a robot; raises ``SceneError`` if its file is broken."""
     prepared = prepared_robot(robot.mjcf)
     if prepared is not None:
         return prepared.copy()
@@ -126,7 +126,7 @@ def _compile(cast: Cast, bases: Mapping[str, Pose], poses: Mapping[str, Pose]) -
     rank_by_friction(spec, pads)
     try:
         with warnings.catch_warnings():
-            # The options of the world are kept, whatever a robot's file says of its own.
+            # Keep the world's options; ignore those in a robot's file.
             warnings.simplefilter("ignore")
             return spec.compile()
     except ValueError as error:
@@ -141,7 +141,7 @@ def _set_options(spec: Any) -> None:
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     option.impratio = 10.0
-    # A state that is not a number must be seen, not silently replaced by the initial one.
+    # A NaN state must be detected, not silently reset to the initial one.
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 
@@ -174,7 +174,7 @@ def _add_object(spec: Any, name: str, model: ObjectModel, pose: Pose, robots: in
 
 
 def _add_scenery(spec: Any, scenery: Any, prefix: str, robots: int) -> None:
-    """Add what a model of the whole scene has beside the elements."""
+    """Add the contents of a model of the whole scene that are not elements."""
     child = scenery.copy()
     for geom in child.geoms:
         if geom.contype or geom.conaffinity:
@@ -194,7 +194,7 @@ def _add_robot(spec: Any, name: str, robot: RobotModel, base: Pose, index: int, 
             geom.conaffinity = THINGS | robots
     for servo in child.actuators:
         if servo.target in robot.joints:
-            # What controls it is the speed of the target: one that jumps with every tick would shake the arm.
+            # Its control input is the speed of the target: a target that jumps with every tick would shake the arm.
             servo.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
             servo.ctrllimited = False
     turn = [cos(base.yaw / 2), 0.0, 0.0, sin(base.yaw / 2)]

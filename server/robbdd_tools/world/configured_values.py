@@ -1,4 +1,4 @@
-"""Reads the configuration of a scene back from the world that was built of it."""
+"""Read the configuration of a scene back from the world built from it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, str], str]:
-    """Return element and name → value of every configuration, as the simulated world has it."""
+    """Return element and name → value of every configuration in the simulated world."""
     cast, model = simulation.world.cast, simulation.model
     settings: dict[tuple[str, str], Numbers] = dict(cast.judged)
     for name, thing in cast.objects.items():
@@ -37,14 +37,14 @@ def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, st
         if robot.model.approach_speed is None:
             settings[name, "approach_speed"] = settings[name, "ee_speed"]
         settings[name, "position_range"] = cast.ranges.get(name, NORMAL)
-    # A seed may be asked for of anything, such as the scene.
+    # A seed may be configured for any element, such as the scene.
     for name in (*cast.objects, *cast.agents, *(config.target for config in scene.config)):
         settings[name, "seed"] = (float(simulation.world.seed),)
     return {pair: written(value) for pair, value in settings.items()}
 
 
 def _height(model: Any, geoms: range) -> float:
-    """Return the height (m) of the box around the geoms of a body, which are in line with it."""
+    """Return the height (m) of the bounding box of a body's geoms, which are aligned with the body."""
     middle = model.geom_pos[geoms, 2] + model.geom_aabb[geoms, 2]
     half = model.geom_aabb[geoms, 5]
     return float((middle + half).max() - (middle - half).min())

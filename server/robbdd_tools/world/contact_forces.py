@@ -1,6 +1,6 @@
-"""Contact forces of agents and of what they grip, measured in every step of the engine.
+"""Contact forces of agents and gripped objects, measured in every step of the engine.
 
-A blow is over within a sample, and nothing else that is recorded shows it.
+An impact is shorter than a sample, so no other recorded quantity shows it.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 UPHOLDING = 0.5
-"""Cosine of the largest angle between a contact's normal and the vertical at which the one below bears the other."""
+"""Minimum cosine between a contact's normal and the vertical for the lower body to support the upper one."""
 Pair = tuple[str, str]
 
 
 class ContactForces:
-    """Forces between each agent, together with all that it grips, and everything else.
+    """Forces between each agent, with all that it grips, and everything else.
 
-    Per sample, agent and other: the largest force (N) and the impulse (N s) since the sample before. Others are
-    objects and agents (an agent itself, too) by name, and whatever else there is by the name of its body or geom.
-    What is gripped counts with what it presses beyond its own weight: a part that still stands on a table exerts
-    nothing. The steady force between an agent and what it grips is measured once per sample, but for the things
-    ``in_every_step``; all others in every step.
+    Per sample, agent and other: the largest force (N) and the impulse (N s) since the previous sample. Others are
+    objects and agents (also the agent itself) by name, and anything else by the name of its body or geom. A gripped
+    object counts with the force beyond its own weight: a part that still stands on a table exerts nothing. Forces are
+    measured in every step. Only the steady force between an agent and its gripped object is measured once per sample,
+    except for the objects ``in_every_step``.
     """
 
     def __init__(self, model: Any, agents: Iterable[str], things: Iterable[str], in_every_step: Iterable[str]) -> None:
@@ -49,7 +49,7 @@ class ContactForces:
         self.clear()
 
     def clear(self) -> None:
-        """Forget all samples."""
+        """Delete all samples."""
         self._row = 0
         self._peaks: dict[Pair, dict[int, float]] = defaultdict(dict)
         self._impulses: dict[Pair, dict[int, float]] = defaultdict(dict)
@@ -72,7 +72,7 @@ class ContactForces:
             self._measure(data, counted, self._step)
 
     def record(self, data: Any, held: Mapping[str, Iterable[str]]) -> None:
-        """Take a sample; from now on each agent grips the things ``held``."""
+        """Take a sample; from now on each agent grips the objects ``held``."""
         if self._gripped:
             self._measure_grips(data)
         gripped = frozenset((agent, thing) for agent, things in held.items() for thing in things)
@@ -85,22 +85,22 @@ class ContactForces:
 
     @property
     def agents(self) -> tuple[str, ...]:
-        """The agents that are watched."""
+        """The watched agents."""
         return self._agents
 
     def peaks(self, size: int) -> Mapping[Pair, FloatArray]:
-        """Return the largest force (N) before each of the first ``size`` samples, of those that touched: (size,)."""
+        """Return the largest force (N) before each of the first ``size`` samples, by pair in contact: (size,)."""
         return _series(self._peaks, size)
 
     def impulses(self, size: int) -> Mapping[Pair, FloatArray]:
-        """Return the impulse (N s) before each of the first ``size`` samples, of those that touched: (size,)."""
+        """Return the impulse (N s) before each of the first ``size`` samples, by pair in contact: (size,)."""
         return _series(self._impulses, size)
 
     def contacts(self, times: FloatArray) -> tuple[Contact, ...]:
-        """Return the contacts so far, the earliest first; ``times`` (n,) are those of the samples, s.
+        """Return the contacts so far, earliest first; ``times`` (n,) are those of the samples, s.
 
-        What an agent grips at some time is left out, and what this stands on where it is taken up or put down, unless
-        the force is above the limit of *does not collide*: that is no resting contact.
+        Left out are contacts with an object that the agent grips at some time, and with the support of this object
+        while it is picked up or put down, unless the force exceeds the limit of *does not collide*.
         """
         found = [
             Contact(*key, float(times[total.first]), total.peak, float(times[total.highest]), total.impulse)
@@ -112,7 +112,7 @@ class ContactForces:
         return tuple(sorted(found, key=lambda one: (one.time, one.agent, one.part, one.other)))
 
     def _hold(self, gripped: frozenset[Pair]) -> None:
-        """Note who grips what, and for each geom whom it strikes for and whether it is one of a thing in a grip."""
+        """Record who grips what, and for each geom its agent and whether it belongs to a gripped object."""
         self._gripped = gripped
         self._holders = {agent: agent for agent in self._agents} | {thing: agent for agent, thing in gripped}
         self._holder_of = [self._holders.get(owner, "") for owner in self._owners]
@@ -120,7 +120,7 @@ class ContactForces:
         self._is_steady = [owner in things for owner in self._owners]
 
     def _measure_grips(self, data: Any) -> None:
-        """Measure the forces between agents and what they grip."""
+        """Measure the forces between agents and gripped objects."""
         counted = [
             (contact, first, second)
             for contact, (first, second) in enumerate(data.contact.geom.tolist())
@@ -129,7 +129,7 @@ class ContactForces:
         self._measure(data, counted, TICK)
 
     def _measure(self, data: Any, counted: list[tuple[int, int, int]], duration: float) -> None:
-        """Add the forces of contacts (number, geoms), which last for some time (s)."""
+        """Add the forces of contacts (number, geoms) that last for some time (s)."""
         forces: defaultdict[tuple[str, str, str], list[float]] = defaultdict(lambda: [0.0, 0.0])
         for contact, *geoms in counted:
             size, lift = self._force(data, contact)
@@ -139,7 +139,8 @@ class ContactForces:
             pairs = ((first, second, lift),) if first == second else ((first, second, lift), (second, first, -lift))
             for mine, theirs, upwards in pairs:
                 agent = self._holders.get(mine)
-                # What an agent grips does not strike the agent, nor another part in the same gripper.
+                # Contacts of a gripped object with its agent, or with another part in the same gripper, are no
+                # collisions.
                 if agent is None or (mine != agent and self._holders.get(theirs) == agent):
                     continue
                 total = forces[agent, "" if mine == agent else mine, theirs]
@@ -159,7 +160,7 @@ class ContactForces:
             impulses[self._row] = impulses.get(self._row, 0.0) + force * duration
 
     def _force(self, data: Any, contact: int) -> tuple[float, float]:
-        """Return the size of a contact's force (N) and its component upwards on the second geom."""
+        """Return the magnitude of a contact's force (N) and its component upwards on the second geom."""
         mujoco.mj_contactForce(self._model, data, contact, self._wrench)
         x, y, z, *_ = self._wrench.tolist()
         if not (x or y or z):
@@ -168,7 +169,7 @@ class ContactForces:
         return hypot(x, y, z), x * upwards[0] + y * upwards[1] + z * upwards[2]
 
     def _note_supports(self, data: Any, thing: str) -> None:
-        """Note what bears a thing from below, by the direction of the contacts: a grip may take all of the weight."""
+        """Record what supports an object from below, by contact directions: a grip may carry all of the weight."""
         pairs: list[list[int]] = data.contact.geom.tolist()
         for geoms, upwards in zip(pairs, data.contact.frame[:, 2].tolist(), strict=True):
             first, second = (self._owners[geom] for geom in geoms)
@@ -178,7 +179,7 @@ class ContactForces:
 
 @dataclass(slots=True)
 class _Sum:
-    """One contact's totals: rows of its first sample and of its largest force, that force (N), impulse (N s)."""
+    """Totals of one contact: rows of its first sample and of its largest force, that force (N), impulse (N s)."""
 
     first: int
     highest: int

@@ -1,4 +1,4 @@
-"""The shapes of a simulated world as plain data, so that a recorded execution can be drawn without the simulator."""
+"""The shapes of a simulated world as plain data, to draw a recorded execution without the simulator."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.judge import Regions
 
 SHOWN = 3
-"""Geoms of groups below this one are drawn, as in the engine's own pictures; beyond are shapes of collision only."""
+"""Geoms in groups below this one are drawn, as by the engine; higher groups are collision shapes."""
 FACES = 3000
-"""Triangles of a mesh; finer ones are thinned out."""
+"""Maximum triangles of a mesh; finer meshes are decimated."""
 GRIDS = (96, 64, 48, 32, 24, 16, 8, 4)
-"""Cells along the longest side of a mesh, whose vertices in one cell become one."""
+"""Cells along the longest side of a mesh; vertices in one cell are merged."""
 DIGITS = 5
-"""Decimals of lengths and turns: hundredths of a millimetre."""
+"""Decimals of lengths and rotations: hundredths of a millimetre."""
 UNPAINTED = (0.5, 0.5, 0.5, 1.0)
-"""The engine's default colour, which that of a material replaces."""
+"""The engine's default colour, which a material's colour replaces."""
 KINDS = {
     "mjGEOM_PLANE": "plane",
     "mjGEOM_SPHERE": "sphere",
@@ -38,7 +38,7 @@ KINDS = {
 
 
 def geometry(model: Any, names: dict[int, str], regions: Regions) -> dict[str, Any]:
-    """Return shapes, meshes and workspaces as ``docs/schemas/trace.schema.json`` has them, bodies by name."""
+    """Return shapes, meshes and workspaces in the form of ``docs/schemas/trace.schema.json``, bodies by name."""
     meshes: dict[int, int] = {}
     shapes = [_shape(model, geom, names[body], meshes) for body in names for geom in shown_geoms(model, body)]
     return {
@@ -53,7 +53,7 @@ def geometry(model: Any, names: dict[int, str], regions: Regions) -> dict[str, A
 
 
 def shown_geoms(model: Any, body: int) -> Iterator[int]:
-    """Yield the geoms of a body that are to be seen."""
+    """Yield the visible geoms of a body."""
     first = int(model.body_geomadr[body])
     for geom in range(first, first + int(model.body_geomnum[body])):
         if model.geom_group[geom] < SHOWN and color(model, geom)[3] > 0 and _kind(model, geom):
@@ -100,7 +100,7 @@ def _mesh(model: Any, mesh: int) -> dict[str, Any]:
 
 
 def thinned(vertices: FloatArray, faces: NDArray[np.intp], cells: int) -> tuple[FloatArray, NDArray[np.intp]]:
-    """Return a coarser mesh: vertices (n, 3) m in one cell of a grid become their mean, faces (f, 3) in one cell go."""
+    """Return a coarser mesh: vertices (n, 3) m in a grid cell become their mean; faces (f, 3) in a cell are dropped."""
     low = vertices.min(axis=0)
     side = float((vertices.max(axis=0) - low).max()) / cells or 1.0
     _, owner = np.unique(np.floor((vertices - low) / side).astype(int), axis=0, return_inverse=True)
@@ -109,6 +109,6 @@ def thinned(vertices: FloatArray, faces: NDArray[np.intp], cells: int) -> tuple[
     means /= np.bincount(owner)[:, None]
     found = owner[faces]
     kept = (found[:, 0] != found[:, 1]) & (found[:, 1] != found[:, 2]) & (found[:, 2] != found[:, 0])
-    # The same triangle may have come about several times.
+    # Merging vertices may produce duplicate triangles.
     _, once = np.unique(np.sort(found[kept], axis=1), axis=0, return_index=True)
     return means, found[kept][np.sort(once)]

@@ -1,4 +1,4 @@
-"""The physics engine, which publishes no types: the one place that imports it."""
+"""The physics engine, which has no type information: only this module imports it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 mujoco: Any = import_module("mujoco")
 
 TIMESTEP = 0.002
-"""Seconds per physics step; at 4 ms a gripped cube is dropped."""
+"""Seconds per physics step; at 4 ms, a gripped cube is dropped."""
 SUBSTEPS = 8
 """Physics steps per control tick."""
 TICK = TIMESTEP * SUBSTEPS
@@ -16,14 +16,14 @@ TICK = TIMESTEP * SUBSTEPS
 
 
 def version() -> str:
-    """Return the engine's name and version for people to read."""
+    """Return the engine's name and version for display."""
     return f"MuJoCo {mujoco.__version__}"
 
 
 def _ignore(_warning: object) -> None:
-    """Take a warning of the engine, which it would else write to a file in the working folder.
+    """Ignore a warning of the engine, which it would otherwise write to a file in the working folder.
 
-    What they warn of (a state that is not a number) is found by the simulation itself.
+    The simulation itself detects the condition that the engine warns about (NaN in the state).
     """
 
 

@@ -1,4 +1,4 @@
-"""What can go wrong in a scenario's world; each message is for the user to read as it is."""
+"""Errors in a scenario's world; each message is shown to the user unchanged."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class _WithFault(Exception):
-    """An error that code of the user may have caused: ``fault`` describes it then."""
+    """An error that users' code may have caused; then ``fault`` describes it."""
 
     def __init__(self, message: str, fault: Fault | None = None) -> None:
         super().__init__(message)
@@ -17,16 +17,16 @@ class _WithFault(Exception):
 
 
 class SceneError(_WithFault):
-    """The scene cannot be built; the message says what is wrong with it and what to change."""
+    """The scene cannot be built; the message says what is wrong and what to change."""
 
 
 class BehaviourError(Exception):
-    """The agent cannot go on with its behaviour; the message says why, with the time where one is known."""
+    """The agent cannot continue its behaviour; the message gives the reason and, if known, the time."""
 
 
 class UserError(_WithFault):
-    """The user's own code is broken; the message names its file and line. Nothing can be concluded from the run."""
+    """Users' code failed; the message names file and line. The run is inconclusive."""
 
 
 class SimulationError(Exception):
-    """The simulation itself broke down."""
+    """The simulation became numerically unstable."""

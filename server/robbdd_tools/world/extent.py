@@ -1,4 +1,4 @@
-"""How far the objects of a scene reach around their position, which is the middle of their geometry."""
+"""Extents of the objects of a scene around their position, which is the centre of their geometry."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
 RIM = 16
-"""Points on each rim of a cylinder: all between them is less than 2 % of its radius further out."""
+"""Points on each rim of a cylinder: the error between them is below 2 % of the radius."""
 
 
 def outline_of(model: ObjectModel) -> Outline:
-    """Return the corners of boxes, the rims of cylinders, the middles of spheres with their radius."""
+    """Return the corners of boxes, the rims of cylinders, the centres of spheres with their radius."""
     return tuple(ball for shape in model.shapes for ball in _balls(shape))
 
 
 def bounds_of(shapes: tuple[Shape, ...]) -> tuple[FloatArray, FloatArray]:
-    """Return the lowest and the highest corner (m, each of shape (3,)) of the box around shapes, in their frame."""
+    """Return the lowest and the highest corner (m, each of shape (3,)) of the bounding box of shapes, own frame."""
     half = np.array([_half(shape) for shape in shapes])
     middle = np.array([shape.position for shape in shapes])
     return np.min(middle - half, axis=0), np.max(middle + half, axis=0)
 
 
 def centred(model: ObjectModel) -> ObjectModel:
-    """Return an object with its origin in the middle of the box around its shapes."""
+    """Return an object with its origin in the centre of its bounding box."""
     low, high = bounds_of(model.shapes)
     dx, dy, dz = (float(middle) for middle in (low + high) / 2)
 

@@ -1,4 +1,4 @@
-"""Where the bodies of an executable scene are: frames composed along what they are relative to, samples drawn."""
+"""Poses of the bodies of an executable scene: relative frames composed, random samples drawn."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def at(origin: Origin | None) -> str:
-    """Return where something is written, for the beginning of a message."""
+    """Return the place where something is written, as the beginning of a message."""
     return "" if origin is None else f"{Path(origin.file).name}:{origin.line}:{origin.column}: "
 
 
 class Frames:
-    """The frames of one scene instance in one execution; ``seed`` decides what is drawn at random."""
+    """The frames of one scene instance in one execution; ``seed`` is the seed of random draws."""
 
     def __init__(self, instance: SceneInstance, seed: int) -> None:
         self._instance = instance
@@ -39,8 +39,8 @@ class Frames:
     def pose(self, iri: str, element: str, attempt: int = 0) -> Transform | None:
         """Return the pose of a body's own frame in the world, ``None`` for a body without frames.
 
-        What places the body itself is drawn anew for each ``element`` and ``attempt``, what it stands on once.
-        Raises ``SceneError`` when nothing leads from the world to it or a distribution cannot be drawn from.
+        The body's own placement is drawn anew for each ``element`` and ``attempt``, that of its supports once. Raises
+        ``SceneError`` if no chain of frames connects it to the world or a distribution cannot be sampled.
         """
         body = self._bodies.get(iri)
         if body is None:
@@ -58,7 +58,7 @@ class Frames:
         return next((body.iri for body in self._instance.bodies if body.iri.startswith(f"{tree}.")), None)
 
     def _known(self, body: Body, salt: str) -> dict[str, Transform]:
-        """Return the world poses of all frames that can be reached, poses before joints."""
+        """Return the world poses of all reachable frames; poses are followed before joints."""
         origin: Transform = (np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))
         known: dict[str, Transform] = {"": origin}
         if self._instance.anchor:
@@ -70,7 +70,7 @@ class Frames:
         return known
 
     def _extend(self, known: dict[str, Transform], links: list[Link], body: Body, salt: str) -> bool:
-        """Add the first frame that a link reaches from a known one; tell whether there was one."""
+        """Add the first frame that a link connects to a known one; return whether there was one."""
         for link in links:
             if (link.base in known) == (link.frame in known):
                 continue
@@ -96,7 +96,7 @@ class Frames:
         if link.rotation_law:
             rotation = _rotation(self._drawn(link.rotation_law, f"{link.frame} turn {salt}"), link)
         if len(rotation) != 4:
-            raise SceneError(f"{at(link.origin)}what is written as orientation is no rotation")
+            raise SceneError(f"{at(link.origin)}the orientation is not a rotation")
         return position, rotation
 
     def _drawn(self, iri: str, salt: str) -> FloatArray:
@@ -122,7 +122,7 @@ class Frames:
 
 
 def _rotation(drawn: FloatArray, link: Link) -> FloatArray:
-    """Return a quaternion for what was drawn: a rotation, angles about x, y, z (rad, intrinsic)."""
+    """Return the quaternion of a drawn value: a rotation, or angles about x, y, z (rad, intrinsic)."""
     if len(drawn) == 4:
         return drawn / np.linalg.norm(drawn)
     if len(drawn) != 3:
@@ -133,7 +133,7 @@ def _rotation(drawn: FloatArray, link: Link) -> FloatArray:
 
 
 def compose(first: Transform, second: Transform) -> Transform:
-    """Return the pose ``second``, which is relative to ``first``, in the frame of ``first``'s own base."""
+    """Compose two poses: ``second`` is given in the frame ``first``."""
     moved, turned = np.empty(3), np.empty(4)
     mujoco.mju_rotVecQuat(moved, second[0], first[1])
     mujoco.mju_mulQuat(turned, first[1], second[1])
@@ -149,7 +149,7 @@ def inverse(pose: Transform) -> Transform:
 
 
 def _onto(goal: FloatArray, start: FloatArray) -> FloatArray:
-    """Return the shortest rotation that brings the child's axis ``start`` in line with the parent's ``goal``."""
+    """Return the smallest rotation that aligns the child's axis ``start`` with the parent's ``goal``."""
     axis = np.cross(start, goal)
     turn = np.empty(4)
     mujoco.mju_axisAngle2Quat(turn, axis, np.pi / 2 if axis.any() else 0.0)

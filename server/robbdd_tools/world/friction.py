@@ -1,7 +1,7 @@
-"""Friction of a pair of surfaces: the smaller coefficient of the two counts.
+"""Friction of a pair of surfaces: the smaller of the two coefficients counts.
 
-Left to itself the engine takes the larger coefficient, so that rough pads would hold a part that is as slippery as ice,
-and where a file gives one geom a higher ``priority`` it takes that geom's alone.
+By default, the engine takes the larger coefficient, so rough pads would hold a part as slippery as ice; and where a
+file gives one geom a higher ``priority``, it takes only that geom's.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 def rank_by_friction(spec: Any, pads: Iterable[str]) -> None:
-    """Let the smoother geom of each contact decide it, by priorities that replace those of the files.
+    """Make the smoother geom of each contact decisive, by priorities that replace those of the files.
 
-    The one that decides brings all parameters of the contact. So it gets the largest ``condim`` and the largest
-    torsional and rolling friction (m) of the rougher ones, which the engine would have combined: a ball comes to rest
-    on a smooth board, too. Those of ``pads`` (names of geoms) stay their own.
+    The decisive geom supplies all contact parameters. So it gets the largest ``condim`` and the largest torsional and
+    rolling friction (m) of the rougher geoms, as the engine would have combined them: a ball also comes to rest on a
+    smooth board. Those of ``pads`` (names of geoms) are unchanged.
     """
     own = set(pads)
     levels: defaultdict[float, list[Any]] = defaultdict(list)
@@ -42,11 +42,10 @@ def rank_by_friction(spec: Any, pads: Iterable[str]) -> None:
 
 
 def pair_pads(spec: Any, pads: Iterable[str], parts: Iterable[str]) -> None:
-    """Declare the contacts of gripping faces with what they may grip, all names of geoms.
+    """Declare the contacts of gripping faces with the parts that they may grip, all given as names of geoms.
 
-    Sliding friction is the smaller one of the two. Torsional friction (m) is that times the radius of the pad's
-    contact patch, which is the ratio of the pad's coefficients. Stiffness is the pad's: on soft ones a light part
-    slips out.
+    Sliding friction is the smaller of the two. Torsional friction (m) is that times the radius of the pad's contact
+    patch, which is the ratio of the pad's coefficients. Stiffness is the pad's: on soft pads, a light part slips out.
     """
     faces: list[Any] = [spec.geom(name) for name in pads]
     gripped: list[Any] = [spec.geom(name) for name in parts]
@@ -61,7 +60,7 @@ def pair_pads(spec: Any, pads: Iterable[str], parts: Iterable[str]) -> None:
 
 
 def pair_declared(spec: Any, pairs: Iterable[tuple[str, str, DeclaredPair]]) -> None:
-    """Declare contacts between two geoms, by name, as a model of the whole scene does."""
+    """Declare contacts between pairs of geoms, by name, as given in a model of the whole scene."""
     for first, second, declared in pairs:
         pair = spec.add_pair(geomname1=first, geomname2=second)
         for name, value in declared.parameters.items():

@@ -1,4 +1,4 @@
-"""Where a gripper can take hold of an object from above."""
+"""Grasps of an object from above."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, ObjectModel
 
 ROUND = 8
-"""Number of directions that are tried on a round object."""
+"""Number of directions tried on a round object."""
 PLAY = 0.004
-"""How much wider than the object the gripper must open, m."""
+"""Minimum clearance between an object and the open gripper, m."""
 DEPTH = 0.030
-"""How far below an object's top the tool takes hold at most, m: the fingers are no longer."""
+"""Maximum depth of the tool below an object's top, m: the length of the fingers."""
 
 
 @dataclass(frozen=True, slots=True)
 class Grasp:
     """The tool's position (3,) m, the direction (rad) across the tool, and the object's width there (m).
 
-    Fingers close along that direction. ``below`` is how far the object reaches down from the tool, m.
+    Fingers close along that direction. ``below`` is the object's extent below the tool, m.
     """
 
     position: FloatArray
@@ -38,7 +38,7 @@ class Grasp:
 def finger_grasps(
     name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray, stroke: float
 ) -> list[Grasp]:
-    """Return the grasps of an object at a pose that a gripper of this ``stroke`` (m) can make.
+    """Return the grasps of an object at a pose for a gripper with this ``stroke`` (m).
 
     Raises ``BehaviourError`` when the object is wider than the gripper opens.
     """
@@ -55,7 +55,7 @@ def finger_grasps(
 def suction_grasps(
     name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray, diameter: float
 ) -> list[Grasp]:
-    """Return the grasps of an object at a pose that a cup of this ``diameter`` (m) can make on its top.
+    """Return the grasps on the top of an object at a pose for a suction cup of this ``diameter`` (m).
 
     Raises ``BehaviourError`` when the object is smaller than the cup.
     """
@@ -71,9 +71,9 @@ def suction_grasps(
 def _highest(
     model: ObjectModel, position: FloatArray, rotation: FloatArray
 ) -> tuple[FloatArray, list[tuple[float, float]], float]:
-    """Return centre (3,) m, closing directions (rad, width in m) and top (m) of the part to take hold of.
+    """Return centre (3,) m, closing directions (rad, width in m) and top (m) of the part to grip.
 
-    It is the highest of those above or below the object's position: a neck, but not the wall of a bin.
+    It is the highest part above or below the object's position: a neck, but not the wall of a bin.
     """
     best: tuple[FloatArray, list[tuple[float, float]], float] | None = None
     for shape in model.shapes:
@@ -94,7 +94,7 @@ def _bottom(model: ObjectModel, position: FloatArray, rotation: FloatArray) -> f
 
 
 def _directions(shape: Shape, rotation: FloatArray) -> tuple[list[tuple[float, float]], float]:
-    """Closing directions (rad, width in m) of a shape, and half its height as it lies (m)."""
+    """Return closing directions (rad, width in m) of a shape, and half its height in this orientation (m)."""
     if shape.kind is ShapeKind.SPHERE:
         radius = shape.size[0]
         return _all_round(2 * radius), radius

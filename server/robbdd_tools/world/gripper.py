@@ -1,4 +1,4 @@
-"""The kinds of grippers behind one interface: how each can grasp a thing, take hold of it and let go."""
+"""Kinds of grippers behind one interface: possible grasps, gripping and releasing."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ if TYPE_CHECKING:
 CLOSING = 0.05
 """Speed of one finger, m/s."""
 PATIENCE = 60
-"""Ticks that the fingers may take beyond their way before the object counts as missed."""
+"""Ticks beyond the closing time after which the object counts as missed."""
 STANDOFF, PRESS = 0.015, 0.010
-"""Where a cup starts to descend slowly above the object, and how far below its top it gives up, m."""
+"""Height above the object where a cup's slow descent starts, and depth below its top where it gives up, m."""
 DESCENT = 0.05
-"""Speed of a cup that is about to touch, m/s."""
+"""Speed of a cup just before contact, m/s."""
 
 Step = Iterator[None]
-"""One control tick per item: the controls are set, the world may be stepped."""
+"""Yields once per control tick: the controls are set, and the world may be stepped."""
 
 
 class Hand(Protocol):
-    """What a gripper may ask of the controller that moves it. ``control`` is the value of its actuator."""
+    """A gripper's interface to the controller that moves it. ``control`` is the value of its actuator."""
 
     control: float
 
     def move(self, goal: ToolPose, speed: float | None = None, until: Callable[[], bool] | None = None) -> Step:
-        """Move the tool, no faster than ``speed`` (m/s), until something is the case; raises ``BehaviourError``."""
+        """Move the tool, at most at ``speed`` (m/s), until a condition holds; raises ``BehaviourError``."""
         ...
 
     def wait(self, ticks: int) -> Step:
@@ -61,15 +61,15 @@ class Gripper(ABC):
 
     @abstractmethod
     def grasps(self, name: str, model: ObjectModel, position: FloatArray, rotation: FloatArray) -> list[Grasp]:
-        """Return the grasps of an object at a pose; raises ``BehaviourError`` when it does not fit."""
+        """Return the grasps of an object at a pose; raises ``BehaviourError`` if it does not fit."""
 
     @abstractmethod
     def take(self, hand: Hand, at: ToolPose, name: str) -> Step:
-        """Move down to a grasp and take hold; raises ``BehaviourError`` when that fails."""
+        """Move down to a grasp and grip; raises ``BehaviourError`` on failure."""
 
     @abstractmethod
     def release(self, hand: Hand) -> Step:
-        """Let go of everything."""
+        """Release everything."""
 
 
 class Fingers(Gripper):
@@ -80,7 +80,7 @@ class Fingers(Gripper):
         return finger_grasps(name, model, position, rotation, self._robot.stroke)
 
     def take(self, hand: Hand, at: ToolPose, name: str) -> Step:
-        """Reach around the object and close until both fingers press on it."""
+        """Move around the object and close until both fingers press on it."""
         yield from hand.move(at, self._robot.approach_speed)
         held = 0
         closed = self._robot.gripper_closed
@@ -92,7 +92,7 @@ class Fingers(Gripper):
                 hand.control = closed
                 yield from hand.wait(self._firm)
                 return
-        raise BehaviourError(f"gripper closed beside {name} at {hand.time:.2f} s")
+        raise BehaviourError(f"gripper missed {name} at {hand.time:.2f} s")
 
     def release(self, hand: Hand) -> Step:
         """Open the fingers at their speed."""
@@ -125,5 +125,5 @@ class Cup(Gripper):
 
 
 def gripper_of(robot: RobotModel) -> Gripper:
-    """Return how a robot's gripper works."""
+    """Return the kind of a robot's gripper."""
     return {GripperKind.PARALLEL: Fingers, GripperKind.SUCTION: Cup}[robot.gripper](robot)

@@ -1,4 +1,4 @@
-"""What each agent's gripper holds, found from contacts alone."""
+"""Objects held by each agent's gripper, detected from contacts alone."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
     from robbdd_tools.world.robot import Robot
 
 ASKEW = cos(radians(20.0))
-"""Cosine of the largest angle between a cup's axis and what it holds at which its lip still seals."""
+"""Minimum cosine between a cup's axis and the surface normal at which its lip still seals."""
 
 Contacts = Mapping[int, int]
 """Column of a loose object (-1 for anything else) → number of a contact with it."""
 
 
 class Grips:
-    """Finds grips in the contacts of a simulation.
+    """Detects grips in the contacts of a simulation.
 
-    Fingers hold what all their pads touch; a cup what it touches with its face while the vacuum is on.
-    ``held`` maps an agent to an array with 1 in the columns of what it holds; ``leaking`` are the agents whose cup
-    touches something but does not seal on it.
+    Fingers hold what all their pads touch; a cup holds what its face touches while the vacuum is on. ``held`` maps an
+    agent to an array with 1 in the columns of held objects; ``leaking`` are the agents whose cup touches something
+    without sealing on it.
     """
 
     def __init__(self, model: Any, robots: Mapping[str, Robot], columns: Mapping[str, int], loose: list[str]) -> None:
@@ -38,7 +38,7 @@ class Grips:
         self.leaking: set[str] = set()
 
     def find(self, data: Any) -> None:
-        """Bring ``held`` and ``leaking`` up to date (contacts are few: plain sets are the fastest)."""
+        """Update ``held`` and ``leaking`` (for few contacts, plain sets are the fastest)."""
         touching = self._touching(data) if data.ncon else {}
         if not touching and not self._touched:
             return
@@ -51,7 +51,7 @@ class Grips:
                 grip[column] = 1.0
 
     def _touching(self, data: Any) -> dict[int, dict[int, int]]:
-        """Return what each pad touches; a pad that touches nothing is absent."""
+        """Return the contacts of each pad; a pad without contact is absent."""
         touching: dict[int, dict[int, int]] = {}
         pads, owner = self._pads, self._owner
         for contact, (first, second) in enumerate(data.contact.geom.tolist()):
@@ -62,7 +62,7 @@ class Grips:
         return touching
 
     def _held(self, robot: Robot, data: Any, touching: Mapping[int, Contacts]) -> set[int]:
-        """Return the columns of what a robot holds."""
+        """Return the columns of the objects that a robot holds."""
         if any(pad not in touching for pad in robot.pads):
             return set()
         first, *others = (touching[pad] for pad in robot.pads)
@@ -74,7 +74,7 @@ class Grips:
         return columns
 
     def _sucked(self, robot: Robot, data: Any, contacts: Contacts) -> set[int]:
-        """Return what a cup holds among what it touches."""
+        """Return the objects that a cup holds among those that it touches."""
         axis = data.site_xmat[robot.tool].reshape(3, 3)[:, 2]
         frames = data.contact.frame
         sealed = {column for column, contact in contacts.items() if abs(float(frames[contact, :3] @ axis)) >= ASKEW}

@@ -1,4 +1,4 @@
-"""What log viewers show of an execution: frames that move, the shapes in them, joints, events."""
+"""Data of an execution for log viewers: moving frames, their shapes, joints, events."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 EVERY = 4
-"""Samples between two pictures: about 16 per second are enough to look at; the exact trace has all of them."""
+"""Samples between two pictures: about 16 per second are enough for display; the exact trace has all samples."""
 WORLD = "world"
 
 
@@ -47,7 +47,7 @@ def views(simulation: Simulation, trace: Trace) -> Iterator[View]:
 
 
 def verdict_views(spec: ScenarioSpec, judged: Sequence[ClauseJudged], end: float) -> Iterator[View]:
-    """Yield the verdicts, each at its instant, or at the trace's end (s) where it has none."""
+    """Yield the verdicts, each at its instant, or at the trace's end (s) if it has none."""
     clauses = {clause.line: clause for clause in spec.clauses}
     for one in judged:
         stated = clauses[one.line]
@@ -90,7 +90,7 @@ def _entity(name: str, shapes: dict[str, list[Any]]) -> dict[str, Any]:
 
 
 def _shapes(model: Any, body: int) -> dict[str, list[Any]]:
-    """Return the boxes, balls and cylinders of a body, by the names that viewers have for them; meshes are left out."""
+    """Return the boxes, spheres and cylinders of a body, by the viewers' names; meshes are left out."""
     found: dict[str, list[Any]] = {}
     for geom in shown_geoms(model, body):
         half = model.geom_size[geom].tolist()

@@ -1,4 +1,4 @@
-"""Model files that an executable scene names: found, read, and turned into what a simulated world is made of."""
+"""Find and read the model files named by an executable scene, and convert them for a simulated world."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _KINDS = {
 
 
 def usable(models: Sequence[ModelSource], element: str) -> ModelSource | None:
-    """Return the model of an element that can be simulated, ``None`` without any; raises ``SceneError`` for USD."""
+    """Return a model of an element that can be simulated, ``None`` without any; raises ``SceneError`` for USD."""
     found = next((model for model in models if model.format != "usd"), None)
     if found is None and models:
         message = f"'{element}' has a USD model only, which this simulator cannot load: name an MJCF or URDF model too"
@@ -58,9 +58,9 @@ def load(source: ModelSource) -> Any:
     try:
         spec = _read(str(path)).copy()
     except (ValueError, OSError) as error:
-        words = " ".join(str(error).split())  # the engine's come in several lines
+        words = " ".join(str(error).split())  # the engine's messages have several lines
         raise SceneError(f"{at(source.origin)}the model file {path} cannot be read: {words}") from error
-    # Links that are fixed to others keep their names: they may be the tool, or what a body is mapped to.
+    # Links fixed to others keep their names: they may be the tool, or mapped to a body.
     spec.compiler.fusestatic = False
     return spec
 
@@ -101,14 +101,14 @@ def _from_code(source: ModelSource) -> Any:
                 return mujoco.MjSpec.from_string(made)
             return _read_made(Path(made)) if isinstance(made, str | Path) else made.copy()
         except (ValueError, AttributeError) as error:
-            raise refused(source.name, f"{source.name} made no model: {error}", definition_of(make)) from error
+            raise refused(source.name, f"{source.name} created no model: {error}", definition_of(make)) from error
     except UserCodeError as error:
         raise SceneError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
 
 
 @dataclass(frozen=True, slots=True)
 class FromFile:
-    """An object as its file has it; ``position`` (m) and ``rotation`` (quaternion) are its pose in the file.
+    """An object from its file; ``position`` (m) and ``rotation`` (quaternion) are its pose in the file.
 
     ``geoms`` are the names in the file of the model's shapes, in their order.
     """
@@ -120,11 +120,12 @@ class FromFile:
 
 
 def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -> FromFile:
-    """Return the object that a body of a file is, the first one without a name; raises ``SceneError``.
+    """Return an object from a body of a file, by default the first; raises ``SceneError``.
 
-    It consists of the collision shapes of the body and of what is fixed to it: boxes, spheres and cylinders in line
-    with the body as they are, any other by the box around it. It can move if the file gives it a free joint or, in
-    URDF, a mass. If it ``carries`` a workspace or is fixed, that is the box site 'workspace', else the space above it.
+    It consists of the collision shapes of the body and of everything fixed to it. Boxes, spheres and cylinders aligned
+    with the body are kept; any other shape becomes its bounding box. It can move if the file gives it a free joint or,
+    in URDF, a mass. If it ``carries`` a workspace or is fixed, the workspace is the box site 'workspace', else the
+    space above it.
     """
     model = compiled(spec, source)
     body = _body(model, source, body_name)
@@ -137,7 +138,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
         if model.geom_bodyid[g] in own and model.geom_contype[g] | model.geom_conaffinity[g]
     ]
     if not geoms:
-        raise SceneError(f"{at(source.origin)}the body '{model.body(body).name}' has no shape that can be touched")
+        raise SceneError(f"{at(source.origin)}the body '{model.body(body).name}' has no collision shape")
     shapes = tuple(_shape(model, data, geom, body) for geom in geoms)
     low, high = bounds_of(shapes)
     joint = int(model.body_jntadr[body])
@@ -163,7 +164,7 @@ def object_from(spec: Any, source: ModelSource, body_name: str, carries: bool) -
 
 
 def compiled(spec: Any, source: ModelSource) -> Any:
-    """Return the engine's model of a description, which is left as it is; raises ``SceneError``."""
+    """Return the compiled model of a description, which is not modified; raises ``SceneError``."""
     try:
         return spec.copy().compile()
     except ValueError as error:

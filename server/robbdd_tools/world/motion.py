@@ -1,6 +1,6 @@
-"""Paths of the tool and the joint motions that follow them within the robot's limits.
+"""Tool paths, and joint motions that follow them within the robot's limits.
 
-A tool pose is given in cylinder coordinates about the robot's base: that way no path leads through the base, and a
+A tool pose is given in cylinder coordinates about the robot's base: no path then leads through the base, and a
 redundant arm turns with its first joint.
 """
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 ACCELERATION = 2.0
 """Largest acceleration of the tool along its path, m/s²."""
 TURNING = 2.0
-"""Largest speed of the tool about the vertical, rad/s."""
+"""Largest rotation speed of the tool about the vertical, rad/s."""
 MARGIN = 0.7
 """Share of a joint's speed limit that a motion may use; the servo needs the rest."""
 SPACING = 0.03
@@ -30,7 +30,7 @@ SPACING = 0.03
 PEAK_SPEED, PEAK_ACCELERATION = 1.875, 5.774
 """Peaks of the minimum-jerk profile over unit distance and time."""
 BEND = 0.3
-"""Change of a joint (rad) from one point of a path to the next that is also searched for from where the arm is."""
+"""Joint change (rad) between path points from which on a second search starts at the arm's current position."""
 SHORTEST = 0.1
 """Duration of the shortest motion, s."""
 
@@ -39,7 +39,7 @@ SHORTEST = 0.1
 class ToolPose:
     """The tool pointing down: distance from the base's axis (m), direction (rad), height above the base (m).
 
-    ``turn`` (rad) is the rotation of the tool about the vertical against that direction.
+    ``turn`` (rad) is the tool's rotation about the vertical relative to that direction.
     """
 
     radius: float
@@ -59,7 +59,7 @@ class Motion:
 def tool_pose(base: Pose, position: FloatArray, closing: float) -> ToolPose:
     """Return the tool pose at a world position whose fingers close along the direction ``closing`` (rad).
 
-    Fingers are alike, so that the turn is chosen within a quarter turn of straight.
+    The fingers are interchangeable, so the turn is chosen within a quarter turn of straight.
     """
     x, y = float(position[0]) - base.position[0], float(position[1]) - base.position[1]
     direction = atan2(y, x) - base.yaw
@@ -70,7 +70,7 @@ def tool_pose(base: Pose, position: FloatArray, closing: float) -> ToolPose:
 
 
 def present_pose(arm: Arm, joints: FloatArray) -> ToolPose:
-    """Return the tool pose of an arm whose tool points down."""
+    """Return the current tool pose of an arm whose tool points down."""
     position, rotation = arm.forward(joints)
     direction = atan2(position[1], position[0])
     turn = atan2(rotation[1, 0], rotation[0, 0]) - direction
@@ -90,8 +90,8 @@ def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed
 
     ``limits`` (n,) are the joints' speed limits, rad/s, ``speed`` that of the tool, m/s.
 
-    The tool moves along a straight line in cylinder coordinates with a minimum-jerk profile, as fast as the tool's
-    and the joints' limits allow. Raises ``Unreachable``.
+    The tool moves along a straight line in cylinder coordinates with a minimum-jerk profile, as fast as the tool's and
+    the joints' limits allow. Raises ``Unreachable``.
     """
     start = present_pose(arm, joints)
     length = _length(start, goal)
@@ -101,7 +101,7 @@ def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed
     points = [joints]
     last = joints
     for share in shares[1:]:
-        # A path goes on as it went: the search starts one step ahead.
+        # Extrapolate the path: the search starts one step ahead.
         seed = 2.0 * points[-1] - last
         last = points[-1]
         points.append(_next(arm, points[-1], seed, _between(start, goal, float(share))))
@@ -118,10 +118,10 @@ def plan(arm: Arm, joints: FloatArray, goal: ToolPose, limits: FloatArray, speed
 
 
 def _next(arm: Arm, present: FloatArray, ahead: FloatArray, pose: ToolPose) -> FloatArray:
-    """Return joint positions at a pose near the present ones; raises ``Unreachable``.
+    """Return joint positions at a pose near the current ones; raises ``Unreachable``.
 
-    Where a joint comes to its limit the others turn off, and what lies straight ahead leads to another posture: the
-    nearer one counts.
+    At a joint limit the other joints must turn away, and the extrapolated start leads to another posture: the nearer
+    solution is taken.
     """
     found = arm.solve(ahead, *frame_of(pose))
     if np.abs(found - present).max() <= BEND:

@@ -1,6 +1,6 @@
-"""Objects and agents that are in one another where a scene places them.
+"""Detect objects and agents that overlap in a scene's initial state.
 
-Left to itself the engine pushes them apart while the world settles, so that they start somewhere else, or fly off.
+The engine would push them apart while the world settles, so that they start elsewhere or fly off.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 TOLERATED = 1e-3
-"""Depth (m) that a contact may have where things rest on one another (docs/simulation.md)."""
+"""Depth (m) that a resting contact may have (docs/simulation.md)."""
 MOST = 3
-"""Overlaps that one message names."""
+"""Maximum overlaps named in one message."""
 
 
 def refuse_overlaps(simulation: Simulation) -> None:
-    """Raise ``SceneError`` with names and depths when things overlap in a world that has not been stepped yet."""
+    """Raise ``SceneError`` with names and depths if elements overlap in a world that has not been stepped yet."""
     world, data = simulation.world, simulation.data
     owners = geom_owners(world.model, world.cast.agents)
     elements = {*world.cast.objects, *world.cast.agents}
@@ -37,4 +37,4 @@ def refuse_overlaps(simulation: Simulation) -> None:
         more = [f"{len(named) - MOST} more pairs overlap"] if len(named) > MOST else []
         origins = (world.cast.origin(name) for name in deepest[0])
         place = at(next((origin for origin in origins if origin is not None), None))
-        raise SceneError(f"{place}{'; '.join(named[:MOST] + more)}: nothing may be in something else at the start")
+        raise SceneError(f"{place}{'; '.join(named[:MOST] + more)}: nothing may overlap at the start")

@@ -1,4 +1,4 @@
-"""Which element of a scene each geom of a compiled world belongs to."""
+"""The owner, an element of the scene, of each geom of a compiled world."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def geom_owners(model: Any, agents: Iterable[str]) -> list[str]:
-    """Return for each geom the agent or object that it is a part of, by name.
+    """Return the name of each geom's agent or object.
 
     A geom of the scenery is owned by its body, one of the room has its own name.
     """
@@ -20,6 +20,6 @@ def _owner_of(model: Any, geom: int, agents: tuple[str, ...]) -> str:
     for agent in agents:
         if name.startswith(f"{agent}/") or named.startswith(f"{agent}/"):
             return agent
-    # A belt belongs to the object that it is a part of.
+    # A belt belongs to its object.
     body = name.partition("/belt")[0]
     return named or f"geom {geom}" if body == "world" else body

@@ -1,6 +1,6 @@
-"""The controller that picks an object from above and places it at a workspace.
+"""Controller that picks an object from above and places it at a workspace.
 
-It knows the object's pose when it begins and follows its plan from there, feeling only what its gripper holds.
+It reads the object's pose at the start and then follows its plan; it only senses what its gripper holds.
 """
 
 from __future__ import annotations
@@ -28,20 +28,22 @@ if TYPE_CHECKING:
 SLIPPED = 3
 """Ticks in a row without grip that count as a loss."""
 STILL, STILL_TURN, STILL_FOR = 2e-3, 0.02, 0.3
-"""A thing on a belt is at rest when it has stayed within this distance (m) and angle (rad) for this time (s): the
-slowest belt moves it by 3 mm; one that slips below it makes it tremble by some tenths of a millimetre and milliradians.
+"""An object on a belt is at rest when it has stayed within this distance (m) and angle (rad) for this time (s).
+
+The slowest belt moves it by 3 mm; a belt that slips below it makes it tremble by some tenths of a millimetre and
+milliradians.
 """
 PATIENCE = 30.0
-"""How long the arm waits for a thing to come to rest, s."""
+"""Maximum wait for an object to come to rest, s."""
 RISE = 1e-3
-"""Difference in height (m) from which on the tool first rises and then travels: on a slant it would hit the place."""
+"""Height difference (m) from which on the tool rises before it travels: on a slant it would hit the place."""
 
 
 class PickPlace:
-    """Drives one robot of a simulation. Every generator sets the controls for one tick before each item.
+    """Controls one robot of a simulation. Every generator sets the controls for one tick before each ``yield``.
 
-    ``emit`` is called with the name of each event when it occurs, ``note_choice`` with the workspace that is chosen
-    among several.
+    ``emit`` is called with the name of each event when it occurs, ``note_choice`` with the workspace chosen among
+    several.
     """
 
     def __init__(
@@ -66,8 +68,8 @@ class PickPlace:
     def pick(self, name: str) -> Step:
         """Grasp an object where it lies and lift it to the travelling height; raises ``BehaviourError``.
 
-        Where a belt runs, it first waits until the object has come to rest, and approaches again while the object
-        has moved during the approach.
+        If a belt runs, first wait until the object is at rest, and repeat the approach while the object has moved
+        during it.
         """
         yield from self._until_at_rest(name)
         self._emit("pick-start")
@@ -78,9 +80,9 @@ class PickPlace:
         self._emit("pick-end")
 
     def place(self, name: str, workspaces: Sequence[str]) -> Step:
-        """Carry the object that is held to a workspace and release it; raises ``BehaviourError``.
+        """Carry the held object to a workspace and release it; raises ``BehaviourError``.
 
-        Of several workspaces, the first one with room for the object is chosen, else the first one that can be reached.
+        Of several workspaces, choose the first with room for the object, else the first that can be reached.
         """
         if self._held != name or self._grasp is None:
             raise BehaviourError(f"{self._robot.name} does not hold {name}")
@@ -103,7 +105,7 @@ class PickPlace:
         yield from self.place(name, workspaces)
 
     def withdraw(self) -> Step:
-        """Open the gripper and leave upwards, after something went wrong."""
+        """Open the gripper and withdraw upwards after a failure."""
         self._held = None
         yield from self._gripper.release(self)
         try:
@@ -112,10 +114,10 @@ class PickPlace:
             return
 
     def _approach(self, name: str) -> Generator[None, None, Approach]:
-        """Open the gripper and move above the grasp to take, which is returned; raises ``BehaviourError``.
+        """Open the gripper and move above the grasp; return the grasp; raises ``BehaviourError``.
 
-        A part that balances with a corner against a belt's stop seems to be at rest for a while and then turns, ever
-        faster: a grasp that was chosen before that would come down on top of it.
+        A part that balances with a corner against a belt's stop seems at rest for a while and then turns, ever faster:
+        a grasp chosen before that would hit its top.
         """
         given_up = self.time + PATIENCE
         while True:
@@ -154,7 +156,7 @@ class PickPlace:
         if len(workspaces) == 1:
             return self._choose_target(name, workspaces[0], grasp)
         simulation, robot = self._simulation, self._robot
-        # Sorting is stable: among those with room the order stays as it is.
+        # Sorting is stable: grasps with equal room keep their order.
         for workspace in sorted(workspaces, key=lambda one: not has_room(simulation, robot, name, one)):
             try:
                 found = self._choose_target(name, workspace, grasp)
@@ -165,7 +167,7 @@ class PickPlace:
         raise BehaviourError(f"{robot.name} cannot reach a free place at any of {', '.join(workspaces)}")
 
     def _choose_target(self, name: str, workspace: str, grasp: Grasp) -> ToolPose:
-        """Return the lowest tool pose over the first target that the arm reaches without hitting anything."""
+        """Return the lowest tool pose over the first target that the arm reaches without a collision."""
         simulation, robot = self._simulation, self._robot
         clearance = Clearance(simulation, robot, name, simulation.data)
         for target in targets(simulation, robot, name, workspace):
@@ -204,9 +206,9 @@ class PickPlace:
         return self._simulation.holds(self._robot.name, name)
 
     def move(self, goal: ToolPose, speed: float | None = None, until: Callable[[], bool] | None = None) -> Step:
-        """Move the tool, no faster than ``speed`` (m/s), until something is the case.
+        """Move the tool, at most at ``speed`` (m/s), until a condition holds.
 
-        Raises ``BehaviourError`` when the way leads beyond the joint limits or what is held gets lost.
+        Raises ``BehaviourError`` if the path exceeds the joint limits or the held object is lost.
         """
         limit = self._robot.model.tool_speed
         try:
@@ -236,6 +238,6 @@ class PickPlace:
 
 
 def _has_moved(last: tuple[FloatArray, FloatArray], here: tuple[FloatArray, FloatArray]) -> bool:
-    """Whether a pose (position m, rotation matrix) is further from another than what rests may tremble."""
+    """Return whether a pose (position m, rotation matrix) differs from another by more than the tremor of a rest."""
     turned = np.arccos(np.clip((np.trace(last[1].T @ here[1]) - 1.0) / 2.0, -1.0, 1.0))
     return bool(np.linalg.norm(here[0] - last[0]) > STILL or turned > STILL_TURN)

@@ -1,4 +1,4 @@
-"""Takes pictures of a simulated world, with its workspaces drawn in and labelled."""
+"""Render a simulated world with its workspaces drawn and labelled."""
 
 from __future__ import annotations
 
@@ -20,30 +20,30 @@ WIDTH, HEIGHT = 1280, 800
 COLORS = ((0.10, 0.55, 0.90), (0.95, 0.55, 0.10), (0.25, 0.70, 0.30), (0.80, 0.25, 0.55), (0.55, 0.45, 0.85))
 OPACITY = 0.20
 THIN = 0.06
-"""Opacity of a workspace that other workspaces lie in, such as a table's."""
+"""Opacity of a workspace that contains other workspaces, such as a table's."""
 AIM = (-0.05, 0.0, 0.12)
-"""What the camera looks at, m from the middle of the tables' tops."""
+"""Point that the camera looks at, m from the centre of the tables' tops."""
 LABEL = 0.012
-"""Radius (m) of the dot that a label is put beside."""
+"""Radius (m) of a label's dot."""
 OVERVIEW = (2.15, 128.0, -36.0)
-"""Distance (m), azimuth and elevation (degrees) from which a whole scene is seen."""
+"""Distance (m), azimuth and elevation (degrees) of the camera for a whole scene."""
 CLOSE, DOWN = 1.1, -30.0
-"""Distance (m) and elevation (degrees) from which one object is seen."""
+"""Distance (m) and elevation (degrees) of the camera for one object."""
 AZIMUTHS = (128.0, 160.0, 96.0, -160.0, 64.0, -128.0, 32.0, -96.0, 0.0, -64.0, -32.0)
-"""Directions (degrees) from which one object may be seen, best first."""
+"""Camera directions (degrees) for one object, best first."""
 LONGEST = 90
-"""Bytes of a label that the engine can hold."""
+"""Maximum bytes of a label in the engine."""
 
 
 class NoPicture(Exception):
-    """Nothing here can render; the message says what was tried."""
+    """No graphics back end works; the message lists those tried."""
 
 
 class Camera:
-    """Renders a simulation: the whole scene from beside the table, or one object from near by.
+    """Renders a simulation: the whole scene from the side of the table, or one object in close-up.
 
-    ``size`` is width and height in pixels; a ``plain`` picture has no shadows, which takes a tenth of the time.
-    Raises ``NoPicture`` where nothing can render.
+    ``size`` is width and height in pixels; a ``plain`` picture has no shadows, which takes a tenth of the time. Raises
+    ``NoPicture`` if no back end can render.
     """
 
     def __init__(self, simulation: Simulation, size: tuple[int, int] = (WIDTH, HEIGHT), *, plain: bool = False) -> None:
@@ -56,12 +56,12 @@ class Camera:
             if plain:
                 self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
                 self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
-        except Exception as error:  # the back ends fail in ways of their own, import errors included
+        except Exception as error:  # back ends raise exceptions of their own, import errors included
             raise NoPicture(f"{type(error).__name__}: {error}") from error
         self._view: Any = mujoco.MjvCamera()
 
     def take(self, data: Any, focus: str | None = None) -> NDArray[np.uint8]:
-        """Return the picture of a state as pixels (height, width, 3), of the whole scene or close to one object."""
+        """Render a state as pixels (height, width, 3): the whole scene, or a close-up of one object."""
         if focus is not None and focus in self._simulation.world.cast.objects:
             self._look_at(data, focus)
         else:
@@ -74,14 +74,14 @@ class Camera:
         return pixels
 
     def take_state(self, state: Sequence[float] | FloatArray, focus: str | None = None) -> NDArray[np.uint8]:
-        """Return the picture of joint positions that the engine once had, of the whole scene or close to one object."""
+        """Render stored joint positions of the engine: the whole scene, or a close-up of one object."""
         data = self._simulation.scratch
         data.qpos[:] = state
         mujoco.mj_forward(self._simulation.model, data)
         return self.take(data, focus)
 
     def close(self) -> None:
-        """Give the graphics context back."""
+        """Free the graphics context."""
         self._renderer.close()
 
     def _look_around(self, data: Any) -> None:
@@ -90,7 +90,7 @@ class Camera:
         self._view.distance, self._view.azimuth, self._view.elevation = OVERVIEW
 
     def _look_at(self, data: Any, name: str) -> None:
-        """Choose the first direction in which nothing stands before the object."""
+        """Choose the first direction with a free view of the object."""
         target = data.body(name).xpos.copy()
         self._view.lookat[:] = target
         self._view.distance, self._view.elevation = CLOSE, DOWN
@@ -127,7 +127,7 @@ class Camera:
         free = self._simulation.world.cast.objects[carrier].free
         opacity = OPACITY if free else THIN
         _add(scene, mujoco.mjtGeom.mjGEOM_BOX, half, center, turn, (*color, opacity), "")
-        # The middle of a table is where things lie: its label goes to a corner; boards lie side by side.
+        # Objects lie in the middle of a table, so its label goes to a corner; boards lie side by side.
         side = 0.0 if region.walled else -0.8 if odd else 0.8
         corner = np.array([0.0, side, 1.0]) if free else np.array([-1.0, 1.0, 1.0])
         above = center + turn @ (corner * half + np.array([0.0, 0.0, 2 * LABEL]))
@@ -143,7 +143,7 @@ def _add(
     color: tuple[float, float, float, float],
     label: str,
 ) -> None:
-    """Add a shape that is only drawn; when the scene is full, it stays as it is."""
+    """Add a shape for drawing only; does nothing when the scene is full."""
     if scene.ngeom >= scene.maxgeom:
         return
     geom = scene.geoms[scene.ngeom]

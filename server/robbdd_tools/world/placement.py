@@ -1,4 +1,4 @@
-"""Where the things of a scene stand at the start: tables and bins by the catalog, what can be grasped at random."""
+"""Initial places: tables and bins by the catalog, graspable objects at random."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ if TYPE_CHECKING:
     from robbdd_tools.world.scene import Cast
 
 TABLE_TOP = 0.10
-"""Height of table tops above the world's origin, m; the paper leaves it open, the world frame is its own."""
+"""Height of table tops above the world's origin, m. The paper does not define it, as the world frame is its own."""
 BEARING = 2.6
-"""Largest angle to either side of straight ahead, rad, that an arm is asked to turn to."""
+"""Largest angle to either side of straight ahead that an arm has to turn to, rad."""
 FINGER_GAP = 0.04
-"""Room for a finger around what lies on a table, m."""
+"""Room for a finger around an object on a table, m."""
 HAND_GAP = 0.08
-"""Room for a hand beside a bin's wall, m."""
+"""Room for a hand next to a bin's wall, m."""
 TOUCHING = 0.002
-"""Room around things where there is no space for more, m."""
+"""Room around objects where there is no space for more, m."""
 BIN_SKEW = 0.2
-"""How far (rad) things in a bin are turned from its edges: a hand fits into a bin only along its length."""
+"""Largest rotation (rad) of objects in a bin relative to its edges: a hand fits into a bin only along its length."""
 BIN_ROOM = 0.03
-"""Half edge (m) of the square in a bin's middle that a hand can work in."""
+"""Half edge (m) of the square in a bin's middle where a hand can work."""
 TRIES = 400
 
 
 @dataclass(frozen=True, slots=True)
 class Arrangement:
-    """The pose of every object's middle, and how often a random place overlapped with something and was drawn again."""
+    """The pose of every object's centre, and the number of resampled places, rejected for overlaps."""
 
     poses: dict[str, Pose]
     resampled: int
@@ -48,9 +48,9 @@ class Arrangement:
 
 @dataclass(frozen=True, slots=True)
 class _Field:
-    """A rectangle to draw positions from: centre and half edges (m, world frame), height of what lies there (m).
+    """A rectangle to draw positions from: centre and half edges (m, world frame), height of objects there (m).
 
-    ``skew`` bounds the rotation (rad), ``gap`` and ``wall_gap`` keep other objects and bins away (m); in a bin
+    ``skew`` bounds the rotation (rad), ``gap`` and ``wall_gap`` are distances to other objects and bins (m); in a bin
     there is no ``wall_gap``.
     """
 
@@ -70,20 +70,20 @@ class _Disc:
 
 
 def footprint(model: ObjectModel) -> float:
-    """Return the radius (m) of the upright cylinder about the origin that holds the object."""
+    """Return the radius (m) of the upright cylinder about the origin that encloses the object."""
     return max(_reach(model, index) for index in range(len(model.shapes)))
 
 
 def surface(model: ObjectModel) -> float:
-    """Return the height (m) of the surface that an object carries things on above its origin, 0 without any."""
+    """Return the height (m) above its origin of the surface on which an object carries others, 0 without one."""
     return 0.0 if model.region is None else model.region.center[2] - model.region.half[2]
 
 
 def mounts(cast: Cast) -> dict[str, Pose]:
-    """Return where each agent's base stands; raises ``SceneError`` when there is no room for one.
+    """Return the pose of each agent's base; raises ``SceneError`` if there is no room for one.
 
-    One that an executable scene does not place stands at the table: the first at its model's mount, the others across
-    the table and at its ends.
+    Agents that an executable scene does not place stand at the table: the first at its model's mount, the others at the
+    opposite side and at the ends.
     """
     placed = {name: pose for name in cast.agents if (pose := cast.base(name)) is not None}
     table = next(iter(cast.tables))
@@ -99,9 +99,9 @@ def mounts(cast: Cast) -> dict[str, Pose]:
 
 
 def _beside(table: ObjectModel, robot: RobotModel, side: int) -> Pose:
-    """Return a base at a side of a table: 0 the front, 1 across, 2 and 3 the ends, as far from the edge as in front."""
+    """Return a base at a side of a table: 0 the front, 1 opposite, 2 and 3 the ends, at the front's distance."""
     x, y, z = robot.mount
-    # A user's own table has no standard place: its own pose decides where it is, and the front is all that is known.
+    # A user's own table has no standard place: its pose decides, and only the front is known.
     middle = table.places[0][0] if table.places else x
     half = (0.0, 0.0) if table.region is None else table.region.half[:2]
     end = half[1] + (middle - half[0] - x)
@@ -114,12 +114,12 @@ def _beside(table: ObjectModel, robot: RobotModel, side: int) -> Pose:
 
 
 def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) -> Arrangement:
-    """Lay the objects of a scene out for an agent that acts from ``base``.
+    """Lay the objects of a scene out for an agent at ``base``.
 
-    Raises ``SceneError`` when the scene asks for a place that does not exist or for more than there is room for.
+    Raises ``SceneError`` for a place that does not exist or if there is not enough room.
     """
     poses: dict[str, Pose] = {}
-    # What can be grasped may be placed by a configuration as well, which takes precedence.
+    # A configuration may also place graspable objects; it takes precedence.
     fixed = {name: cast.pose(name) for name in cast.objects if name not in cast.ranges}
     placed = {name: pose for name, pose in fixed.items() if pose is not None}
     poses |= {name: pose for name, pose in placed.items() if not cast.objects[name].graspable}
@@ -148,7 +148,7 @@ def arrange(scene: SceneSpec, cast: Cast, base: Pose, rng: np.random.Generator) 
 
 
 def _apart_from(cast: Cast, name: str, first: Pose, taken: list[_Disc]) -> tuple[Pose, int]:
-    """Return where the scene has an object, drawn anew while it lies on another one, and how often it was."""
+    """Return an object's pose from the scene, resampled until it overlaps no other, and the number of resamples."""
     radius, pose = footprint(cast.objects[name]), first
     for attempt in range(1, TRIES):
         x, y, _ = pose.position
@@ -164,7 +164,7 @@ def _apart_from(cast: Cast, name: str, first: Pose, taken: list[_Disc]) -> tuple
 def field_before(
     base: Pose, table: Pose, model: ObjectModel, area: Numbers = NORMAL
 ) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return centre and half edges (m) of the part of a table that lies before a robot's base, ``None`` without.
+    """Return centre and half edges (m) of the part of a table in front of a robot's base, ``None`` if there is none.
 
     ``area`` (m) is ahead of the base from, to; to its left from, to.
     """
@@ -185,7 +185,7 @@ def field_before(
 def _field_before_end(
     base: Pose, table: Pose, region: Region, area: Numbers
 ) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return the same for a base beyond the left or right end of a table, ahead of which is along y."""
+    """Return the same for a base beyond the left or right end of a table, whose forward direction is along y."""
     side = 1.0 if table.position[1] >= base.position[1] else -1.0
     (near, far), (low, high) = sorted(side * edge for edge in area[:2]), sorted(-side * edge for edge in area[2:])
     y = _overlap(base.position[1] + near, base.position[1] + far, table.position[1], region.half[1])
@@ -196,13 +196,13 @@ def _field_before_end(
 
 
 def bearing(base: Pose, x: float, y: float) -> float:
-    """Return the direction (rad, in (-π, π]) of a point as seen from a robot's base, 0 straight ahead."""
+    """Return the direction (rad, in (-π, π]) of a point seen from a robot's base, 0 straight ahead."""
     angle = atan2(y - base.position[1], x - base.position[0]) - base.yaw
     return atan2(sin(angle), cos(angle))
 
 
 def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple[str, Vector]]:
-    """Yield each object with the standard place that it stands at; raises ``SceneError`` when there is none."""
+    """Yield each object with its standard place; raises ``SceneError`` if there is none."""
     try:
         yield from at_places(cast.objects, names, where)
     except NoRoom as error:
@@ -210,7 +210,7 @@ def _at_places(cast: Cast, names: tuple[str, ...], where: str) -> Iterator[tuple
 
 
 def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:
-    """Map each table to what stands at a fixed place on it; the first table takes what the scene leaves open."""
+    """Map each table to the objects at fixed places on it; unassigned ones are on the first table."""
     chosen: dict[str, list[str]] = {table: [] for table in cast.tables}
     homes: dict[str, str] = {}
     for outer, inner in scene.contains.items():
@@ -223,17 +223,17 @@ def _stands_on(scene: SceneSpec, cast: Cast) -> dict[str, tuple[str, ...]]:
 
 
 def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose, name: str) -> Iterator[_Field]:
-    """The areas for an object, best first; raises ``SceneError`` when there is none."""
+    """Yield the areas for an object, best first; raises ``SceneError`` if there are none."""
     carrier = cast.tables[0]
     region = cast.objects[carrier].region
     if (workspace := scene.places.get(name)) is not None:
         if workspace not in cast.regions:
-            raise SceneError(f"'{name}' is to be at '{workspace}', but nothing in the scene carries that workspace")
+            raise SceneError(f"'{name}' should be at '{workspace}', but nothing in the scene carries that workspace")
         carrier, region = cast.regions[workspace][0]
     model, pose = cast.objects[carrier], poses[carrier]
     radius = footprint(cast.objects[name])
     if region is None:
-        raise SceneError(f"'{name}' is to be at '{carrier}', which has no workspace")
+        raise SceneError(f"'{name}' should be at '{carrier}', which has no workspace")
     x, y, z = (at + offset for at, offset in zip(pose.position, region.center, strict=True))
     bottom = z - region.half[2]
     if model.free:
@@ -246,7 +246,7 @@ def _fields(scene: SceneSpec, cast: Cast, poses: Mapping[str, Pose], base: Pose,
         return
     area = field_before(base, pose, model, cast.ranges.get(name, NORMAL))
     if area is None:
-        raise SceneError(f"no part of '{carrier}', where '{name}' is to be, lies within reach")
+        raise SceneError(f"no part of '{carrier}', where '{name}' should be, is within reach")
     yield _Field(area[0], area[1], bottom, pi, FINGER_GAP, HAND_GAP)
     yield _Field(area[0], area[1], bottom, pi, TOUCHING, TOUCHING)
 
@@ -260,7 +260,7 @@ def _draw(
     walls: list[tuple[Pose, ObjectModel]],
     rng: np.random.Generator,
 ) -> tuple[Pose, int]:
-    """Return a pose and how many others were rejected before; raises ``SceneError``."""
+    """Return a pose and the number of rejected samples; raises ``SceneError``."""
     radius = footprint(model)
     rejected = 0
     for field in fields:
@@ -277,7 +277,7 @@ def _draw(
 
 
 def _apart(x: float, y: float, distance: float, pose: Pose, model: ObjectModel) -> bool:
-    """Whether a point is at least ``distance`` (m) from a bin's walls."""
+    """Return whether a point is at least ``distance`` (m) from a bin's walls."""
     if model.region is None:
         return True
     dx = max(abs(x - pose.position[0]) - model.region.half[0], 0.0)

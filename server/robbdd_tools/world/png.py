@@ -1,4 +1,4 @@
-"""Writes pictures as PNG files, with the standard library alone."""
+"""Write PNG files with the standard library alone."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ RGB_8 = bytes((8, 2, 0, 0, 0))
 
 
 def write_png(path: Path, pixels: NDArray[np.uint8]) -> None:
-    """Write pixels (height, width, 3); the same pixels give the same bytes. Raises ``OSError``."""
+    """Write pixels (height, width, 3); equal pixels give equal bytes. Raises ``OSError``."""
     height, width, _ = pixels.shape
     # Each row begins with the number of its filter: 0, none.
     rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, 3 * width)], axis=1)

@@ -1,4 +1,4 @@
-"""Where something is."""
+"""Poses of bodies."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 class Pose:
     """Position (m, world frame) and rotation about the vertical (rad).
 
-    ``rotation`` is the whole rotation as a quaternion, w first, of what does not stand upright.
+    ``rotation`` is the full rotation as a quaternion, w first, of a body that does not stand upright.
     """
 
     position: Vector
@@ -22,7 +22,7 @@ class Pose:
     rotation: tuple[float, ...] = ()
 
     def at(self, offset: Vector) -> Pose:
-        """Return the pose of the frame that lies at an offset (m) in this one."""
+        """Return the pose of a frame at an offset (m) in this one."""
         w, x, y, z = self.rotation or (cos(self.yaw / 2), 0.0, 0.0, sin(self.yaw / 2))
         a, b, c = offset
         # Rotate by the unit quaternion: v + 2 w (u × v) + 2 u × (u × v).

@@ -1,4 +1,4 @@
-"""Where in a workspace an object can be put down."""
+"""Places in a workspace where an object can be put down."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 ALONG = (0.0, -0.03, 0.03)
-"""Places along a bin's length, m from its middle, where a hand fits in."""
+"""Places along a bin's length where a hand fits, m from its centre."""
 GRID = 7
-"""Places along each side of a table that are looked at."""
+"""Number of places tried along each side of a table."""
 INTO_BIN, ONTO_TABLE = 0.02, 0.005
 """Height above the surface at which an object is released, m."""
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A place to put an object: a point on the surface (m, world frame) and the height to release it at (m above).
+    """A place to put an object: a point on the surface (m, world frame) and the release height above it (m).
 
-    ``closing`` is the direction (rad) the fingers should have there, ``None`` when any will do.
+    ``closing`` is the direction (rad) of the fingers there, ``None`` for any.
     """
 
     position: Vector
@@ -38,7 +38,7 @@ class Target:
 
 
 def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> Iterator[Target]:
-    """Yield places for an object at a workspace, the roomiest first; raises ``BehaviourError`` without any."""
+    """Yield places for an object at a workspace, those with most room first; raises ``BehaviourError`` without any."""
     regions = simulation.world.cast.regions.get(workspace)
     if not regions:
         raise BehaviourError(f"nothing in the scene carries {workspace}")
@@ -52,7 +52,7 @@ def targets(simulation: Simulation, robot: Robot, name: str, workspace: str) -> 
 
 
 def has_room(simulation: Simulation, robot: Robot, name: str, workspace: str) -> bool:
-    """Tell whether something at a workspace is far enough from everything loose to take an object."""
+    """Return whether some place at a workspace is far enough from all loose objects for another one."""
     radius = footprint(simulation.world.cast.objects[name])
     for carrier, _ in simulation.world.cast.regions.get(workspace, ()):
         others = _others(simulation, name, carrier)
@@ -74,7 +74,7 @@ def _in_bin(simulation: Simulation, name: str, carrier: str, region: Region) -> 
 
 
 def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -> Iterator[Target]:
-    """Yield places on a board or tray: those with room for a hand first, the nearest to the middle first."""
+    """Yield places on a board or tray: those with room for a hand first, then by distance from the centre."""
     position, rotation = simulation.pose(carrier)
     radius = footprint(simulation.world.cast.objects[name])
     others = _others(simulation, name, carrier)
@@ -85,7 +85,7 @@ def _on_board(simulation: Simulation, name: str, carrier: str, region: Region) -
     x, y, z = region.center
     points = [position + rotation @ np.array([x + dx, y + dy, z - region.half[2]]) for dx, dy in offsets]
     closing = atan2(rotation[1, longest], rotation[0, longest])
-    # Sorting is stable: among equals the order stays that of the distance from the middle.
+    # Sorting is stable: equals stay ordered by distance from the centre.
     for point in sorted(points, key=lambda point: _room(point[0], point[1], others) < radius + HAND_GAP):
         yield Target((float(point[0]), float(point[1]), float(point[2])), ONTO_TABLE, closing)
 
@@ -110,7 +110,7 @@ def _on_table(simulation: Simulation, robot: Robot, name: str, carrier: str, reg
 
 
 def _others(simulation: Simulation, name: str, carrier: str) -> list[tuple[float, float, float]]:
-    """Place (m) and radius (m) of everything loose but the object itself and what carries the workspace."""
+    """Return place (m) and radius (m) of all loose objects but this one and the carrier of the workspace."""
     found: list[tuple[float, float, float]] = []
     for other, model in simulation.world.cast.objects.items():
         if model.free and other not in (name, carrier):
@@ -120,5 +120,5 @@ def _others(simulation: Simulation, name: str, carrier: str) -> list[tuple[float
 
 
 def _room(x: float, y: float, others: list[tuple[float, float, float]]) -> float:
-    """Distance (m) from a point to the nearest of the others, far away when there is none."""
+    """Return the distance (m) from a point to the nearest of the others; large if there are none."""
     return min((hypot(x - ox, y - oy) - radius for ox, oy, radius in others), default=1.0)

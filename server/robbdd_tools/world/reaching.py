@@ -1,4 +1,4 @@
-"""How an agent gets at an object: its grasp poses, the joint positions there, and what room they leave."""
+"""Approaches of an agent to an object: grasp poses, joint positions, and remaining clearance."""
 
 from __future__ import annotations
 
@@ -25,15 +25,16 @@ if TYPE_CHECKING:
     from robbdd_tools.world.simulation import Simulation
 
 NONE = -pi
-"""Reach margin (rad) where there is no clear grasp within the joint limits."""
+"""Reach margin (rad) without a collision-free grasp within the joint limits."""
 SAME = 1e-4
-"""Change of the world's state (m, rad) below which a reach margin is taken over from the sample before."""
+"""State change (m, rad) below which a sample reuses the previous reach margin."""
 
 
 @dataclass(frozen=True, slots=True)
 class Approach:
-    """A grasp with the tool pose above it and that at it, the joint positions (rad) there, and ``depth``:
-    how far (m) the arm would be in something else.
+    """A grasp with the tool pose above it and at it, and the joint positions (rad) there.
+
+    ``depth`` is the penetration (m) of the arm into anything else.
     """
 
     grasp: Grasp
@@ -50,14 +51,14 @@ def at_travel(robot: Robot, pose: ToolPose) -> ToolPose:
 
 
 def joints_at(arm: Arm, above: ToolPose, at: ToolPose) -> FloatArray:
-    """Return the joint positions (rad) at a pose that is come to from above; raises ``Unreachable``."""
+    """Return the joint positions (rad) at a pose approached from above; raises ``Unreachable``."""
     position, rotation = frame_of(above)
     start = arm.solve(arm.towards(position), position, rotation)
     return arm.solve(start, *frame_of(at))
 
 
 def approaches(simulation: Simulation, robot: Robot, name: str, data: Any = None) -> Iterator[Approach]:
-    """Yield every grasp of an object that is within the joint limits, in the present state or in that of ``data``.
+    """Yield every grasp of an object within the joint limits, in the current state or in that of ``data``.
 
     Raises ``BehaviourError`` when the scene has no such object or the gripper is too small for it.
     """
@@ -80,7 +81,7 @@ def approaches(simulation: Simulation, robot: Robot, name: str, data: Any = None
 
 
 class ReachSampler:
-    """Measures, after the fact and only where somebody asks, how well agents could reach objects."""
+    """Measures on demand, from recorded states, how well agents could reach objects."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -91,11 +92,11 @@ class ReachSampler:
         return mujoco.MjData(self._simulation.model)
 
     def sample(self, agent: str, name: str, rows: range) -> None:
-        """Measure at these samples of the trace; raises ``KeyError`` for an agent that the scene lacks."""
+        """Measure at these samples of the trace; raises ``KeyError`` for an unknown agent."""
         robot = self._simulation.robots[agent]
         known = self._margins.setdefault((agent, name), {})
         states = self._simulation.recorder.states
-        # Where the arm itself is does not matter: it is asked where it could be.
+        # The arm's own position does not matter: the margin is about where it could be.
         others = np.ones(states.shape[1], dtype=bool)
         others[robot.joints] = False
         last: tuple[FloatArray, float] | None = None
@@ -108,7 +109,7 @@ class ReachSampler:
             known[row] = last[1]
 
     def record(self, size: int) -> Mapping[tuple[str, str], FloatArray]:
-        """Return what was measured as arrays over the first ``size`` samples, not a number elsewhere."""
+        """Return the measured margins as arrays over the first ``size`` samples, NaN where not measured."""
         found: dict[tuple[str, str], FloatArray] = {}
         for pair, margins in self._margins.items():
             values = np.full(size, nan)

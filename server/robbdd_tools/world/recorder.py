@@ -1,4 +1,4 @@
-"""Keeps the samples of one execution in arrays that grow; a trace of them shares the memory."""
+"""Store the samples of one execution in growing arrays; traces share their memory."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ ROWS = 1024
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """What is recorded and where it is found.
+    """The recorded bodies and their places in the state.
 
-    ``positions`` (m, 3) m and ``orientations`` (m, 4) of the bodies ``names`` at the start: what is fixed keeps them.
-    The poses of those in the columns ``loose`` (k,) stand in the engine's state at the indices ``places`` (k, 3) and
-    ``turns`` (k, 4); the columns ``tools`` (a,) are the agents' tools.
+    ``positions`` (m, 3) m and ``orientations`` (m, 4) are the initial poses of the bodies ``names``; fixed bodies keep
+    them. The poses of those in the columns ``loose`` (k,) are in the engine's state at the indices ``places`` (k, 3)
+    and ``turns`` (k, 4); the columns ``tools`` (a,) are the agents' tools.
     """
 
     names: tuple[str, ...]
@@ -37,10 +37,10 @@ class Bodies:
 
 
 class Recorder:
-    """Samples of bodies and of what each agent grips. Rows are only ever appended.
+    """Samples of bodies and of each agent's grips. Rows are only ever appended.
 
-    A sample is kept as the engine's own state of ``width`` numbers, to come back to an instant later; what follows
-    from it is computed for many samples at once, when somebody wants a trace.
+    A sample is the engine's own state of ``width`` numbers, which allows returning to an instant. Derived quantities
+    are computed for many samples at once, when a trace is requested.
     """
 
     def __init__(self, bodies: Bodies, agents: tuple[str, ...], width: int) -> None:
@@ -50,7 +50,7 @@ class Recorder:
         self.clear()
 
     def clear(self) -> None:
-        """Forget all samples; traces taken before keep theirs."""
+        """Delete all samples; earlier traces keep theirs."""
         bodies = self._bodies
         self._rows = self._expanded = 0
         self._times: FloatArray = np.empty(ROWS)
@@ -66,9 +66,9 @@ class Recorder:
         return self._states[: self._rows]
 
     def append(self, time: float, state: FloatArray, grips: Mapping[str, FloatArray]) -> FloatArray:
-        """Append a sample: the state (width,), per agent what it grips (m,).
+        """Append a sample: the state (width,), per agent its grips (m,).
 
-        Returns where the tools' positions and orientations are to be written, shape (a, 7).
+        Returns the array for the tools' positions and orientations, shape (a, 7).
         """
         if self._rows == len(self._times):
             self._grow()
@@ -81,7 +81,7 @@ class Recorder:
         return self._tools[row]
 
     def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
-        """Return the samples so far; what is appended later does not show in it."""
+        """Return the samples so far; later ones do not appear in it."""
         self._expand()
         rows = self._rows
         return Trace(
@@ -96,7 +96,7 @@ class Recorder:
         )
 
     def _expand(self) -> None:
-        """Compute the poses of all bodies in the samples that are new."""
+        """Compute the poses of all bodies in new samples."""
         new, bodies = slice(self._expanded, self._rows), self._bodies
         self._expanded = self._rows
         states, tools = self._states[new], self._tools[new]

@@ -1,4 +1,4 @@
-"""A robot's places in the arrays of the physics engine."""
+"""A robot's indices in the arrays of the physics engine."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 class Robot:
-    """One robot of a running simulation: its places in the engine's arrays.
+    """One robot of a running simulation: its indices in the engine's arrays.
 
-    ``joints`` (n,) indexes joint positions, ``speeds`` (n,) velocities, ``motors`` (n,) and ``gripper`` controls,
-    ``targets`` (n,) the positions that the arm's servos hold at the moment.
+    ``joints`` (n,) are indices of joint positions, ``speeds`` (n,) of velocities, ``motors`` (n,) and ``gripper`` of
+    controls; ``targets`` (n,) are the current target positions of the arm's servos.
     """
 
     def __init__(self, world: World, name: str) -> None:
@@ -37,4 +37,4 @@ class Robot:
         self.pads = tuple(int(model.geom(f"{name}/{pad}").id) for pad in robot.pads)
         gain, bias = model.actuator_gainprm[self.motors, 0], model.actuator_biasprm[self.motors, 2]
         self.lead: FloatArray = -bias / gain
-        """Seconds by which a joint's target must run ahead to make up for the servo's damping, shape (n,)."""
+        """Seconds by which a joint's target leads to compensate for the servo's damping, shape (n,)."""

@@ -1,4 +1,4 @@
-"""Arms from the model files that an executable scene names, with servos and names added where a file has none."""
+"""Arms from the model files of an executable scene; missing servos and names are added."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.executable import ModelSource
 
 SPEED = 1.0
-"""Speed limit (rad/s) of an arm's joints where neither the file nor the model states one."""
+"""Speed limit (rad/s) of an arm's joints if neither the file nor the model has one."""
 STIFFNESS, DAMPING = 2000.0, 100.0
 """Gains (N m/rad, N m s/rad) of the servos of an arm whose file has none."""
 GRIP_STIFFNESS, GRIP_DAMPING, GRIP_FORCE = 3000.0, 60.0, 15.0
@@ -23,12 +23,12 @@ _prepared: dict[str, Any] = {}
 
 
 def prepared_robot(key: str) -> Any | None:
-    """Return the engine's description of an arm that ``robot_from`` has prepared."""
+    """Return the engine's description of an arm prepared by ``robot_from``."""
     return _prepared.get(key)
 
 
 def robot_from(source: ModelSource, name: str) -> RobotModel:
-    """Return the arm that a file is, with servos and names added where it has none; raises ``SceneError``."""
+    """Return the arm in a file, with missing servos and names added; raises ``SceneError``."""
     arm = source.arm
     if arm is None:
         wanted = "'tool: \"…\" gripper { … }' in its model block"
@@ -40,7 +40,7 @@ def robot_from(source: ModelSource, name: str) -> RobotModel:
     _servos(spec, source, joints)
     _gripper_servo(spec, source, arm.actuator)
     for body in spec.bodies:
-        # Arms hold themselves up, as their own controllers do.
+        # Arms compensate their own weight, as real controllers do.
         body.gravcomp = 1.0 if body.name != "world" else 0.0
     model = compiled(spec, source)
     home = arm.home or _home(model, joints)
@@ -79,7 +79,7 @@ def _names(things: Any) -> str:
 
 
 def _tool_site(spec: Any, source: ModelSource, name: str) -> str:
-    """Return the tool's site; a body of that name gets one."""
+    """Return the tool's site; for a body of that name, create one."""
     if spec.site(name) is not None:
         return name
     body = spec.body(name)
@@ -104,7 +104,7 @@ def _chain(spec: Any, source: ModelSource, tool: str) -> tuple[str, ...]:
 
 
 def _pad(spec: Any, source: ModelSource, name: str) -> str:
-    """Return a gripping face; a body of that name gives its first shape."""
+    """Return a gripping face; for a body of that name, its first shape."""
     if spec.geom(name) is not None:
         return name
     body = spec.body(name)
@@ -114,14 +114,14 @@ def _pad(spec: Any, source: ModelSource, name: str) -> str:
         raise SceneError(f"{at(source.origin)}{source.name} has no gripping face '{name}'; {known}")
     face = touching[0]
     face.name = name
-    # URDF says nothing of contacts: that of a gripping face is stiff and rough like rubber, or light things slip out.
+    # URDF does not describe contacts: make gripping faces stiff and rough like rubber, or light objects slip out.
     face.condim, face.friction = 4, [0.9, 0.01, 0.001]
     face.solref, face.solimp = [0.005, 1.0], [0.95, 0.99, 0.001, 0.5, 2.0]
     return name
 
 
 def _servos(spec: Any, source: ModelSource, joints: tuple[str, ...]) -> None:
-    """Give each joint a position servo, unless it has one."""
+    """Give each joint without a position servo one."""
     driven = {str(actuator.target): actuator for actuator in spec.actuators}
     for joint in joints:
         actuator = driven.get(joint)

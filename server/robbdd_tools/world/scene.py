@@ -1,4 +1,4 @@
-"""Which catalog model stands for which element of a scene, and where each workspace is."""
+"""Catalog models for the elements of a scene, and the regions of its workspaces."""
 
 from __future__ import annotations
 
@@ -22,17 +22,16 @@ if TYPE_CHECKING:
     from robbdd_tools.world.staging import Staging
 
 PEDESTAL = "pedestal"
-"""Name of the table that stands in for the one which a scene lacks."""
+"""Name of the table that is added to a scene without one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cast:
     """A scene with a model for every object and agent.
 
-    ``regions`` maps a workspace to the boxes that make it up, each with the object in whose frame it is given;
-    a workspace that nothing carries is absent. ``ranges`` tells of some elements where things are laid out
-    (``position_range``); ``seed`` is the one that the scene asks for, if any. ``judged`` maps element and name to the
-    configurations that say how to judge it.
+    ``regions`` maps a workspace to its boxes, each with the object in whose frame it is given; a workspace without a
+    carrier is absent. ``ranges`` are areas where some elements are laid out (``position_range``); ``seed`` is the one
+    that the scene sets, if any. ``judged`` maps element and name to the configurations of how to judge it.
     """
 
     objects: Mapping[str, ObjectModel]
@@ -43,29 +42,29 @@ class Cast:
     judged: Mapping[tuple[str, str], Numbers] = field(default_factory=dict[tuple[str, str], "Numbers"])
 
     staging: Staging | None = None
-    """What an executable scene says of the elements, if there is one."""
+    """The executable scene's data on the elements, if there is one."""
     left_out: tuple[str, ...] = ()
-    """Elements that no clause speaks of and that have no model or, of agents, no place."""
+    """Elements that no clause uses and that have no model or, for agents, no place."""
     heights: Mapping[str, float] = field(default_factory=dict[str, float])
     """Height (m) of each object before ``height_scale``."""
 
     def pose(self, name: str, attempt: int = 0) -> Pose | None:
-        """Return where an executable scene has the middle of an object; raises ``SceneError``."""
+        """Return the pose of an object's centre in an executable scene; raises ``SceneError``."""
         pose = None if self.staging is None else self.staging.pose(name, attempt)
         x, y, z = self.objects[name].frame
         return None if pose is None else pose.at((-x, -y, -z))
 
     def base(self, name: str) -> Pose | None:
-        """Return where an executable scene has an agent's base; raises ``SceneError``."""
+        """Return the pose of an agent's base in an executable scene; raises ``SceneError``."""
         return None if self.staging is None else self.staging.base(name)
 
     def origin(self, name: str) -> Origin | None:
-        """Return where an executable scene says what an element is, ``None`` where nothing does."""
+        """Return where an executable scene defines an element, ``None`` if nowhere."""
         return None if self.staging is None else self.staging.origin(name)
 
     @property
     def tables(self) -> tuple[str, ...]:
-        """The fixed objects, which everything else stands on, the one with the largest top first."""
+        """The fixed objects, which carry everything else, the one with the largest top first."""
         fixed = [name for name, model in self.objects.items() if not model.free]
         return tuple(sorted(fixed, key=lambda name: -_top_area(self.objects[name])))
 
@@ -80,14 +79,14 @@ def local_name(curie: str) -> str:
 
 
 def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
-    """Choose the models of a scene, as an executable one says, else by name, and configure them.
+    """Choose the models of a scene, from an executable scene, else by name, and configure them.
 
-    Raises ``SceneError`` for a name that no model stands for and for a configuration that cannot be.
+    Raises ``SceneError`` for a name without a model and for an impossible configuration.
     """
     catalog = load_catalog()
     objects: dict[str, ObjectModel] = {}
     left_out: list[str] = []
-    # Sorted: what happens must not depend on the order in which a model declares its objects.
+    # Sorted: results must not depend on the order in which a model declares its objects.
     for name in sorted(scene.objects):
         carrying = any(name in own for own in scene.workspaces.values())
         model = None if staging is None else staging.object_model(name, carrying)
@@ -102,7 +101,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     for name in scene.agents:
         robot = None if staging is None else staging.robot(name)
         robot = robot or catalog.robot_for(local_name(name), scene.sets.get(name, ()))
-        # Bystanders stand where an executable scene places them; there is no other reason for them to be anywhere.
+        # Bystanders stand where an executable scene places them, and nowhere otherwise.
         if name in scene.unused and (robot is None or staging is None or staging.base(name) is None):
             left_out.append(name)
             continue
@@ -120,7 +119,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
 
 
 def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
-    """Return the objects that a workspace stands for, for anything else the target itself."""
+    """Return the objects that a workspace stands for; for anything else the target itself."""
     return carriers(scene, target) or (target,)
 
 
@@ -149,7 +148,7 @@ def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, 
 
 
 def contents_of(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
-    """Return the workspaces that are composed into one, at any depth, in written order."""
+    """Return the workspaces composed into one, at any depth, in written order."""
     found: dict[str, None] = {}
     waiting = list(scene.contains.get(workspace, ()))
     while waiting:
@@ -161,7 +160,7 @@ def contents_of(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
 
 
 def carriers(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
-    """Return the objects that make up a workspace: its own or, when it has none, those of what lies within it."""
+    """Return the objects that carry a workspace: its own or, if it has none, those of its parts."""
     return _carriers(scene, workspace, frozenset())
 
 

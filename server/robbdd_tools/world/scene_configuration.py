@@ -1,4 +1,4 @@
-"""Sets a scene up as its Given clauses want it."""
+"""Configure a scene according to its Given clauses."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ CONTROLLER = {
     "release_time": "release_time",
     "travel_height": "travel_height",
 }
-"""Configurations of how an agent picks and places, and the attributes of its model that have them."""
+"""Configurations of how an agent picks and places → attributes of its model."""
 
 
 @dataclass(slots=True)
 class Configured:
-    """Models of objects and agents as configured, where things lie (position ranges, m) and the seed, if any.
+    """Configured models of objects and agents, position ranges (m) and the seed, if any.
 
-    ``judged`` are the configurations, by element and name, that change not the world but how it is judged.
+    ``judged`` are the configurations, by element and name, that change only how the world is judged.
     """
 
     objects: dict[str, ObjectModel]
@@ -42,10 +42,10 @@ class Configured:
 
 
 def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, ...]]]) -> None:
-    """Apply configurations, each with the elements that its target stands for.
+    """Apply configurations, each to the elements that its target stands for.
 
-    Raises ``SceneError`` for a name or value that does not exist, an element that has no such configuration, and
-    two values for one configuration.
+    Raises ``SceneError`` for an unknown name or value, an element without such a configuration, and two values for one
+    configuration.
     """
     known: dict[tuple[str, str], Numbers] = {}
     for config, elements in wanted:
@@ -56,7 +56,7 @@ def configure(found: Configured, wanted: Iterable[tuple[ConfigSpec, tuple[str, .
         for element in ("",) if config.name == "seed" else elements:
             if known.setdefault((element, config.name), value) != value:
                 other = written(known[element, config.name])
-                raise SceneError(f"'{config.target}' is to have {config.name} = {other} and {config.value}")
+                raise SceneError(f"'{config.target}' should have {config.name} = {other} and {config.value}")
             _apply(found, element, config, value)
 
 
@@ -85,18 +85,18 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
         case "height_scale" if able is not None:
             found.objects[element] = _scaled(able, value[0])
         case name if thing is None and robot is None:
-            raise SceneError(f"'{config.target}', which is to have {name} = {config.value}, is not in the scene")
+            raise SceneError(f"'{config.target}', which should have {name} = {config.value}, is not in the scene")
         case name:
             raise SceneError(f"'{config.target}' has no {name}: that is of {SETTINGS[name].target}")
 
 
 def _loose(found: Configured) -> list[str]:
-    """What is laid out at random and has no range of its own."""
+    """Return the objects that are laid out at random and have no range of their own."""
     return [name for name in found.objects if found.objects[name].graspable and name not in found.ranges]
 
 
 def _driven(model: ObjectModel, speed: float) -> ObjectModel:
-    """Let the belts of an object run at another speed (m/s), in their directions."""
+    """Return an object whose belts run at another speed (m/s), in their directions."""
 
     def at_speed(velocity: Vector) -> Vector:
         x, y, z = velocity

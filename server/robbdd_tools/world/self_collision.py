@@ -1,4 +1,4 @@
-"""Which parts of a robot can hit one another: all but those that are always close to each other."""
+"""Pairs of robot parts that can collide: all but those that are always close to each other."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import RobotModel
 
 NEAR = 2
-"""Joints between two parts up to which they do not hit each other: the housings of wrists overlap across two joints."""
+"""Joints between two parts up to which collisions are ignored: the housings of wrists overlap across two joints."""
 WORLD = 0
 
 
 def name_bodies(child: Any) -> None:
-    """Give a name to every body of a robot's editable description that has none."""
+    """Name every unnamed body of a robot's editable description."""
     for number, body in enumerate(child.bodies[1:]):
         body.name = body.name or f"part{number}"
 
 
 def pairs_apart(child: Any, robot: RobotModel) -> tuple[list[tuple[str, str]], list[str]]:
-    """Return the pairs of bodies of a robot that never count as hitting each other, and those beside its base.
+    """Return the pairs of bodies of a robot whose contacts are ignored, and those close to its base.
 
-    As usual in motion planning these are neighbours (``NEAR``), parts of one gripper, and what touches at home with the
-    gripper open, where shapes are coarser than the arm. All bodies have names, see ``name_bodies``.
+    As usual in motion planning, these are neighbours (``NEAR``), parts of one gripper, and bodies that touch at home
+    with the gripper open, as shapes are coarser than the arm. All bodies have names, see ``name_bodies``.
     """
     model = child.copy().compile()
     names = [str(model.body(body).name) for body in range(model.nbody)]
@@ -38,7 +38,7 @@ def pairs_apart(child: Any, robot: RobotModel) -> tuple[list[tuple[str, str]], l
 
 
 def _path(model: Any, body: int) -> list[int]:
-    """Return a body and all that it hangs on, the world last."""
+    """Return a body and its ancestors, the world last."""
     found = [body]
     while found[-1] != WORLD:
         found.append(int(model.body_parentid[found[-1]]))
@@ -51,7 +51,7 @@ def _joints_between(model: Any, one: int, other: int) -> int:
 
 
 def _gripper(model: Any, robot: RobotModel) -> list[int]:
-    """Return the bodies of the gripper: all that hangs on the last body that carries every gripping face."""
+    """Return the bodies of the gripper: all descendants of the last common ancestor of the gripping faces."""
     paths = [_path(model, int(model.geom_bodyid[model.geom(pad).id])) for pad in robot.pads]
     palm = next(body for body in paths[0] if all(body in path for path in paths))
     return [] if palm == WORLD else [body for body in range(1, model.nbody) if palm in _path(model, body)]

@@ -1,4 +1,4 @@
-"""Steps a world and records it: one sample per control tick."""
+"""Step a world and record it: one sample per control tick."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 AT_REST = 2e-3
 """Speed (m/s and rad/s) below which an object is at rest."""
 REST_TICKS = 6
-"""Ticks in a row that everything must be at rest."""
+"""Number of ticks in a row for which everything must be at rest."""
 SETTLE_TICKS = 190
 """Ticks (about three seconds) after which a world counts as settled in any case."""
 
@@ -34,8 +34,8 @@ SETTLE_TICKS = 190
 class Simulation:
     """A world in motion. Time counts from the end of ``settle``; sample 0 is the settled world.
 
-    ``stepping`` is the wall time (s) spent in the engine's step; ``watchers`` are called after each tick, such as a
-    viewer.
+    ``stepping`` is the wall time (s) spent in the engine's steps; ``watchers``, such as a viewer, are called after each
+    tick.
     """
 
     def __init__(self, world: World) -> None:
@@ -55,7 +55,7 @@ class Simulation:
         self.belts = Belts(self.model, list(world.cast.objects))
         self._column = {name: index for index, name in enumerate(names)}
         self._grips = Grips(self.model, self.robots, self._column, self._free)
-        # Views of the engine's memory, which stays where it is: to ask for them anew in every tick takes longer.
+        # Views of the engine's memory, whose address is constant: creating them in every tick is slower.
         self._qpos: FloatArray = self.data.qpos
         self._qvel: FloatArray = self.data.qvel
         self._ctrl: FloatArray = self.data.ctrl
@@ -88,11 +88,11 @@ class Simulation:
 
     @cached_property
     def scratch(self) -> Any:
-        """A state of the engine to try things in: whoever does sets all that matters; made once, as it takes long."""
+        """A spare state of the engine, created once because this is slow; its users set everything that matters."""
         return mujoco.MjData(self.model)
 
     def settle(self) -> None:
-        """Step until nothing moves any more, then start the clock and take the first sample."""
+        """Step until nothing moves, then start the clock and take the first sample."""
         quiet = 0
         for _ in range(SETTLE_TICKS):
             self._step()
@@ -103,7 +103,7 @@ class Simulation:
         self.restart()
 
     def restart(self) -> None:
-        """Forget what was recorded and count time from now; belts run from now on."""
+        """Delete the recording and restart the clock; belts run from now on."""
         self.ticks = 0
         self.belts.start(self.data)
         self.recorder.clear()
@@ -111,9 +111,9 @@ class Simulation:
         self.record()
 
     def tick(self) -> None:
-        """Advance by one control tick under the present controls and record a sample.
+        """Advance by one control tick with the current controls and record a sample.
 
-        Raises ``SimulationError`` when the state is no longer a number.
+        Raises ``SimulationError`` if the state contains NaN.
         """
         self._step()
         self.ticks += 1
@@ -122,8 +122,8 @@ class Simulation:
             watch()
 
     def record(self) -> None:
-        """Take a sample of the world as it is."""
-        # Positions in the engine's data are those of one step ago until they are computed anew.
+        """Record a sample of the current world."""
+        # Positions in the engine's data lag by one step until recomputed.
         mujoco.mj_kinematics(self.model, self.data)
         self._grips.find(self.data)
         self.forces.record(self.data, {agent: self._held_by(agent) for agent in self.robots})
@@ -133,7 +133,7 @@ class Simulation:
             mujoco.mju_mat2Quat(row[3:], rotation)
 
     def trace(self, events: tuple[EventStamp, ...], finished: bool, remark: str) -> Trace:
-        """Return what was recorded so far, without copying it."""
+        """Return the recording so far, without copying it."""
         return self.recorder.trace(events, finished, remark)
 
     def pose(self, name: str) -> tuple[FloatArray, FloatArray]:
@@ -151,16 +151,16 @@ class Simulation:
         return positions
 
     def command(self, robot: Robot, joints: FloatArray, opening: float) -> None:
-        """Let the targets of the arm's servos move to ``joints`` (rad, shape (n,)) within one tick; set the gripper.
+        """Move the targets of the arm's servos to ``joints`` (rad, shape (n,)) within one tick; set the gripper.
 
-        A cup that leaks has no vacuum.
+        A leaking cup has no vacuum.
         """
         self._ctrl[robot.motors] = (joints - self._act[robot.targets]) / TICK
         leaks = robot.name in self._grips.leaking
         self._ctrl[robot.gripper] = robot.model.gripper_open if leaks else opening
 
     def open_fingers(self, robot: Robot, data: Any) -> None:
-        """Put a robot's fingers into the open position in ``data``: the start, or a state that is only tried."""
+        """Put a robot's fingers into the open position in ``data``: the start, or a trial state."""
         for pad in robot.pads:
             body = self.model.body(int(self.model.geom_bodyid[pad]))
             for joint in range(body.jntadr[0], body.jntadr[0] + body.jntnum[0]):
@@ -173,7 +173,7 @@ class Simulation:
             self.forces.look(self.data)
         self.belts.set_back(self.data)
         self.stepping += perf_counter() - began
-        # A target that nobody moves on stays where it is.
+        # A target that is not moved stays in place.
         self._ctrl[self._servos] = 0.0
         if not isfinite(self._qvel @ self._qvel):
             raise SimulationError(f"the simulation became unstable at {self.time:.2f} s")

@@ -1,4 +1,4 @@
-"""What an executable scene says of the elements of a scenario: their models and where they are."""
+"""An executable scene's data on the elements of a scenario: their models and places."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PAIR = ("condim", "friction", "solref", "solreffriction", "solimp", "margin", "g
 
 @dataclass(frozen=True, slots=True)
 class DeclaredPair:
-    """A contact that model number ``number`` of the whole scene declares between two geoms, with its parameters."""
+    """A contact between two geoms, declared in model number ``number`` of the whole scene, with its parameters."""
 
     number: int
     geoms: tuple[str, str]
@@ -35,14 +35,14 @@ class DeclaredPair:
 
     @staticmethod
     def of(number: int, pair: Any) -> DeclaredPair:
-        """Return what the engine's editable description of a pair says."""
+        """Return the pair from the engine's editable description."""
         values = ((name, getattr(pair, name)) for name in PAIR)
         kept = {name: value if isinstance(value, int | float) else list(value) for name, value in values}
         return DeclaredPair(number, (str(pair.geomname1), str(pair.geomname2)), kept)
 
 
 def scenery_name(number: int) -> str:
-    """Return the name of the scenery that a model of the whole scene is, before those of its bodies and geoms."""
+    """Return the scenery's name for a model of the whole scene: the prefix of its bodies and geoms."""
     return f"scenery{number}"
 
 
@@ -52,15 +52,15 @@ def shape_name(owner: str, shape: str | int) -> str:
 
 
 class Staging:
-    """One scene instance in one execution. ``seed`` decides what is drawn at random."""
+    """One scene instance in one execution. ``seed`` is the seed of random draws."""
 
     def __init__(self, instance: SceneInstance, seed: int) -> None:
-        """Raises ``SceneError`` when a model of the whole scene cannot be loaded."""
+        """Raises ``SceneError`` if a model of the whole scene cannot be loaded."""
         self._elements = {one.element: one for one in instance.elements}
         self._frames = Frames(instance, seed)
         self._found: dict[str, FromFile] = {}
         self._worlds = [(source, load(source)) for source in self._usable_worlds(instance)]
-        # The engine drops the pairs of a body that is taken out of its model.
+        # The engine drops the pairs of a body that is removed from its model.
         self._pairs = [
             DeclaredPair.of(number, pair) for number, (_, spec) in enumerate(self._worlds) for pair in spec.pairs
         ]
@@ -73,13 +73,13 @@ class Staging:
 
     @property
     def scenery(self) -> tuple[Any, ...]:
-        """The models of the whole scene, without the bodies that elements of the scene are."""
+        """The models of the whole scene, without the bodies that are elements of the scene."""
         return tuple(spec for _, spec in self._worlds)
 
     def object_model(self, element: str, carries: bool) -> ObjectModel | None:
-        """Return the model of an object, ``None`` where nothing is said of it; raises ``SceneError``.
+        """Return the model of an object, ``None`` if not defined; raises ``SceneError``.
 
-        ``carries`` tells that it carries a workspace. An object without a model is the body of its name in a model of
+        ``carries`` means that it carries a workspace. An object without a model is the body of its name in a model of
         the whole scene, if there is one.
         """
         chosen = self._source(element)
@@ -91,11 +91,11 @@ class Staging:
                 raise SceneError(f"{at(chosen.origin)}the catalog has no object '{chosen.name}'")
             return found
         name = next((name for _, name in chosen.bodies), "")
-        # Its pose in a file of its own means nothing in the scene.
+        # A pose in a file of its own is meaningless in the scene.
         return object_from(load(chosen), chosen, name, carries).model
 
     def robot(self, element: str) -> RobotModel | None:
-        """Return the model of an agent, ``None`` where nothing is said of it; raises ``SceneError``."""
+        """Return the model of an agent, ``None`` if not defined; raises ``SceneError``."""
         chosen = self._source(element)
         if chosen is None:
             return None
@@ -107,9 +107,9 @@ class Staging:
         return robot_from(chosen, element)
 
     def pose(self, element: str, attempt: int = 0) -> Pose | None:
-        """Return where an element is, ``None`` where nothing is said of that; raises ``SceneError``.
+        """Return the place of an element, ``None`` if not defined; raises ``SceneError``.
 
-        What is drawn for the element itself is drawn anew for each ``attempt``.
+        The element's own random draws are repeated for each ``attempt``.
         """
         chosen = self._source(element)
         if chosen is None:
@@ -121,16 +121,16 @@ class Staging:
         return None if transform is None else _pose(transform)
 
     def base(self, element: str) -> Pose | None:
-        """Return where the base of an agent is; raises ``SceneError`` for one that does not stand upright."""
+        """Return the pose of an agent's base; raises ``SceneError`` if it does not stand upright."""
         pose = self.pose(element)
         if pose is not None and pose.rotation:
             chosen = self._source(element)
             place = at(None if chosen is None else chosen.origin)
-            raise SceneError(f"{place}the base of '{element}' is tilted: arms are moved upright only")
+            raise SceneError(f"{place}the base of '{element}' is tilted: only upright arms are supported")
         return pose
 
     def origin(self, element: str) -> Origin | None:
-        """Return where the scene says what an element is, ``None`` where nothing is said of it."""
+        """Return where the scene defines an element, ``None`` if nowhere."""
         said = self._elements.get(element)
         return None if said is None else said.origin
 
@@ -142,7 +142,7 @@ class Staging:
                 yield shape_name(*first), shape_name(*second), pair
 
     def _geom(self, number: int, geom: str) -> tuple[str, str | int]:
-        """Return the element that a geom of a model belongs to and the number of its shape, else scenery and geom."""
+        """Return the element of a model's geom and the number of its shape, else scenery and geom."""
         for element, found in self._found.items():
             if self._world_of[element] == number and geom in found.geoms:
                 return element, found.geoms.index(geom)

@@ -1,4 +1,4 @@
-"""Executes a behaviour by the user's own class."""
+"""Execute a behaviour with the user's own class."""
 
 from __future__ import annotations
 
@@ -51,18 +51,18 @@ class AgentWorld:
         return self._simulation.pose(name)
 
     def place(self, workspace: str) -> FloatArray:
-        """Return the middle (m) of a workspace's bottom; raises ``KeyError``."""
+        """Return the centre (m) of a workspace's bottom; raises ``KeyError``."""
         carrier, region = self._simulation.world.cast.regions[workspace][0]
         position, rotation = self._simulation.pose(carrier)
         bottom: FloatArray = np.array(region.center) - [0.0, 0.0, region.half[2]]
         return position + rotation @ bottom
 
     def holds(self, name: str) -> bool:
-        """Tell whether the gripper holds an object."""
+        """Return whether the gripper holds an object."""
         return self._simulation.holds(self._robot.name, name)
 
     def solve(self, position: FloatArray, closing: float = 0.0) -> FloatArray:
-        """Return joint positions (rad) that put the tool there; raises ``BehaviourFailed``, ``ValueError``."""
+        """Return joint positions (rad) for a tool position; raises ``BehaviourFailed``, ``ValueError``."""
         place = np.asarray(position, dtype=float)
         if place.shape != (3,) or not np.all(np.isfinite(place)):
             raise ValueError(f"position must be 3 finite numbers, not {position!r:.200}")
@@ -77,7 +77,7 @@ class AgentWorld:
             ) from error
 
     def command(self, joints: FloatArray, opening: float) -> None:
-        """Set the targets of servos (rad) and gripper (0 closed, 1 open); raises ``ValueError`` for others."""
+        """Set the targets of servos (rad) and gripper (0 closed, 1 open); raises ``ValueError`` for invalid values."""
         model = self._robot.model
         targets = np.asarray(joints, dtype=float)
         if targets.shape != self.joints.shape or not np.all(np.isfinite(targets)):
@@ -89,7 +89,7 @@ class AgentWorld:
         self._simulation.command(self._robot, targets, control)
 
     def emit(self, event: str) -> None:
-        """Stamp an event of the behaviour with the present time."""
+        """Record an event of the behaviour at the current time."""
         self._emit(event)
 
 
@@ -98,7 +98,7 @@ def run_user_behaviour(
 ) -> Iterator[None]:
     """Yield once per control tick until the behaviour is over.
 
-    Raises ``BehaviourError`` when it says that it has failed, and ``UserError`` for any other exception in it.
+    Raises ``BehaviourError`` if it reports failure, and ``UserError`` for any other exception in it.
     """
     name = implementation.name
     model = "" if implementation.origin is None else implementation.origin.file
@@ -115,7 +115,7 @@ def run_user_behaviour(
 
 
 def _is_over(name: str, own: UserBehaviour) -> bool:
-    """Let a behaviour do its next tick. One that returns nothing goes on; any other answer is refused."""
+    """Execute the behaviour's next tick. ``None`` means that it continues; other non-boolean answers are refused."""
     answer: Any = called(name, own.step)
     if answer is None or isinstance(answer, bool | np.bool_):
         return bool(cast(Any, answer))

@@ -1,4 +1,4 @@
-"""An interactive window that follows a simulation in real time."""
+"""Interactive window that follows a simulation in real time."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ if TYPE_CHECKING:
 
 
 class NoViewer(Exception):
-    """No window can be opened here; the message says why."""
+    """No window can be opened; the message gives the reason."""
 
 
 class Viewer:
     """A window on a simulation; its user may turn the camera. Raises ``NoViewer``.
 
-    The simulation waits for the clock while the window is open, and goes on without it when the user closes it.
+    The simulation runs in real time while the window is open, and at full speed once the user has closed it.
     """
 
     def __init__(self, simulation: Simulation) -> None:
         try:
             launch: Any = import_module("mujoco.viewer").launch_passive
             self._window: Any = launch(simulation.model, simulation.data, show_left_ui=False, show_right_ui=False)
-        except Exception as error:  # the window system's failures are of many types
+        except Exception as error:  # the window system's failures have many types
             raise NoViewer(f"no window can be opened: {error}") from error
         self._due = perf_counter()
         self._watchers = simulation.watchers
