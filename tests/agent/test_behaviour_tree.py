@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 from robbdd_tools.agent.beginning import calls_of
 from robbdd_tools.agent.course import Course, Timing
 from robbdd_tools.agent.execution import Execution
+from robbdd_tools.agent.tree_execution import TreeRun
 from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
 from robbdd_tools.catalog.executable import Implementation, Origin
 from robbdd_tools.protocol.specs import ConfigSpec, ScenarioSpec
@@ -137,3 +139,66 @@ def test_code_that_makes_no_tree_is_reported(code: str, words: str, tmp_path: Pa
         executed(made(tmp_path, code, pick("first"), pick("second")))
     assert str(failure.value).startswith("m.bdd:3:5: ")
     assert words in str(failure.value)
+
+
+AGAIN = """import py_trees
+
+def create(leaf):
+    both = py_trees.composites.Sequence("whole", True, [leaf("first"), leaf("place")])
+    return py_trees.decorators.{}("again", both, {})
+"""
+
+
+def stamps(folder: Path, decorator: str, count: int, *outcomes: str) -> tuple[TreeRun, list[tuple[str, int]]]:
+    """Tick a tree of leaves that take a tick and end with these outcomes; return it with what it stamped."""
+    nodes = (pick("first"), PLACE, NodeSpec("t:whole", "whole", "leaf", problem="it is made"))
+    tree = made(folder, AGAIN.format(decorator, count), *nodes).tree
+    assert tree is not None
+    left, found = list(outcomes), list[tuple[str, int]]()
+
+    def attempt(_: NodeSpec) -> Generator[None, None, str]:
+        yield
+        return left.pop(0)
+
+    run = TreeRun(tree, attempt, lambda name, number: found.append((name, number)))
+    for _ in run.steps():
+        assert run.pending >= {"t:whole end", "t:first pick-end", "t:whole place-end"}
+        assert not run.is_over("t:first")
+    return run, found
+
+
+def test_each_execution_of_a_repeated_node_is_counted(tmp_path: Path) -> None:
+    run, found = stamps(tmp_path, "Repeat", 2, "", "", "", "")
+    once = ["t:first start", "t:whole start", "t:first end", "t:place start", "t:place end", "t:whole end"]
+    assert sorted(found) == sorted((name, number) for name in once for number in (1, 2))
+    assert [run.executions[name] for name in ("t:whole end", "t:whole pick-start", "t:place place-end")] == [2, 2, 2]
+    assert run.pending == frozenset()
+    assert run.has_succeeded("t:whole")
+
+
+def test_the_last_execution_of_a_node_decides(tmp_path: Path) -> None:
+    run, found = stamps(tmp_path, "Repeat", 2, "", "", "lost")
+    assert ("t:place end", 1) in found
+    assert [run.has_succeeded(node) for node in ("t:whole", "t:first", "t:place")] == [False, False, True]
+    assert run.failure("t:whole") == "lost"
+
+
+def test_a_failure_that_is_tried_again_leaves_no_end(tmp_path: Path) -> None:
+    run, found = stamps(tmp_path, "Retry", 3, "lost", "", "")
+    assert found.count(("t:first start", 2)) == found.count(("t:first end", 2)) == 1
+    assert ("t:first end", 1) not in found
+    assert run.executions["t:place place-end"] == 1
+    assert run.has_succeeded("t:whole")
+
+
+def test_a_declared_tree_executes_nothing_again() -> None:
+    tree = of("t:whole", whole("sequence", pick("first"), PLACE)).tree
+    assert tree is not None
+
+    def attempt(_: NodeSpec) -> Generator[None, None, str]:
+        yield
+        return ""
+
+    run = TreeRun(tree, attempt, lambda _name, _number: None)
+    seen = [(run.pending, run.is_over("t:first")) for _ in run.steps()]
+    assert seen == [(frozenset(), False), (frozenset(), True)]

@@ -198,3 +198,33 @@ def test_results_tell_in_the_graph_what_was_judged_from_one_execution(tmp_path: 
     }"""
     done = robbdd(tmp_path, "query", "m.bdd", query, "--results", "out.json")
     assert done.stdout.split()[-2:] == ["1", "3"], done.stdout + done.stderr
+
+
+REPEATED = """import py_trees
+
+def create(leaf):
+    both = py_trees.composites.Sequence("pick-place", True, [leaf("pick"), leaf("place")])
+    return py_trees.decorators.Repeat("again", both, 2)
+"""
+
+
+def test_clauses_on_a_repeated_node_mean_its_first_and_last_execution_for_run_replay_and_judge(tmp_path: Path) -> None:
+    path = model(tmp_path)
+    text = path.read_text(encoding="utf-8")
+    begin, end = text.index("Behaviour Tree"), text.index("const set")
+    source = "py { module: trees, attr: create }"
+    tree = f"Behaviour Tree (ns=crit) handling {{ {source} node pick-place node pick node place }}\n"
+    path.write_text(text[:begin] + tree + text[end:], encoding="utf-8")
+    (tmp_path / "trees.py").write_text(REPEATED, encoding="utf-8")
+    scenarios = run(tmp_path)
+    assert {verdict for found in verdicts(scenarios).values() for verdict in found} == {"holds"}
+    instants = {clause["name"]: clause["worst_at"] for scenario in scenarios for clause in scenario["clauses"]}
+    middle = scenarios[-1]["duration"] / 2
+    assert all(instants[name] < middle for name in ("at-source", "still-in-hand", "on-bench"))
+    assert all(instants[name] > middle for name in ("in-hand", "in-bin"))
+    assert robbdd(tmp_path, "replay", "latest").stdout.endswith("3 of 3 traces are the same\n")
+    robbdd(tmp_path, "judge", "latest", "m.bdd", "--json", "judged.json")
+    judged_again = json.loads((tmp_path / "judged.json").read_text(encoding="utf-8"))["scenarios"]
+    assert [one["clauses"] for one in judged_again] == [one["clauses"] for one in scenarios]
+    alone = run(tmp_path, "--scenario", "part-taken")
+    assert alone[0]["clauses"] == scenarios[0]["clauses"]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from hypothesis import strategies as st
@@ -11,13 +12,13 @@ from monitor.traces import STEP, heights, trace_of
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 from robbdd_tools.monitor.judge import judge
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
-from robbdd_tools.monitor.trace import EventStamp, Trace
+from robbdd_tools.monitor.trace import LAST, EventStamp, Trace
 from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
-EVENTS = ("a", "b", "c")
+EVENTS: tuple[str, ...] = ("a", "b", "c")
 ITERATIONS = (1, 2)
 
 
@@ -56,13 +57,18 @@ class Story:
     paths: dict[str, list[float]]
     events: tuple[tuple[str, float, int], ...]
     """Name, time and iteration."""
+    executions: Mapping[str, int] = field(default_factory=dict[str, int])
+    """Events of a behaviour tree to how often what emits them was begun."""
+    pending: tuple[str, ...] = ()
+    """Events of which it is not known which occurrence is the last."""
 
     @property
     def trace(self) -> Trace:
         """The same as a trace."""
         found = trace_of({name: heights(path) for name, path in self.paths.items()})
         stamps = tuple(EventStamp(*event) for event in self.events)
-        return Trace(found.names, found.times, found.positions, found.orientations, {}, stamps)
+        trace = Trace(found.names, found.times, found.positions, found.orientations, {}, stamps)
+        return replace(trace, executions=self.executions, pending=self.pending)
 
 
 def by_the_monitor(clause: Clause, story: Story) -> Verdict:
@@ -94,7 +100,9 @@ def stories(draw: st.DrawFn, *, events_on_samples: bool) -> Story:
         return Story(paths, tuple((name, draw(instants), number) for name in EVENTS for number in ITERATIONS))
     anywhere = instants | st.floats(0.0, count * STEP)
     stamps = draw(st.lists(st.tuples(st.sampled_from(EVENTS), anywhere, st.sampled_from((0, *ITERATIONS))), max_size=8))
-    return Story(paths, tuple(sorted(stamps, key=lambda stamp: stamp[1])))
+    executions = draw(st.dictionaries(st.sampled_from(EVENTS), st.integers(1, 3)))
+    pending = draw(st.sets(st.sampled_from(EVENTS), max_size=1))
+    return Story(paths, tuple(sorted(stamps, key=lambda stamp: stamp[1])), executions, tuple(pending))
 
 
 _EVENT = st.sampled_from(EVENTS)
@@ -112,7 +120,9 @@ def _times(iterations: tuple[int, ...]) -> st.SearchStrategy[TimeConstraint]:
 
 OBSERVED: st.SearchStrategy[Clause] = st.builds(Holds, st.sampled_from(["x", "y"]), _times(ITERATIONS))
 """Clauses that name an iteration each, of things that are recorded."""
-FLUENTS: st.SearchStrategy[Clause] = st.builds(Holds, st.sampled_from(["x", "y", "missing"]), _times((0, *ITERATIONS)))
+FLUENTS: st.SearchStrategy[Clause] = st.builds(
+    Holds, st.sampled_from(["x", "y", "missing"]), _times((0, LAST, *ITERATIONS))
+)
 
 
 def _joined(parts: st.SearchStrategy[Clause]) -> st.SearchStrategy[Clause]:

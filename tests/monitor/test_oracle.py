@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from monitor.random_traces import CLAUSES, Clause, Holds, Joined, Story, by_the_monitor, stories
 from monitor.traces import STEP
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
+from robbdd_tools.monitor.trace import LAST
 
 TOLERANCE = 1e-9
 
@@ -28,7 +29,14 @@ UNKNOWN = Answer("unknown")
 
 
 def occurrence(story: Story, event: str, iteration: int) -> float | None:
-    """t(e) of the page: of iteration k, those stamped k or 0 count; without a loop (k = 0) all do."""
+    """t(e) of the page: of iteration k, those stamped k or 0 count; without a loop (k = 0) all do.
+
+    The last execution of what emits the event is the one that was begun last; it may not be known yet.
+    """
+    if iteration == LAST:
+        if event in story.pending:
+            return None
+        iteration = story.executions.get(event, 0)
     stamped = [(time, number) for name, time, number in story.events if name == event]
     times = [time for time, number in stamped if iteration == 0 or number == 0 or number == iteration]
     return min(times) if times else None

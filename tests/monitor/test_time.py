@@ -21,7 +21,7 @@ from robbdd_tools.monitor.time import (
     occurrences,
     window,
 )
-from robbdd_tools.monitor.trace import EventStamp
+from robbdd_tools.monitor.trace import LAST, EventStamp
 
 COUNT = 21
 """Samples, from 0 s to 2 s."""
@@ -199,3 +199,23 @@ def test_times_that_differ_by_rounding_only_are_the_same() -> None:
     assert a_window(Before("e", late), e=1.0) == Window(0, 10)
     assert a_window(After("e", late), e=1.0) == Window(10, 20)
     assert a_window(During("a", "b"), a=late, b=early) == NoWindow("event b occurred before event a", open=False)
+
+
+def test_the_last_occurrence_is_that_of_the_last_execution() -> None:
+    events = tuple(EventStamp("e", number / 5, number) for number in (1, 2))
+    trace = replace(trace_of({"x": still(11)}), events=events, executions={"e": 2})
+    assert window(After("e", None, LAST), trace) == Window(4, 4)
+    assert window(During("e", "e", (0, LAST)), trace) == Window(2, 4)
+    found = window(After("e", None, LAST), replace(trace, executions={"e": 3}))
+    assert isinstance(found, NoWindow)
+    assert found.reason == "event e never occurred in the last of 3 executions"
+
+
+@pytest.mark.parametrize("finished", [True, False])
+def test_nobody_knows_the_last_occurrence_while_there_may_be_another(finished: bool) -> None:
+    trace = replace(trace_of({"x": still(11)}), events=(EventStamp("e", 0.2, 1),), executions={"e": 1})
+    found = window(After("e", None, LAST), replace(trace, pending=("e",), finished=finished))
+    assert isinstance(found, NoWindow)
+    assert found.open is not finished
+    assert "before it was certain that event e is the last one" in found.reason
+    assert window(After("e"), replace(trace, pending=("e",))) == Window(2, 2)

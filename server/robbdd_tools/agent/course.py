@@ -255,16 +255,19 @@ class Course:
         self._muted = False
         self.simulation.restart()
 
-    def stamp(self, name: str) -> None:
-        """Record the event of an emitter at the current time."""
-        self.stamps.append(EventStamp(name, self.simulation.time, self._iteration))
+    def stamp(self, name: str, iteration: int = 0) -> None:
+        """Note that an emitter, by its name, emits its event now, in an iteration as of event stamps."""
+        self.stamps.append(EventStamp(name, self.simulation.time, iteration))
 
     def _emit(self, event: str) -> None:
         if self._muted:
             return
-        within = () if self.tree is None else self.tree.active
-        for name in [emitter(node, event) for node in within] or [event]:
-            self.stamp(name)
+        if self.tree is None or not self.tree.active:
+            self.stamp(event, self._iteration)
+            return
+        for node in self.tree.active:
+            name = emitter(node, event)
+            self.stamp(name, self.tree.executions[name])
 
     def _note(self, remark: str) -> None:
         self.remark = self.remark or remark

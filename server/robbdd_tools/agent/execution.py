@@ -38,6 +38,7 @@ class Execution:
         course: Course | None = None,
     ) -> None:
         self.course = course or Course(spec, calls, timing)
+        self._events = spec.events
         self._names = _names_of(spec.events)
         self._node = spec.node
 
@@ -87,7 +88,15 @@ class Execution:
         course = self.course
         events = tuple(replace(stamp, name=name) for stamp in course.stamps for name in self._names.get(stamp.name, ()))
         trace = course.simulation.trace(events, course.finished, course.remark)
-        return replace(trace, unreached=self._unreached(), contents=course.contents)
+        trace = replace(trace, unreached=self._unreached(), contents=course.contents)
+        if course.tree is None:
+            return trace
+        executions, pending = course.tree.executions, course.tree.pending
+        return replace(
+            trace,
+            executions={event: executions[emitter] for event, emitter in self._events.items() if emitter in executions},
+            pending=tuple(event for event, emitter in self._events.items() if emitter in pending),
+        )
 
     def state_at(self, time: float) -> FloatArray:
         """Return the engine's joint positions at the last sample at or before a time (s)."""

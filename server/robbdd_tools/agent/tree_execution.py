@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
+from collections import Counter
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from functools import cached_property
+from itertools import islice
+from typing import TYPE_CHECKING, cast
+from uuid import UUID
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Selector, Sequence
 
 from robbdd_tools.catalog.coordination import END, START, emitter
+from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
 from robbdd_tools.world.errors import SceneError, SimulationError, UserError
 from robbdd_tools.world.frames import at
@@ -27,11 +32,13 @@ NOT_REACHED = "precondition not reached"
 class TreeRun:
     """A behaviour tree in execution.
 
-    ``stamp`` is called with ``<node> start`` and ``<node> end`` (on success) when they happen; ``active`` are the IRIs
-    of the nodes whose behaviour is running, innermost first. Raises ``SceneError`` when the tree cannot be built.
+    ``stamp`` is called with ``<node> start`` and ``<node> end`` (the node has succeeded) when they happen, and the
+    number of the node's execution; ``active`` are the nodes, by IRI, whose behaviour is at work, innermost first.
+    ``executions`` maps emitters of events to how often what emits them was begun, each from 1. Raises ``SceneError``
+    when the tree cannot be made.
     """
 
-    def __init__(self, spec: TreeSpec, attempt: Attempt, stamp: Callable[[str], None]) -> None:
+    def __init__(self, spec: TreeSpec, attempt: Attempt, stamp: Callable[[str, int], None]) -> None:
         self._attempt = attempt
         self._stamp = stamp
         self._spec = spec
@@ -40,6 +47,8 @@ class TreeRun:
         self._iris = {behaviour.id: iri for iri, behaviour in self._nodes.items()}
         self._begun: set[object] = set()
         self._succeeded: set[object] = set()
+        self._repeatable = {one.id for one in _preorder(self._root) if _may_repeat(one)}
+        self.executions: Counter[str] = Counter()
         self._is_over = False
         self._failures: list[tuple[Behaviour, str]] = []
         self.active: tuple[str, ...] = ()
@@ -47,8 +56,9 @@ class TreeRun:
     def steps(self) -> Iterator[None]:
         """Tick the tree once per control tick until it is over; raises ``UserError`` and ``SimulationError``."""
         while True:
-            self._tick()
-            self._take_note()
+            before = {behaviour.id: behaviour.status for behaviour in _preorder(self._root)}
+            ticked = self._tick()
+            self._take_note([one for one in _preorder(self._root) if one.id in ticked], before)
             if self._root.status is not Status.RUNNING:
                 self._is_over = True
                 return
@@ -59,12 +69,29 @@ class TreeRun:
         return self._nodes[node].id in self._begun
 
     def is_over(self, node: str) -> bool:
-        """Return whether a node has succeeded, or the tree is over: a failed node may be tried again."""
-        return self._is_over or self.has_succeeded(node)
+        """Whether a node has ended for good: one that the tree may execute again ends with the tree."""
+        return self._is_over or (self.has_succeeded(node) and self._nodes[node].id not in self._repeatable)
 
     def has_succeeded(self, node: str) -> bool:
-        """Return whether a node has succeeded."""
+        """Whether the last execution of a node has succeeded."""
         return self._nodes[node].id in self._succeeded
+
+    @property
+    def pending(self) -> frozenset[str]:
+        """Emitters of events that may be emitted again."""
+        return frozenset() if self._is_over else self._repeated
+
+    @cached_property
+    def _repeated(self) -> frozenset[str]:
+        """Emitters within nodes that the tree may execute again."""
+        found: set[str] = set()
+        for iri, behaviour in self._nodes.items():
+            if behaviour.id in self._repeatable:
+                found |= {emitter(iri, START), emitter(iri, END)}
+            for leaf in _preorder(behaviour):
+                if isinstance(leaf, _Leaf) and leaf.id in self._repeatable:
+                    found.update(emitter(iri, event) for event in leaf.events)
+        return frozenset(found)
 
     def failure(self, node: str) -> str:
         """Return why a node failed: the reason of its last failed descendant; empty if none failed."""
@@ -108,6 +135,7 @@ class TreeRun:
             raise UserError(node.problem)
         steps = self._attempt(node)
         chain = tuple(self._iris[one.id] for one in _upwards(leaf) if one.id in self._iris)
+        self.executions.update(emitter(iri, event) for iri in chain for event in _events_of(node))
         while True:
             self.active = chain
             try:
@@ -120,32 +148,36 @@ class TreeRun:
                 self.active = ()
             yield
 
-    def _tick(self) -> None:
+    def _tick(self) -> set[object]:
+        """Tick the tree once; returns the ids of the behaviours that were ticked."""
+
+        def tick() -> set[object]:
+            return {behaviour.id for behaviour in self._root.tick()}
+
         source = self._spec.source
         if source is None:
-            self._root.tick_once()
-            return
+            return tick()
         try:
-            called(source.name, self._root.tick_once)
+            return called(source.name, tick)
         except UserCodeError as error:
             if isinstance(error.__cause__, UserError | SimulationError):
                 raise error.__cause__ from None
             raise UserError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
 
-    def _take_note(self) -> None:
-        """Record events for nodes that started or ended in this tick."""
-        for behaviour in _preorder(self._root):
-            if behaviour.status is Status.INVALID:
-                continue
+    def _take_note(self, ticked: Iterable[Behaviour], before: Mapping[UUID, Status]) -> None:
+        """Stamp what has begun or ended with this tick; ``before`` has the statuses before it."""
+        for behaviour in ticked:
             iri = self._iris.get(behaviour.id)
-            if behaviour.id not in self._begun:
+            if before.get(behaviour.id) is not Status.RUNNING:
                 self._begun.add(behaviour.id)
+                self._succeeded.discard(behaviour.id)
                 if iri is not None:
-                    self._stamp(emitter(iri, START))
-            if behaviour.status is Status.SUCCESS and behaviour.id not in self._succeeded:
+                    self.executions.update((emitter(iri, START), emitter(iri, END)))
+                    self._stamp(emitter(iri, START), self.executions[emitter(iri, START)])
+            if behaviour.status is Status.SUCCESS:
                 self._succeeded.add(behaviour.id)
                 if iri is not None:
-                    self._stamp(emitter(iri, END))
+                    self._stamp(emitter(iri, END), self.executions[emitter(iri, END)])
 
 
 class _Leaf(Behaviour):
@@ -156,6 +188,11 @@ class _Leaf(Behaviour):
         self._node = node
         self._run = run
         self._steps: Generator[None, None, str] | None = None
+
+    @property
+    def events(self) -> tuple[str, ...]:
+        """The events of the behaviour that it executes."""
+        return _events_of(self._node)
 
     def initialise(self) -> None:
         """Start the behaviour anew."""
@@ -169,6 +206,16 @@ class _Leaf(Behaviour):
         except StopIteration as end:
             return Status.FAILURE if end.value else Status.SUCCESS
         return Status.RUNNING
+
+
+def _events_of(node: NodeSpec) -> tuple[str, ...]:
+    return load_catalog().behaviours[node.behaviour].events if node.behaviour else ()
+
+
+def _may_repeat(behaviour: Behaviour) -> bool:
+    """Whether a tree may execute a behaviour again: only sequences and selectors with memory are known not to."""
+    above = islice(_upwards(behaviour), 1, None)
+    return not all(type(one) in COMPOSITES.values() and cast("Sequence | Selector", one).memory for one in above)
 
 
 def _made(spec: TreeSpec, leaf: Callable[[str], Behaviour]) -> Behaviour:

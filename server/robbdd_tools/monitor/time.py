@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from robbdd_tools.monitor.trace import LAST
+
 if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
 
@@ -80,6 +82,12 @@ def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
     ``[0, t_e]``, or all in ``[t_e - h, t_e]``; ``after``: the first sample in ``[t_e, ∞)``, or all in ``[t_e, t_e +
     h]``; ``from a until b``: all in ``[t_a, t_b]``.
     """
+    for event, iteration in occurrences(constraint):
+        if iteration == LAST and event in trace.pending:
+            reason = (
+                f"the execution ended at {trace.end:.2f} s, before it was certain that event {event} is the last one"
+            )
+            return NoWindow(reason, not trace.finished)
     match constraint:
         case Before(event, horizon, iteration):
             return _before(trace, event, horizon, iteration)
@@ -163,6 +171,9 @@ def _missing(trace: Trace, event: str, iteration: int) -> NoWindow:
 
 def never_occurred(trace: Trace, event: str, iteration: int = 0) -> str:
     """Return why a clause is unknown if an event that it needs is missing."""
-    where = f" in iteration {iteration}" if iteration else ""
+    executions = trace.executions.get(event, 0)
+    where = f" in iteration {iteration}" if iteration > 0 else ""
+    if iteration == LAST and executions > 1:
+        where = f" in the last of {executions} executions"
     why = f": {trace.remark}" if trace.remark else ""
     return f"event {event} never occurred{where}{why}"

@@ -15,11 +15,16 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, Outline
 
 
+LAST = -1
+"""The iteration that is the last one: a behaviour tree may execute a node again, so that its number is not known."""
+
+
 @dataclass(frozen=True, slots=True)
 class EventStamp:
     """An event's name (CURIE) and the simulated time (s) at which it occurred.
 
-    ``iteration`` counts the behaviours that the scenario executes, from 1; 0 for an event outside of them.
+    ``iteration`` counts the behaviours that the scenario executes, from 1; 0 for an event outside of them. In a
+    behaviour tree it counts the executions of what emits the event.
     """
 
     name: str
@@ -51,6 +56,8 @@ class Trace:
     those contacts. ``immovable`` are the elements that a hit does not push: fixed objects, and agents. ``outlines`` is
     the extent of objects around their position. ``unreached`` is the reason if the scenario, a part of a behaviour
     tree, never began: it is then not judged. ``contents`` maps a workspace to those composed into it, at any depth.
+    ``executions`` maps events of a behaviour tree to how often what emits them was begun, ``pending`` are those that
+    could occur again if the execution went on.
     """
 
     names: tuple[str, ...]
@@ -71,6 +78,8 @@ class Trace:
     watched: tuple[str, ...] = ()
     contacts: tuple[Contact, ...] = ()
     immovable: tuple[str, ...] = ()
+    executions: Mapping[str, int] = field(default_factory=dict[str, int])
+    pending: tuple[str, ...] = ()
 
     @property
     def end(self) -> float:
@@ -88,8 +97,10 @@ class Trace:
     def event_time(self, name: str, iteration: int = 0) -> float | None:
         """Return when an event first occurred, or ``None``.
 
-        With an ``iteration``, only occurrences of that iteration and outside of all iterations count.
+        With an ``iteration``, which may be ``LAST``, only occurrences of that iteration and outside of all iterations
+        count.
         """
+        iteration = self.executions.get(name, 0) if iteration == LAST else iteration
         counted = (0, iteration)
         stamps = (stamp for stamp in self.events if stamp.name == name)
         return min((stamp.time for stamp in stamps if not iteration or stamp.iteration in counted), default=None)
