@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
 import pytest
 
 from monitor.traces import still, trace_of
 from robbdd_tools.catalog.api import Region
-from robbdd_tools.judging.decisions import decide, is_closed
+from robbdd_tools.judging.decisions import decide, is_closed, ways
+from robbdd_tools.judging.observation_streams import Unobserved
 from robbdd_tools.judging.parsed_sentences import read_clause
+from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.trace import Trace
-from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.monitor.verdict import Cause, Outcome, unknown
+from robbdd_tools.protocol.clauses import Fluent
+from robbdd_tools.user_code.calls import UserCodeError
+
+if TYPE_CHECKING:
+    from robbdd_tools.catalog.api import FloatArray
 
 BOX = Region((0.0, 0.0, 0.0), (0.1, 0.1, 0.1))
 REGIONS = {"left": (("bin1", BOX),), "right": (("bin2", BOX),)}
@@ -115,3 +125,75 @@ def test_nobody_waits_for_what_cannot_be_judged() -> None:
         '"ball" is located at "left" after event "t:other"',
     ):
         assert is_closed(read_clause(sentence), a_trace(finished=False), EVENTS.keys())
+
+
+def failing(error: Exception) -> Fluent:
+    """Return a clause whose evaluator fails."""
+
+    def evaluate(*_: object) -> FloatArray:
+        raise error
+
+    clause = read_clause(LEFT)
+    assert isinstance(clause, Fluent)
+    return replace(clause, predicate=replace(clause.predicate, evaluate=evaluate))
+
+
+def test_a_failure_of_an_evaluator_is_missing_evidence_and_kept() -> None:
+    found = decide(failing(ZeroDivisionError("by zero")), a_trace(), REGIONS, EVENTS.keys())
+    assert (found.outcome, found.cause) == (Outcome.UNKNOWN, Cause.USER_CODE)
+    assert found.reason == "the evaluator of 'located-at' failed: ZeroDivisionError: by zero"
+    assert found.fault is not None
+    assert (found.fault.exception, found.fault.code) == ("ZeroDivisionError", "located-at")
+
+
+def test_a_failure_of_users_code_and_a_missing_observation_have_their_causes() -> None:
+    fault = Fault("KeyError", "x", "policy:judge")
+    found = decide(failing(UserCodeError("policy:judge failed", fault)), a_trace(), REGIONS, EVENTS.keys())
+    assert found == replace(unknown("policy:judge failed", Cause.USER_CODE, fault=fault), operand=0)
+    found = decide(failing(Unobserved("nobody looked")), a_trace(), REGIONS, EVENTS.keys())
+    assert found == replace(unknown("nobody looked", Cause.UNOBSERVED), operand=0)
+
+
+def test_what_was_never_reached_is_unknown_whatever_the_clause() -> None:
+    trace = replace(a_trace(), unreached="the tree failed before")
+    for sentence in (LEFT, "the lamp is green"):
+        found = decide(read_clause(sentence), trace, REGIONS, EVENTS.keys())
+        assert found == unknown("the tree failed before", Cause.UNREACHED)
+
+
+def test_without_evaluator_a_missing_emitter_is_no_reason() -> None:
+    clause = read_clause('"ball" is located at "left" after event "t:other"')
+    assert isinstance(clause, Fluent)
+    mute = replace(clause, predicate=replace(clause.predicate, evaluate=None))
+    assert decide(mute, a_trace(), REGIONS, EVENTS.keys()).cause is Cause.NO_STEP
+    assert is_closed(mute, a_trace(finished=False), EVENTS.keys())
+
+
+def test_both_events_of_an_interval_must_be_emitted() -> None:
+    for start, end in (("t:e", "t:other"), ("t:other", "t:e")):
+        clause = read_clause(f'"ball" is located at "left" from "{start}" until "{end}"')
+        assert decide(clause, a_trace(), REGIONS, EVENTS.keys()).reason == (
+            "nothing in the scenario emits event t:other"
+        )
+        assert is_closed(clause, a_trace(finished=False), EVENTS.keys())
+
+
+def test_each_existential_slot_is_chosen_by_itself() -> None:
+    some = "\"any of ['ball', 'cube']\" is located at \"any of ['right', 'left']\" after event \"t:e\""
+    clause = read_clause(some)
+    assert isinstance(clause, Fluent)
+    assert [[dict(words) for words in group] for group in ways(clause)] == [
+        [{"object": "ball", "workspace": "right"}],
+        [{"object": "ball", "workspace": "left"}],
+        [{"object": "cube", "workspace": "right"}],
+        [{"object": "cube", "workspace": "left"}],
+    ]
+
+
+def test_of_a_set_every_member_must_hold() -> None:
+    clause = read_clause("\"['ball', 'cube']\" is located at \"any of ['left', 'right']\" after event \"t:e\"")
+    assert isinstance(clause, Fluent)
+    assert [[(words["object"], words["workspace"]) for words in group] for group in ways(clause)] == [
+        [("ball", "left"), ("cube", "left")],
+        [("ball", "right"), ("cube", "right")],
+    ]

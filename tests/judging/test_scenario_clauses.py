@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
+import pytest
+
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.judging.scenario_clauses import stated_by_step, statement_of
+from robbdd_tools.judging.scenario_clauses import (
+    behaviour_calls,
+    clause_of,
+    iteration_of,
+    judged_clause,
+    stated_by_step,
+    statement_of,
+)
 from robbdd_tools.monitor.time import After
-from robbdd_tools.protocol.clauses import Fluent, Junction
+from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, Text, leaves_of
 from robbdd_tools.protocol.specs import ClauseSpec
+from world.worlds import scenario
 
 LEFT, RIGHT = (
     Fluent(load_catalog().predicates["located-at"], {"object": "t:a", "workspace": f"t:{place}"}, After("t:e"), place)
@@ -30,3 +41,53 @@ def test_a_sentence_that_a_person_has_edited_is_read() -> None:
 
 def test_a_clause_of_an_earlier_version_is_read_from_its_sentence() -> None:
     assert statement_of(replace(KNOWN, statement=None)) == KNOWN.statement
+
+
+def test_a_sentence_names_its_parts_in_order() -> None:
+    read = statement_of(replace(KNOWN, statement=None, parts=("l",)))
+    assert isinstance(read, Junction)
+    assert [leaf.iri for leaf in leaves_of(read)] == ["l", ""]
+    single = statement_of(replace(KNOWN, statement=None, sentence="the lamp is green", parts=()))
+    assert single == Text("the lamp is green", None, "t:c")
+
+
+def test_a_step_without_a_clause_is_read() -> None:
+    assert stated_by_step("then", "the lamp is green", None) == Text("the lamp is green")
+    assert stated_by_step("when", 'event "t:e" occurs', None) == EventOccurrence("t:e")
+
+
+WHEN = ClauseSpec(2, "t:w", "w", "when", '"env:arm" picks "env:cube"')
+
+
+def test_when_clauses_keep_their_content() -> None:
+    assert statement_of(replace(WHEN, sentence='event "t:e" occurs')) == EventOccurrence("t:e")
+    assert isinstance(statement_of(WHEN), BehaviourCall)
+    assert statement_of(replace(WHEN, sentence="somebody sings")) is None
+
+
+def test_a_when_clause_is_not_judged() -> None:
+    for sentence in (WHEN.sentence, 'event "t:e" occurs', "somebody sings"):
+        with pytest.raises(TypeError, match=f"^{re.escape(sentence)} is a When clause$"):
+            clause_of(replace(WHEN, sentence=sentence), scenario())
+
+
+def test_a_clause_is_judged_in_its_iterations() -> None:
+    found = clause_of(replace(KNOWN, iterations=(2, 4)), scenario())
+    assert found == Junction("or", tuple(replace(one, time=After("t:e", None, 4)) for one in (LEFT, RIGHT)))
+    given = replace(KNOWN, role="given", statement=LEFT, iterations=(2, 4))
+    assert clause_of(given, scenario()) == replace(LEFT, time=After("t:e", None, 2))
+    assert judged_clause(LEFT, None, scenario()) == LEFT
+    assert judged_clause(Text("green"), KNOWN, scenario()) == Text("green")
+
+
+def test_the_behaviours_of_a_scenario_are_those_of_its_when_clauses() -> None:
+    placing = replace(WHEN, sentence='"env:arm" picks "env:cube" and places it at "t:l"')
+    event = replace(WHEN, sentence='event "t:e" occurs')
+    named = replace(KNOWN, sentence=WHEN.sentence, statement=None)
+    calls = behaviour_calls(scenario(clauses=(named, WHEN, event, placing)))
+    assert [call.behaviour.name for call in calls] == ["pick", "pick-place"]
+
+
+def test_a_when_clause_expects_its_event_in_its_first_iteration() -> None:
+    assert iteration_of(replace(WHEN, iterations=(3, 5))) == 3
+    assert iteration_of(WHEN) == iteration_of(None) == 0

@@ -20,7 +20,7 @@ ROOT = Path(__file__).parent.parent.parent
 WORK = ROOT / "build" / "mutants"
 """Each room's session has a folder of its own here; mutmut keeps its results in them."""
 
-_READ = ("tests", "grammar", "metamodels", "examples", "docs", "README.md")
+_READ = ("tests", "grammar", "metamodels", "examples", "docs")
 _SETTINGS = """
 [tool.mutmut]
 source_paths = ["src/robbdd_tools"]
@@ -57,7 +57,7 @@ class Mutant:
 
 
 class Session:
-    """Makes a room's mutants and runs the room's tests on them.
+    """Makes a room's mutants and runs the room's tests on them; edits of the checkout in the meantime change nothing.
 
     Args:
         room: what is mutated.
@@ -68,13 +68,9 @@ class Session:
         self.folder = WORK / room.name
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
-        (self.folder / "src").symlink_to(ROOT / "server", target_is_directory=True)
-        for name in _READ:
-            source = ROOT / name
-            if source.is_dir():
-                shutil.copytree(source, self.folder / name, ignore=shutil.ignore_patterns("__pycache__", ".robbdd"))
-            else:
-                shutil.copy(source, self.folder)
+        # mutmut finds modules below a folder of this name.
+        for source, copy in (("server", "src"), *zip(_READ, _READ, strict=True)):
+            shutil.copytree(ROOT / source, self.folder / copy, ignore=shutil.ignore_patterns("__pycache__", ".robbdd"))
         settings = _SETTINGS.format(
             modules=list(room.patterns), tests=list(room.tests), read=list(_READ), seconds=seconds / 4
         )
@@ -109,11 +105,11 @@ class Session:
     def place(self, name: str, diff: str) -> str:
         """Return where a mutant changes the code, as ``path:line``."""
         module, _, function = name.partition("__mutmut_")[0].rpartition(".")
-        path = ROOT / "server" / f"{module.replace('.', '/')}.py"
-        if not path.exists():
-            path = path.with_suffix("") / "__init__.py"
-        first = _first_line(ast.parse(path.read_text(encoding="utf-8")), function)
-        return f"{path.relative_to(ROOT)}:{first + _changed_line(diff)}"
+        path = f"{module.replace('.', '/')}.py"
+        if not (self.folder / "src" / path).exists():
+            path = f"{path.removesuffix('.py')}/__init__.py"
+        first = _first_line(ast.parse((self.folder / "src" / path).read_text(encoding="utf-8")), function)
+        return f"server/{path}:{first + _changed_line(diff)}"
 
     def diffs(self, names: Sequence[str]) -> dict[str, str]:
         """Return the changes of mutants as unified diffs of their functions, by name."""
@@ -134,7 +130,7 @@ class Session:
         )
         if done.returncode != 0:
             shown = _PROGRESS.sub("", f"{done.stdout}\n{done.stderr}")
-            raise SessionFailed(f"{self._room.name}: {shown[-5000:]}")
+            raise SessionFailed(f"{self._room.name}, in {self.folder}:\n{shown[-5000:]}")
         return done.stdout
 
 

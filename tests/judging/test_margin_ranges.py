@@ -1,0 +1,105 @@
+"""What an execution says of the margins of its clauses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from judging.test_decisions import EVENTS, REGIONS, a_trace
+from monitor.traces import heights, trace_of
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.judging.decisions import ranges
+from robbdd_tools.judging.margin_ranges import margin_ranges
+from robbdd_tools.judging.parsed_sentences import read_clause
+from robbdd_tools.judging.quantities import wanting
+from robbdd_tools.monitor.time import After
+from robbdd_tools.monitor.trace import EventStamp, Trace
+from robbdd_tools.protocol.clauses import AnyOf, Fluent
+from robbdd_tools.protocol.messages import MarginRanges
+from robbdd_tools.protocol.specs import ClauseSpec
+from world.worlds import scenario
+
+HELD = '"ball" is held by "arm" after event "t:e"'
+LEFT = '"ball" is located at "left" after event "t:e"'
+STATED = ClauseSpec(7, "t:c", "c", "then", HELD)
+
+
+def told(sentence: str, trace: Trace, stated: ClauseSpec = STATED, node: str = "") -> MarginRanges | None:
+    spec = replace(scenario(clauses=(stated,), events={**EVENTS, "t:tree": "t:node start"}), node=node)
+    return margin_ranges(4, read_clause(sentence), stated, spec, trace, REGIONS)
+
+
+def test_ranges_are_those_of_each_fluent_by_scenario_and_line() -> None:
+    found = told(f"( {HELD} and {LEFT} )", a_trace())
+    assert found is not None
+    assert (found.index, found.line) == (4, 7)
+    assert found.ranges == ((1.0, 1.0), (pytest.approx(0.08), pytest.approx(0.08)))
+
+
+def test_a_range_is_that_of_all_members_of_a_set() -> None:
+    found = ranges(read_clause('"[\'ball\', \'cube\']" is located at "left" after event "t:e"'), a_trace(), REGIONS)
+    assert found == ((pytest.approx(-0.9), pytest.approx(0.08)),)
+
+
+def test_nothing_is_said_of_what_is_not_recorded_or_was_never_reached() -> None:
+    assert told("the lamp is green", a_trace()) is None
+    assert told('"ghost" is held by "arm" after event "t:e"', a_trace()) is None
+    assert told(HELD, replace(a_trace(), unreached="the tree failed before")) is None
+
+
+def test_an_evaluator_that_fails_has_no_range() -> None:
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError
+
+    clause = read_clause(HELD)
+    assert isinstance(clause, Fluent)
+    broken = replace(clause, predicate=replace(clause.predicate, evaluate=fail))
+    assert ranges(broken, a_trace(), REGIONS) == ()
+
+
+def held_before(ball: list[float], node: str, sentence: str = LEFT, role: str = "then") -> bool | None:
+    """Tell it of a ball at some heights over the left bin; a node begins at 0.1 s, the event occurs at 0.3 s."""
+    events = (EventStamp("t:tree", 0.1), EventStamp("t:e", 0.3))
+    still = heights([0.0] * len(ball))
+    trace = replace(trace_of({"ball": heights(ball), "bin1": still, "bin2": still}), events=events)
+    found = told(sentence, trace, replace(STATED, role=role), node)
+    return None if found is None else found.held_before
+
+
+def test_a_clause_of_a_tree_is_compared_with_the_beginning_of_its_node() -> None:
+    assert held_before([9, 0, 0, 0], "t:node") is True
+    assert held_before([0, 9, 0, 0], "t:node") is False
+    assert held_before([0, 0, 0, 9], "t:node") is False
+    assert held_before([0, 0, 0, 0], "t:other") is None
+
+
+@pytest.mark.parametrize(
+    ("sentence", "role"),
+    [
+        (LEFT, "given"),
+        (f'( {LEFT} and "ball" is located at "left" from "t:tree" until "t:e" )', "then"),
+        (f'( {LEFT} and "arm" does not drop "ball" after event "t:e" )', "then"),
+        (f'( {LEFT} and "ball" has config "mass" = "1" after event "t:e" )', "then"),
+    ],
+)
+def test_only_a_result_is_compared_with_the_beginning(sentence: str, role: str) -> None:
+    assert held_before([0, 0, 0, 0], "t:node", sentence, role) is None
+
+
+def test_a_scenario_without_behaviour_has_no_beginning() -> None:
+    assert held_before([0, 0, 0, 0], "") is None
+
+
+def test_a_quantity_is_wanted_for_every_choice_of_single_elements() -> None:
+    reach = load_catalog().predicates["can-reach"]
+    clause = Fluent(reach, {"agent": AnyOf(("a", "b")), "object": ("x", "y")}, After("t:e"))
+    (quantity,) = reach.quantities
+    assert [dict(words) for _, words in wanting(clause, quantity)] == [
+        {"agent": "a", "object": "x"},
+        {"agent": "a", "object": "y"},
+        {"agent": "b", "object": "x"},
+        {"agent": "b", "object": "y"},
+    ]
+    assert all(fluent is clause for fluent, _ in wanting(clause, quantity))
+    assert list(wanting(clause, "another quantity")) == []
