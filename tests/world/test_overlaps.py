@@ -21,20 +21,18 @@ from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.placement import TABLE_TOP
 from world.worlds import BALL, BENCH_WS, CUBE, PANDA, SCENE, scenario
 
-pytestmark = pytest.mark.physics
 HALF_CUBE, RADIUS = 0.01575, 0.030
 ON_TABLE = replace(SCENE, objects=(CUBE, BALL, "env:bench"), workspaces={BENCH_WS: ("env:bench",)}, contains={})
 
 
 def course(scene: SceneSpec = ON_TABLE, **places: tuple[float, float, float]) -> Course:
-    """Set up a scene in which cube and ball are given places (m, world frame)."""
-    names = {"cube": CUBE, "ball": BALL}
+    """Set up a scene in which cubes and balls are given places (m, world frame)."""
     links = tuple(Link(f"x:{n}.mid", "x:root", "pose", place, (1.0, 0.0, 0.0, 0.0)) for n, place in places.items())
     bodies = (Body("x:room", ("x:root",)), *(Body(f"x:{name}", (f"x:{name}.mid",)) for name in places))
     elements = tuple(
         Realisation(
-            names[name],
-            (ModelSource(f"x:m-{name}", "mjcf", "catalog", name, bodies=((f"x:{name}", "body"),)),),
+            f"env:{name}",
+            (ModelSource(f"x:m-{name}", "mjcf", "catalog", name.rstrip("1234"), bodies=((f"x:{name}", "body"),)),),
             Origin("/w/cell.scenex", 7, 5),
         )
         for name in places
@@ -46,7 +44,7 @@ def course(scene: SceneSpec = ON_TABLE, **places: tuple[float, float, float]) ->
 
 def test_things_that_touch_stay_where_they_are_given() -> None:
     height = TABLE_TOP + HALF_CUBE
-    found = course(cube=(0.5, 0.1, height), ball=(0.5, 0.1 + HALF_CUBE + RADIUS + 0.002, TABLE_TOP + RADIUS))
+    found = course(cube1=(0.5, 0.1, height), ball1=(0.5, 0.1 + HALF_CUBE + RADIUS + 0.002, TABLE_TOP + RADIUS))
     assert found.simulation.pose(CUBE)[0] == pytest.approx((0.5, 0.1, height), abs=1e-3)
 
 
@@ -56,21 +54,43 @@ def test_two_things_in_one_another_are_named_with_their_depth() -> None:
         SceneError,
         match=r"^cell\.scenex:7:5: 'env:ball1' and 'env:cube1' overlap by 12 mm: nothing may overlap",
     ):
-        course(cube=(0.5, 0.1, height), ball=(0.5, 0.1 + HALF_CUBE + RADIUS - 0.012, height))
+        course(cube1=(0.5, 0.1, height), ball1=(0.5, 0.1 + HALF_CUBE + RADIUS - 0.012, height))
 
 
 def test_a_thing_in_the_table_is_named_with_its_depth() -> None:
     with pytest.raises(SceneError, match="'env:bench' and 'env:cube1' overlap by 7 mm"):
-        course(cube=(0.5, 0.1, TABLE_TOP + HALF_CUBE - 0.007))
+        course(cube1=(0.5, 0.1, TABLE_TOP + HALF_CUBE - 0.007))
 
 
 def test_a_resting_contact_may_be_a_little_deep() -> None:
-    course(cube=(0.5, 0.1, TABLE_TOP + HALF_CUBE - 0.0009))
+    course(cube1=(0.5, 0.1, TABLE_TOP + HALF_CUBE - 0.0009))
     with pytest.raises(SceneError, match="overlap by 1 mm"):
-        course(cube=(0.5, 0.1, TABLE_TOP + HALF_CUBE - 0.0012))
+        course(cube1=(0.5, 0.1, TABLE_TOP + HALF_CUBE - 0.0012))
 
 
 def test_a_thing_in_the_arm_is_reported() -> None:
     tool = course().simulation.data.body(f"{PANDA}/hand").xpos
     with pytest.raises(SceneError, match="'env:cube1' and 'env:panda' overlap"):
-        course(cube=(float(tool[0]), float(tool[1]), float(tool[2])))
+        course(cube1=(float(tool[0]), float(tool[1]), float(tool[2])))
+
+
+BALLS = tuple(f"env:ball{number}" for number in range(1, 5))
+
+
+def test_the_deepest_overlaps_are_named_first_and_the_others_counted() -> None:
+    scene = replace(ON_TABLE, objects=(CUBE, *BALLS, "env:bench"))
+    height = TABLE_TOP + RADIUS
+    deep = {f"ball{number}": (0.5, 0.1 * number, height - 0.002 * number) for number in range(1, 5)}
+    with pytest.raises(SceneError) as caught:
+        course(scene, **deep)
+    assert str(caught.value) == (
+        "cell.scenex:7:5: 'env:ball4' and 'env:bench' overlap by 8 mm; 'env:ball3' and 'env:bench' overlap by 6 mm; "
+        "'env:ball2' and 'env:bench' overlap by 4 mm; 1 more pairs overlap: "
+        "nothing may be in something else at the start"
+    )
+
+
+def test_of_two_contacts_of_a_pair_the_deeper_one_counts() -> None:
+    scene = replace(ON_TABLE, objects=("env:cube1", "env:cube2", "env:bench"))
+    with pytest.raises(SceneError, match=r"'env:cube1' and 'env:cube2' overlap by 12 mm: "):
+        course(scene, cube1=(0.5, 0.1, 0.3), cube2=(0.5, 0.1 + 2 * HALF_CUBE - 0.012, 0.31))
