@@ -178,10 +178,10 @@ def test_a_range_of_positions_is_that_of_its_thing() -> None:
 
 def test_a_table_without_workspace_or_out_of_reach_is_explained() -> None:
     cast = cast_scene(SCENE)
-    with pytest.raises(SceneError, match=r"'env:\w+' is to be at 'env:bench', which has no workspace"):
+    with pytest.raises(SceneError, match=r"^'env:ball1' .* 'env:bench', which has no workspace$"):
         arrange(SCENE, with_table(cast, region=None), FRONT, np.random.default_rng(1))
     far = Pose((-3.0, 0.0, 0.15))
-    with pytest.raises(SceneError, match=r"no part of 'env:bench', where 'env:\w+' is to be, lies within reach"):
+    with pytest.raises(SceneError, match=r"^no part of 'env:bench', where 'env:ball1' "):
         arrange(SCENE, cast, far, np.random.default_rng(1))
 
 
