@@ -32,6 +32,7 @@ from robbdd_tools.commands.run_arguments import (
     run_options,
 )
 
+MORE = "further parts of a model that is a graph (.ttl, .json, .jsonld)"
 FORMATS = ("ttl", "json-ld", "json-ld-expanded", "nt", "xml")
 
 
@@ -95,12 +96,14 @@ def _parser() -> argparse.ArgumentParser:
 
     graph = commands.add_parser("graph", help="print the knowledge graph of a model and its imports")
     graph.add_argument("path", metavar="FILE", type=Path)
+    graph.add_argument("more", metavar="FILE", type=Path, nargs="*", help=MORE)
     graph.add_argument("--format", choices=(*FORMATS, "svg"), default="ttl", help="svg is a picture of its structure")
     _take_results(graph)
     graph.set_defaults(command=_graph)
 
     gherkin = commands.add_parser("gherkin", help="write a folder of features that behave runs")
     gherkin.add_argument("path", metavar="FILE", type=Path)
+    gherkin.add_argument("more", metavar="FILE", type=Path, nargs="*", help=MORE)
     gherkin.add_argument("-o", "--output", metavar="DIR", type=Path, required=True)
     gherkin.add_argument(
         "--template", metavar="NAME|FILE", default="default", help="default, compact, de or your own file"
@@ -120,6 +123,9 @@ def _parser() -> argparse.ArgumentParser:
     run = commands.add_parser("run", help="execute the scenarios of models in simulation and judge every clause")
     text = "a model, or a folder whose models are all run"
     run.add_argument("path", metavar="FILE|DIR", type=Path, nargs="?", help=text)
+    run.add_argument(
+        "more", metavar="FILE|DIR", type=Path, nargs="*", help="more models; all graph files are one model"
+    )
     allow_run(run)
     run.set_defaults(command=_run)
 
@@ -141,6 +147,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     judge.add_argument("run", metavar="RUN", help="number of a stored run, latest, or a run's folder")
     judge.add_argument("path", metavar="FILE|DIR", type=Path)
+    judge.add_argument("more", metavar="FILE|DIR", type=Path, nargs="*", help="as for run")
     judge.add_argument("--json", metavar="OUT", type=Path, help="write the results to this file")
     allow_store(judge)
     judge.set_defaults(command=_judge)
@@ -202,7 +209,8 @@ def _fetch_contexts(options: argparse.Namespace) -> int:
         return OK
     from robbdd_tools.commands.models import fetch_contexts
 
-    failure = fetch_contexts(getattr(options, "paths", None) or [options.path or Path()], options.allow_host or ())
+    paths = getattr(options, "paths", None) or [options.path or Path(), *getattr(options, "more", ())]
+    failure = fetch_contexts(paths, options.allow_host or ())
     if failure is None:
         return OK
     print_note(failure)
@@ -224,13 +232,13 @@ def _format(options: argparse.Namespace) -> int:
 def _graph(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.export import print_graph
 
-    return print_graph(options.path, options.format, options.results)
+    return print_graph(options.path, options.more, options.format, options.results)
 
 
 def _gherkin(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.gherkin import GherkinOptions, write_gherkin
 
-    return write_gherkin(GherkinOptions(options.path, options.output, options.template, wanted(options)))
+    return write_gherkin(GherkinOptions(options.path, options.more, options.output, options.template, wanted(options)))
 
 
 def _steps(options: argparse.Namespace) -> int:
@@ -281,7 +289,7 @@ def _judge(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.judge import JudgeOptions, judge
 
     with output_may_be_lost():
-        return judge(JudgeOptions(options.run, options.path, options.store, options.json))
+        return judge(JudgeOptions(options.run, (options.path, *options.more), options.store, options.json))
 
 
 def _import(options: argparse.Namespace) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,11 +22,14 @@ PICTURE = "svg"
 """Format of a picture of the structure; all others are formats of the graph."""
 
 
-def print_graph(path: Path, form: str, results: str | None) -> int:
-    """Print the graph of a model and its imports, with the results of a run if given; return the exit code."""
+def print_graph(path: Path, more: Sequence[Path], form: str, results: str | None) -> int:
+    """Print the graph of a model and its imports, with the results of a run if given; return the exit code.
+
+    ``more`` are further graph files of the model.
+    """
     from robbdd_tools.graph.rdf.serialize import UnwritableGraph, serialize
 
-    model = sound_model(path)
+    model = sound_model(path, more)
     if model is None:
         return FAILED
     built = graph_with_results(model, path, results)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
@@ -24,9 +25,13 @@ LARGEST_CHECKED = 4 * 1024 * 1024
 
 @dataclass(frozen=True, slots=True)
 class GherkinOptions:
-    """Output and template: ``template`` is the name of a built-in one or a path; runs use ``wanted.seed``, too."""
+    """Model, output and template: ``more`` are further graph files of the model.
+
+    ``template`` is the name of a built-in one or a path; runs use ``wanted.seed``, too.
+    """
 
     path: Path
+    more: Sequence[Path]
     folder: Path
     template: str
     wanted: Wanted
@@ -39,7 +44,7 @@ def write_gherkin(options: GherkinOptions) -> int:
     from robbdd_tools.gherkin.user_template import sheet
     from robbdd_tools.graph.rdf.serialize import serialize
 
-    file = sound_model(options.path)
+    file = sound_model(options.path, options.more)
     if file is None:
         return FAILED
     built, model = file.graph, file.acceptance

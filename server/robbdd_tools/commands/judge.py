@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,16 +15,16 @@ from robbdd_tools.commands.run import Outputs, guarded
 from robbdd_tools.commands.runs import say_unfinished
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.workbench.judging import Judgement
-from robbdd_tools.workbench.model import load
+from robbdd_tools.workbench.model import load_all
 from robbdd_tools.workbench.stored import store_at
 
 
 @dataclass(frozen=True, slots=True)
 class JudgeOptions:
-    """The run (a number, ``latest`` or a folder), the edited model, the store of runs, the output file."""
+    """The run (a number, ``latest`` or a folder), the edited models, the store of runs, the output file."""
 
     run: str
-    path: Path
+    paths: Sequence[Path]
     store: Path | None = None
     report: Path | None = None
 
@@ -34,9 +35,9 @@ def judge(options: JudgeOptions) -> int:
 
 
 def _judge(options: JudgeOptions) -> int:
-    place = store_at(options.path, options.store).find(options.run)
+    place = store_at(options.paths[0], options.store).find(options.run)
     status = place.status()
-    model = load(options.path)
+    model = load_all(options.paths)
     _ = model.runnable
     say_unfinished(place, status)
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,15 +19,21 @@ HOSTS = "context-hosts"
 HOSTS_FORM = 'a list of host names, such as ["example.org"]'
 
 
-def sound_model(path: Path) -> ModelFile | None:
-    """Load one model for a command that needs it free of errors; print its errors and return ``None`` if it has any."""
+def sound_model(path: Path, more: Sequence[Path] = ()) -> ModelFile | None:
+    """Load one model for a command that needs it free of errors; print its errors and return ``None`` if it has any.
+
+    ``more`` are further graph files of the model.
+    """
     if path.is_dir():
         fail(f"{path} is a folder; name a file in it")
         return None
     try:
-        model = load(path)
+        model = load(path, *more)
     except NotAModel as error:
         fail(str(error))
+        return None
+    if len(model.files) > 1:
+        fail("several files are one model only if they are graphs (.ttl, .json, .jsonld); name one model")
         return None
     errors = [finding for finding in model.diagnostics if finding.is_error]
     print_findings(errors, print_note)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,7 +22,7 @@ from robbdd_tools.protocol.messages import VIEWER
 from robbdd_tools.run.pictures import NoPictures, no_display, render_moments, render_videos
 from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.workbench.folder import Keeping, new_folder
-from robbdd_tools.workbench.model import ModelErrors, load
+from robbdd_tools.workbench.model import ModelErrors, load_all
 from robbdd_tools.workbench.plan import Plan, Selection
 from robbdd_tools.workbench.rerun import NothingFailed, failed_in, last_run
 from robbdd_tools.workbench.run import Run
@@ -44,13 +44,13 @@ class Outputs:
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """What to run (a model, or a folder of them) and how.
+    """What to run (models, or folders of them) and how.
 
     ``repeat`` replaces the repetitions of executions. ``rerun_failed`` selects what failed in the last stored run;
     ``viewer`` opens a window on each scenario, one after another.
     """
 
-    path: Path
+    paths: Sequence[Path]
     selection: Selection
     policy: Policy
     outputs: Outputs
@@ -110,11 +110,12 @@ def conclude(run: Run, outputs: Outputs, ended_by: int) -> int:
 
 
 def _run(options: RunOptions) -> int:
-    model = load(options.path)
+    path = options.paths[0]
+    model = load_all(options.paths)
     selection, repeat = options.selection, options.repeat
     if options.rerun_failed:
         _ = model.runnable
-        last = last_run(store_at(options.path, options.outputs.keeping.store), options.path)
+        last = last_run(store_at(path, options.outputs.keeping.store), path)
         say_unfinished(last, last.status())
         failed = failed_in(last)
         own = failed.seed if selection.seed is None else selection.seed
@@ -128,7 +129,7 @@ def _run(options: RunOptions) -> int:
         repeat = repeat or failed.repeat
     plan = Plan.of(model, selection)
     print_coverage(plan.covers)
-    place = new_folder(options.path, options.outputs.keeping)
+    place = new_folder(path, options.outputs.keeping)
     if place.remark:
         print_note(f"robbdd: {place.remark}")
     policy = seen(options.policy, viewer=options.viewer)

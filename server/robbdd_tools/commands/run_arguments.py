@@ -102,7 +102,13 @@ def run_options(options: argparse.Namespace) -> RunOptions:
     )
     outputs = _outputs(options, keep=not options.no_store)
     return RunOptions(
-        options.path, selection, policy(options), outputs, options.repeat, options.rerun_failed, options.viewer
+        (options.path, *options.more),
+        selection,
+        policy(options),
+        outputs,
+        options.repeat,
+        options.rerun_failed,
+        options.viewer,
     )
 
 

@@ -63,5 +63,7 @@ def all_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     if snapshot.file(uri) is not None:
         for analysis in snapshot.closure(uri)[1:]:
             found |= dict.fromkeys(fast_diagnostics(snapshot, analysis.document.uri))
+        for part in snapshot.joined.get(uri, ()):
+            found |= dict.fromkeys(fast_diagnostics(snapshot, part))
         found |= dict.fromkeys(shape_diagnostics(snapshot, uri))
     return sorted(found, key=lambda diagnostic: (diagnostic.uri != uri, sort_key(diagnostic)))

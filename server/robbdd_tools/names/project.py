@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -26,6 +26,12 @@ class Project:
     _open: dict[str, Source] = field(default_factory=dict[str, Source])
     _disk: dict[str, Source] = field(default_factory=dict[str, Source])
     _analyses: dict[str, Resolved] = field(default_factory=dict[str, Resolved])
+    _joined: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+
+    def join(self, uri: str, others: Sequence[str]) -> None:
+        """Read other graph files as parts of the graph file ``uri``."""
+        self._joined[uri] = tuple(others)
+        self.revision += 1
 
     def open(self, uri: str, version: int, text: str) -> None:
         """Set the text of a document that an editor holds (also on every change)."""
@@ -82,7 +88,7 @@ class Project:
                 sources[uri] = source = self.load(uri)
                 if isinstance(source, FileIndex):
                     waiting += [imported.uri for imported in source.imports]
-        return Snapshot(self.revision, sources, self._analyses)
+        return Snapshot(self.revision, sources, self._analyses, dict(self._joined))
 
 
 def _read(uri: str) -> Source:
@@ -100,6 +106,8 @@ class Snapshot:
     revision: int
     sources: Mapping[str, Source]
     _analyses: dict[str, Resolved]
+    joined: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    """Graph files that are parts of another one, by the URI of that one."""
 
     @cached_property
     def _files(self) -> dict[str, FileAnalysis]:

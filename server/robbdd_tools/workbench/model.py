@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -87,8 +87,9 @@ class ModelFile:
 
     @property
     def is_unreadable(self) -> bool:
-        """Whether the file has no text: it is missing, too large or not text."""
-        return self.snapshot.unreadable(self.uri) is not None
+        """Whether a file of the model has no text: it is missing, too large or not text."""
+        parts = (self.uri, *self.snapshot.joined.get(self.uri, ()))
+        return any(self.snapshot.unreadable(uri) is not None for uri in parts)
 
     @property
     def has_scenarios(self) -> bool:
@@ -98,10 +99,11 @@ class ModelFile:
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """The models loaded together from ``path`` (a file, a folder, or the name of a text)."""
+    """The models loaded together from ``path`` (a file, a folder, or the name of a text), or from several ``paths``."""
 
     path: Path
     files: Sequence[ModelFile]
+    paths: Sequence[Path] = ()
 
     @cached_property
     def diagnostics(self) -> tuple[Finding, ...]:
@@ -182,15 +184,18 @@ class Model:
         )
 
 
-def load(path: str | os.PathLike[str], *, text: str | None = None) -> Model:
+def load(path: str | os.PathLike[str], *more: str | os.PathLike[str], text: str | None = None) -> Model:
     """Load a model (``.bdd``, ``.bddx``, ``.scene`` …, ``.ttl``, ``.json``, ``.jsonld``) or all models in a folder.
 
-    ``text`` replaces the content of the file, which need not exist; imports are relative to ``path``. Errors in the
-    model are findings, not exceptions. Raises ``NotAModel``.
+    ``more`` are further models; all graph files together are one model. ``text`` replaces the content of a single file,
+    which need not exist; imports are relative to ``path``. Errors in the model are findings, not exceptions. Raises
+    ``NotAModel``.
     """
     start = Path(path)
     if text is None:
-        return load_all([start])
+        return load_all([start, *map(Path, more)])
+    if more:
+        raise ValueError("a text replaces one file: load it alone")
     _refuse_other_files([start], must_exist=False)
     project = Project()
     project.open(path_to_uri(start), 0, text)
@@ -200,13 +205,16 @@ def load(path: str | os.PathLike[str], *, text: str | None = None) -> Model:
 def load_all(paths: Sequence[Path]) -> Model:
     """Load files, and all models in folders, into one project; the model is named after the first path.
 
-    Raises ``NotAModel``.
+    All graph files together are one model, named after the first of them. Raises ``NotAModel``.
     """
     files = named_files(paths)
     project = Project()
     for file in files:
         project.load(path_to_uri(file))
-    return _model(paths[0], project, files)
+    first, *others = [file for file in files if graph_format(file.name)] or [Path()]
+    if others:
+        project.join(path_to_uri(first), list(map(path_to_uri, others)))
+    return replace(_model(paths[0], project, [file for file in files if file not in others]), paths=paths)
 
 
 def _model(path: Path, project: Project, files: Iterable[Path]) -> Model:

@@ -143,6 +143,7 @@ class Plan:
     """What to execute of some models.
 
     ``name`` is their common name in reports, ``path`` their file or folder, ``None`` for a text without a file.
+    ``models`` are the files and folders if they are several.
     """
 
     name: str
@@ -151,11 +152,13 @@ class Plan:
     selection: Selection
     requests: tuple[RunRequest, ...]
     covers: tuple[Coverage, ...]
+    models: tuple[Path, ...] = ()
 
     @classmethod
     def of(cls, model: Model, selection: Selection) -> Plan:
         """Return the plan of a model; raises ``ModelErrors``, ``NothingToRun`` and ``SelectionError``."""
-        return cls.of_files(str(model.path), model.path, model.runnable, selection)
+        plan = cls.of_files(str(model.path), model.path, model.runnable, selection)
+        return replace(plan, models=tuple(model.paths) if len(model.paths) > 1 else ())
 
     @classmethod
     def of_files(cls, name: str, path: Path | None, files: tuple[ModelFile, ...], selection: Selection) -> Plan:

@@ -241,7 +241,7 @@ def begin_recording(
     recording = Recording(place, manifest)
     try:
         record = _record(plan, place.folder, manifest, plan.selection.seed if seed is None else seed)
-        record = replace(record, models=tuple(origin(model, place.folder) for model in models))
+        record = replace(record, models=tuple(origin(model, place.folder) for model in models or plan.models))
         recording.begin(record, policy, prepared_digest(place.folder))
         place.write_record(record)
         write_texts(plan.texts, place.folder)

@@ -53,7 +53,7 @@ def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
     """
     file = snapshot.file(uri) if graph_format(uri) else None
     if file is not None:
-        return read_graph_file(file.document)
+        return read_graph_file(file.document, [snapshot.document(other) for other in snapshot.joined.get(uri, ())])
     uses = Uses(snapshot.closure(uri))
     reached = reach(uses)
     return build_declarations(uri, uses, reached, identities(snapshot, reached))

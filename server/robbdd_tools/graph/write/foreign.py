@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
 
 
-def read_graph_file(document: Document) -> BuiltGraph:
+def read_graph_file(document: Document, others: Sequence[Document] = ()) -> BuiltGraph:
     """Return the graph that a document is; an empty one with a fault when it cannot be read."""
     from rdflib import Graph
 
     uri = document.uri
     try:
-        merged = merge_imports(document)
+        merged = merge_imports(document, others)
     except UnreadableGraph as error:
         fault = Diagnostic(uri, Span(error.offset, error.offset), Severity.ERROR, "graph-syntax", str(error))
         return BuiltGraph(uri, Graph(), SourceMap({}), {}, (), (), frozenset(), (fault,), True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rdflib import Graph
+    from rdflib.term import Node
 
 GRAPH_FORMATS = {"ttl": "ttl", "json": "json-ld", "jsonld": "json-ld"}
 """Ending of a model that is a graph → its format."""
@@ -35,12 +37,31 @@ class Merged:
     documents: list[Document]
     faults: list[Diagnostic] = field(default_factory=list[Diagnostic])
 
+    def add(self, document: Document, graph: Graph) -> list[tuple[Document, str]]:
+        """Add the graph of a document; returns what it imports, with the document.
 
-def merge_imports(document: Document) -> Merged:
+        Blank nodes are those of one document alone, though several may use the same labels.
+        """
+        from rdflib import BNode, URIRef
+
+        self.documents.append(document)
+        for prefix, namespace in graph.namespaces():
+            self.graph.bind(prefix, namespace, override=False)
+        number = len(self.documents)
+
+        def own(node: Node) -> Node:
+            return BNode(f"{node}-{number}") if isinstance(node, BNode) else node
+
+        for subject, predicate, value in graph:
+            self.graph.add((own(subject), predicate, own(value)))
+        return [(document, str(name)) for name in sorted(graph.objects(None, URIRef(IMPORTS)), key=str)]
+
+
+def merge_imports(document: Document, others: Iterable[Document] = ()) -> Merged:
     """Return the graph of a document and of all that it imports, directly or not; raises ``UnreadableGraph``.
 
     An import is a file by its relative path, or a web address whose path ends with that of a file in the folder of the
-    document that imports it. Nothing is fetched.
+    document that imports it. Nothing is fetched. The graphs of ``others`` are added as if ``document`` imported them.
     """
     from rdflib import URIRef
 
@@ -48,6 +69,15 @@ def merge_imports(document: Document) -> Merged:
     imported = sorted(str(name) for name in merged.graph.objects(None, URIRef(IMPORTS)))
     waiting = [(document, name) for name in imported]
     seen = {document.uri}
+    for other in others:
+        seen.add(other.uri)
+        try:
+            graph = parse(other.text, graph_format(other.uri), other.uri)
+        except UnreadableGraph as error:
+            place = Span(error.offset, error.offset)
+            merged.faults.append(Diagnostic(other.uri, place, Severity.ERROR, "graph-syntax", str(error)))
+        else:
+            waiting += merged.add(other, graph)
     for importer, name in waiting:
         path = _file(importer.uri, name)
         uri = name if path is None else path_to_uri(path)
@@ -59,11 +89,7 @@ def merge_imports(document: Document) -> Merged:
             merged.faults.append(_fault(importer, name, found))
             continue
         other, graph = found
-        merged.documents.append(other)
-        for prefix, namespace in graph.namespaces():
-            merged.graph.bind(prefix, namespace, override=False)
-        waiting += ((other, str(inner)) for inner in sorted(graph.objects(None, URIRef(IMPORTS)), key=str))
-        merged.graph += graph
+        waiting += merged.add(other, graph)
     return merged
 
 
