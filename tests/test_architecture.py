@@ -297,6 +297,8 @@ OPENS_ITSELF = {
     "agent.moments": "adds lines to a file of its own run",
     "base.descendants": "reads what Linux tells of processes",
     "run.agent_log": "adds to the log of a process",
+    "agent.stack_dumps": "the interpreter writes there when it crashes",
+    "user_code.call_note": "maps a file of its own run",
 }
 
 

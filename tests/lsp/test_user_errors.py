@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import shutil
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -110,6 +111,35 @@ async def test_an_error_is_shown_once_at_each_of_three_places_until_the_code_is_
     cell.code.write_text("# fixed\n" + cell.code.read_text(encoding="utf-8"), encoding="utf-8")
     cell.changed_on_disk(cell.code)
     await cell.until({})
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="exit codes in words")
+@pytest.mark.parametrize(
+    ("way", "words"),
+    [
+        ("__import__('os')._exit(4)", "the process ended with code 4"),
+        ("__import__('ctypes').string_at(0)", "the process ended with signal SIGSEGV"),
+    ],
+)
+async def test_code_that_ends_its_process_is_shown_once_at_each_of_three_places(
+    cell: Cell, run_messages: list[Any], way: str, words: str
+) -> None:
+    cell.write(f'{way} or arguments["goal"]')
+    cell.model.open()
+    await execute(cell.model, "run")
+    await cell.until(cell.three_places)
+    async with asyncio.timeout(PATIENCE):
+        # It is shown with the first scenario already.
+        while [one.message for one in cell.client.diagnostics[path_to_uri(cell.code)]] != [
+            f"{words} (in the last run, 2 scenarios)"
+        ]:
+            await asyncio.sleep(0.02)
+    (at_name,) = (one for one in cell.client.diagnostics[cell.model.uri] if one.code == CODE)
+    assert at_name.message.startswith(f"carrying:Carry failed: {words} (carrying.py:")
+    codes = {str(one.code) for found in cell.client.diagnostics.values() for one in found}
+    assert "clause-unknown" not in codes
+    failed = [entry.message for entry in run_messages if entry.message.type == "UserCodeFailed"]
+    assert failed[0].lines[-1] == words
 
 
 async def test_an_error_vanishes_with_an_unsaved_edit_of_the_code_or_of_the_model_and_with_the_next_run(

@@ -105,7 +105,7 @@ def test_a_killed_agent_costs_one_scenario_and_the_rest_goes_on(tmp_path: Path) 
     for message in scheduler.messages():
         results.apply(message)
     assert verdicts(results) == ["holds", "holds", "unknown", "holds", "holds"]
-    assert reasons(results, 2) == {"the agent process ended unexpectedly with signal SIGKILL"}
+    assert reasons(results, 2) == {"the agent process ended unexpectedly with signal SIGKILL (often: memory ran out)"}
     assert results.complete
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import sys
 
+from robbdd_tools.agent.stack_dumps import install
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.base.descendants import adopt_orphans
 from robbdd_tools.base.processes import on_end_request
@@ -25,6 +26,7 @@ def _main() -> int:
         return 2
     orders, messages = reserve_channel()
     adopt_orphans()
+    install()
     # Execution needs no graphics: a broken graphics back end must not prevent loading the engine.
     os.environ["MUJOCO_GL"] = "disable"
     # Install the signal handlers before the slow imports.

@@ -6,6 +6,7 @@ import os
 from threading import Lock
 from typing import TYPE_CHECKING
 
+from robbdd_tools.agent import stack_dumps
 from robbdd_tools.protocol.messages import ScenarioFinished, ScenarioStarted, encode
 
 if TYPE_CHECKING:
@@ -52,7 +53,9 @@ class Reports(Lines):
         match message:
             case ScenarioStarted(index):
                 self.scenario = index
+                stack_dumps.watch()
             case ScenarioFinished(index):
+                stack_dumps.rest()
                 self.scenario = None
                 self.finished.add(index)
             case _:

@@ -12,8 +12,9 @@ from typing import Any
 from robbdd_tools.agent.channel import current_channel
 from robbdd_tools.agent.session import Session
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
+from robbdd_tools.protocol.fault_places import original
 from robbdd_tools.protocol.manifest_file import MANIFEST, read_manifest
-from robbdd_tools.user_code.calls import fault_of, original
+from robbdd_tools.user_code.calls import fault_of
 
 __all__ = ["after_all", "after_scenario", "after_step", "before_all", "before_scenario"]
 EXECUTION = "robbdd.execution"

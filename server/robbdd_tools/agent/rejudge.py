@@ -14,6 +14,7 @@ from typing import Any
 
 from robbdd_tools.agent.channel import Reports
 from robbdd_tools.agent.printed_output import Printed, finish_output
+from robbdd_tools.agent.stack_dumps import install
 from robbdd_tools.agent.standard_streams import reserve_channel
 from robbdd_tools.base.files import load_text
 from robbdd_tools.base.limits import RESULT_SIZE
@@ -185,6 +186,7 @@ def _messages(manifest: Manifest, traces: StoredTraces) -> Iterator[RunMessage]:
 
 def _main() -> int:
     channel = Reports(reserve_channel()[1])
+    install()
     sys.stdout = Printed(channel, sys.stdout)
     folder, run = map(Path, sys.argv[1:])
     try:

@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.agent import hooks
+from robbdd_tools.agent import hooks, stack_dumps
 from robbdd_tools.agent.channel import Channel, Reports, use_channel
 from robbdd_tools.agent.hooks import EXECUTION
 from robbdd_tools.agent.printed_output import Printed, finish_output
@@ -18,6 +18,7 @@ from robbdd_tools.agent.session import UNKNOWN_SCENARIO
 from robbdd_tools.agent.steps import load_steps
 from robbdd_tools.base.descendants import end_descendants
 from robbdd_tools.monitor.verdict import Cause
+from robbdd_tools.protocol.fault_places import original, sources_in
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.messages import (
     LogLine,
@@ -30,7 +31,7 @@ from robbdd_tools.protocol.messages import (
     never_judged,
 )
 from robbdd_tools.protocol.run_folder import OWN_STEPS
-from robbdd_tools.user_code.calls import fault_of, original
+from robbdd_tools.user_code.calls import fault_of
 from robbdd_tools.user_code.modules import folder_of, search
 from robbdd_tools.world.engine import version
 
@@ -80,6 +81,7 @@ def _behave(features: Features, orders: Iterable[str]) -> str:
             load_steps(features.own_steps())
         except (Exception, SystemExit) as error:
             return features.report_broken_steps(error)
+        stack_dumps.rest()
         runner.run_model(features.ordered(orders, config.userdata))
     except Exception as error:  # behave's own failures (a broken hooks or steps file) have many types
         return f"behave cannot run the features: {' '.join(str(error).split())}"
@@ -130,8 +132,7 @@ class Features:
 
     def report_broken_steps(self, error: BaseException) -> str:
         """Report that the users' steps cannot be loaded; return the reason."""
-        sources = {str((self.folder / copy).resolve()): source for copy, source in self._manifest.sources.items()}
-        fault = original(fault_of(error, "steps"), sources)
+        fault = original(fault_of(error, "steps"), sources_in(self.folder, self._manifest.sources))
         place = fault.place
         if place is not None and place.own:
             self._channel.send(UserCodeFailed(None, fault))

@@ -22,6 +22,7 @@ from robbdd_tools.judging.unnamed_contacts import unnamed_contacts
 from robbdd_tools.monitor.time import never_occurred
 from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict, unknown
 from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, Fluent, Junction, Text
+from robbdd_tools.protocol.fault_places import sources_in
 from robbdd_tools.protocol.messages import (
     VIEWER,
     ClauseJudged,
@@ -292,7 +293,7 @@ class Session:
             ((folder / spec.feature).resolve(), spec.line): index
             for index, spec in reversed(list(enumerate(manifest.scenarios)))
         }
-        self.sources = {str((folder / copy).resolve()): source for copy, source in manifest.sources.items()}
+        self.sources = sources_in(folder, manifest.sources)
         self._folder = folder
         self._manifest = manifest
         self._moments = Moments(folder)

@@ -186,7 +186,8 @@ def describe_exit(code: int) -> str:
     """Return an exit code of ``Popen`` in words: ``code 7``, ``signal SIGKILL``, ``code 0xC0000005 (…)``."""
     if code < 0:
         known = {each.value: each.name for each in signal.Signals}
-        return f"signal {known.get(-code, -code)}"
+        hint = " (often: memory ran out)" if known.get(-code) == "SIGKILL" else ""
+        return f"signal {known.get(-code, -code)}{hint}"
     if code >= _LEAST_ERROR:
         return f"code 0x{code:X} ({WINDOWS_ERRORS.get(code, 'ended by Windows')})"
     return f"code {code}"

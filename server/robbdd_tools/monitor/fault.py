@@ -23,12 +23,12 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """An exception raised by users' code, or an invalid return value.
+    """An exception raised by users' code, an invalid return value, or the end of the process in it.
 
-    ``exception`` is the type's name and ``message`` its text; ``code`` is the called code (``module:attribute`` or a
-    step's sentence); ``frames`` are the calls outside of this package, outermost first. ``origin`` is the IRI of the
-    behaviour, policy, tree or model that names the code, empty for steps. ``digest`` is the SHA-256 of the file of
-    ``place``, empty if it cannot be read.
+    ``exception`` is the type's name, empty without an exception, and ``message`` its text; ``code`` is the called
+    code (``module:attribute`` or a step's sentence); ``frames`` are the calls outside of this package, outermost
+    first. ``origin`` is the IRI of the behaviour, policy, tree or model that names the code, empty for steps.
+    ``digest`` is the SHA-256 of the file that ``place`` is in, empty if it cannot be read.
     """
 
     exception: str
@@ -54,6 +54,13 @@ class Fault:
     def summary(self) -> str:
         """Exception and message in one line."""
         return ": ".join(part for part in (self.exception, " ".join(self.message.split())) if part)
+
+    @property
+    def words(self) -> str:
+        """What failed, how and where, in one line."""
+        place = self.place
+        where = "" if place is None else f" ({place.file}:{place.line})"
+        return f"{self.code} failed: {self.summary}{where}"
 
     def traceback(self) -> Iterator[str]:
         """Yield the lines of the traceback in Python's format, which terminals turn into links."""

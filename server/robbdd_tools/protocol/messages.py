@@ -181,9 +181,9 @@ def judged(index: int, line: int, verdict: Verdict) -> ClauseJudged:
     )
 
 
-def never_judged(index: int, line: int, reason: str, cause: Cause) -> ClauseJudged:
-    """Return the message for a clause that is unknown because nothing judged it."""
-    return judged(index, line, unknown(reason, cause))
+def never_judged(index: int, line: int, reason: str, cause: Cause, fault: Fault | None = None) -> ClauseJudged:
+    """Return the message for a clause that is unknown because nothing judged it; ``fault`` is the cause, if known."""
+    return judged(index, line, unknown(reason, cause, fault=fault))
 
 
 def encode(message: RunMessage | Execute) -> str:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import inf
 from time import monotonic
 
+from robbdd_tools.monitor.fault import Fault
+from robbdd_tools.protocol.run_folder import STARTUP
+from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.run.launch import Agent
 
-STARTUP = 120.0
-"""Seconds of wall time in which a process must start a scenario after its own start or after an order."""
+GRACE = 0.5
+"""Seconds beyond a deadline that a process has to dump its stack, until it is ended."""
 
 
 @dataclass(slots=True, eq=False)
@@ -38,7 +41,7 @@ class AgentWorker:
         self.index = index = self.following.popleft()
         self.started = self.failed = False
         self.judged = set()
-        self.deadline = monotonic() + STARTUP
+        self.deadline = monotonic() + STARTUP + GRACE
         self.agent.execute(index)
 
     def release(self) -> None:
@@ -51,3 +54,11 @@ class AgentWorker:
         """End the worker because it missed its deadline."""
         self.timed_out, self.deadline = True, inf
         self.agent.kill()
+
+    def fault(self, limit: float, spec: ScenarioSpec | None, sources: Mapping[str, str]) -> Fault | None:
+        """Return the user's code that the ended process was in, if it was; see ``Crash.fault``.
+
+        ``limit`` are the seconds that it had, ``spec`` is the scenario that it had begun.
+        """
+        ended = f"still running after {limit:g} s" if self.timed_out else f"the process ended with {self.agent.exit()}"
+        return self.agent.crash.fault(ended, spec, sources)

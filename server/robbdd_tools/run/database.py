@@ -94,6 +94,18 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         "ALTER TABLE clause ADD COLUMN cause TEXT NOT NULL DEFAULT ''",
         "ALTER TABLE clause ADD COLUMN operand INTEGER",
     ),
+    (
+        # An error in users' code: content is a Fault as JSON; shared is 1 for code that all executions load.
+        """CREATE TABLE fault (
+            run INTEGER NOT NULL REFERENCES run (number) ON DELETE CASCADE,
+            id TEXT NOT NULL,
+            shared INTEGER NOT NULL,
+            content TEXT NOT NULL,
+            PRIMARY KEY (run, id)
+        ) WITHOUT ROWID""",
+        # printed is what users' code printed.
+        "ALTER TABLE execution ADD COLUMN printed TEXT NOT NULL DEFAULT ''",
+    ),
 )
 """Migration statements, one tuple per schema version; ``PRAGMA user_version`` counts them."""
 

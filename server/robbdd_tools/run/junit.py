@@ -7,6 +7,7 @@ from itertools import groupby
 from xml.etree import ElementTree
 
 from robbdd_tools.base.printable import printable
+from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import never_judged
 from robbdd_tools.run.report import plain_sentence, values_words, verdict_words
@@ -17,12 +18,12 @@ def junit(results: RunResults) -> str:
     """Return the document. A violated clause is a failure, an unknown one an error; ``time`` is wall time in s."""
     root = ElementTree.Element("testsuites")
     for story, scenarios in groupby(results.scenarios, key=lambda scenario: scenario.spec.story):
-        _suite(root, story, list(scenarios))
+        _suite(root, story, list(scenarios), results)
     ElementTree.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def _suite(root: ElementTree.Element, story: str, scenarios: list[ScenarioResult]) -> None:
+def _suite(root: ElementTree.Element, story: str, scenarios: list[ScenarioResult], results: RunResults) -> None:
     outcomes = [scenario.verdict for scenario in scenarios]
     suite = ElementTree.SubElement(root, "testsuite", name=printable(story.replace("#", "/").rsplit("/", 1)[-1]))
     suite.set("tests", str(len(scenarios)))
@@ -31,10 +32,10 @@ def _suite(root: ElementTree.Element, story: str, scenarios: list[ScenarioResult
     suite.set("skipped", "0")
     suite.set("time", f"{sum(map(_wall, scenarios)):.3f}")
     for scenario in scenarios:
-        _case(suite, scenario)
+        _case(suite, scenario, results.faults_of(scenario))
 
 
-def _case(suite: ElementTree.Element, scenario: ScenarioResult) -> None:
+def _case(suite: ElementTree.Element, scenario: ScenarioResult, faults: list[Fault]) -> None:
     spec = scenario.spec
     group = spec.variant.replace("#", "/").rsplit("/", 1)[-1]
     group = group if spec.execution is None else f"{group}.{spec.execution.name.rpartition(':')[2]}"
@@ -47,10 +48,17 @@ def _case(suite: ElementTree.Element, scenario: ScenarioResult) -> None:
         tag = "failure" if outcome is Outcome.VIOLATED else "error"
         worst = next((words for verdict, words in failed if verdict is outcome), "no clause was judged")
         element = ElementTree.SubElement(case, tag, message=printable(worst), type=str(outcome))
-        element.text = _lines(words for _, words in failed)
+        element.text = _lines((*(words for _, words in failed), *_tracebacks(faults)))
     output = ElementTree.SubElement(case, "system-out")
+    printed = (f"│ {line}" for line in scenario.printed.splitlines())
     substituted = [] if spec.substitution is None else [str(spec.substitution)]
-    output.text = _lines((f"seed {spec.seed}", *substituted, *(words for _, words in _clauses(scenario))))
+    output.text = _lines((f"seed {spec.seed}", *substituted, *(words for _, words in _clauses(scenario)), *printed))
+
+
+def _tracebacks(faults: Iterable[Fault]) -> Iterable[str]:
+    for fault in faults:
+        yield f"{fault.code} failed"
+        yield from fault.traceback()
 
 
 def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:

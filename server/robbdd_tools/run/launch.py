@@ -17,7 +17,10 @@ from robbdd_tools.base.descendants import MARK, end_marked
 from robbdd_tools.base.interpreter import start
 from robbdd_tools.base.processes import describe_exit, end_group, request_end
 from robbdd_tools.protocol.messages import Execute, LogLine, RunMessage, decode, encode
+from robbdd_tools.protocol.run_folder import CRASH
+from robbdd_tools.protocol.run_folder import LIMIT as TIME_LIMIT
 from robbdd_tools.run.agent_log import LIMIT, BoundedLog
+from robbdd_tools.run.crashes import Crash, take_crash
 
 LOGS = "logs"
 WORK = "work"
@@ -47,15 +50,20 @@ class Agent:
         module: str = "robbdd_tools.agent",
         arguments: Sequence[str] = (),
         log_limit: int = LIMIT,
+        timeout: float = 0.0,
     ) -> None:
         folder = folder.absolute()
-        work = folder / WORK
-        work.mkdir(exist_ok=True)
+        self._work = folder / WORK
+        self._work.mkdir(exist_ok=True)
         (folder / LOGS).mkdir(exist_ok=True)
         self._log = BoundedLog(folder / LOGS / f"agent-{number}.log", log_limit)
         self._mark = f"{os.getpid()}-{next(_numbers)}"
+        self._base = folder / LOGS / f"agent-{number}"
+        self.crash = Crash()
+        """Where the process was in the user's code when it ended, once its messages are at their end."""
+        more = {MARK: self._mark, CRASH: str(self._base), TIME_LIMIT: str(timeout)}
         with self._log.stream as log:
-            self._process = start(module, str(folder), *arguments, folder=work, log=log, more={MARK: self._mark})
+            self._process = start(module, str(folder), *arguments, folder=self._work, log=log, more=more)
         self._leftovers = threading.Thread(target=self._end_leftovers, daemon=True)
         self._leftovers.start()
 
@@ -84,6 +92,7 @@ class Agent:
                 if strange <= MOST_STRANGE:
                     yield LogLine("warning", str(error))
         self._process.wait()
+        self.crash = take_crash(self._base, self._work)
         self._close()
 
     def _close(self) -> None:
@@ -100,10 +109,13 @@ class Agent:
 
     def ending(self) -> str:
         """Describe how the process ended; used as the reason of its open clauses."""
-        code = self._process.wait()
         self._log.wait(PATIENCE)
         tail = self._log.last_line()
-        return f"the agent process ended unexpectedly with {describe_exit(code)}" + (f": {tail}" if tail else "")
+        return f"the agent process ended unexpectedly with {self.exit()}" + (f": {tail}" if tail else "")
+
+    def exit(self) -> str:
+        """Return the exit code of the ended process in words."""
+        return describe_exit(self._process.wait())
 
     def terminate(self) -> None:
         """Ask the process to end now."""

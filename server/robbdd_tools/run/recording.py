@@ -18,10 +18,12 @@ from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
     MarginRanges,
+    Output,
     RunFinished,
     RunStarted,
     ScenarioFinished,
     ScenarioStarted,
+    UserCodeFailed,
 )
 from robbdd_tools.protocol.specs import scenario_key
 from robbdd_tools.run.database import DatabaseProblem, explained, open_database, transaction
@@ -31,10 +33,15 @@ from robbdd_tools.run.stored_results import CAUSES, FAILED, FINISHED, INTERRUPTE
 if TYPE_CHECKING:
     from collections.abc import Generator
 
+    from robbdd_tools.monitor.fault import Fault
     from robbdd_tools.protocol.messages import RunMessage
     from robbdd_tools.protocol.specs import Manifest
     from robbdd_tools.run.scheduler import Policy
     from robbdd_tools.run.store import RunRecord, StoredRun
+
+
+Detail = ClauseJudged | MarginRanges | UserCodeFailed | Output
+"""Messages that are stored with the end of their execution."""
 
 
 class OtherSimulator(Exception):
@@ -52,7 +59,7 @@ class Recording:
     def __init__(self, place: StoredRun, manifest: Manifest) -> None:
         self._place = place
         self.manifest = manifest
-        self._open: dict[int, list[ClauseJudged | MarginRanges]] = {}
+        self._open: dict[int, list[Detail]] = {}
         self._done: set[int] = set()
         self._simulator = ""
         self._stops = False
@@ -91,6 +98,8 @@ class Recording:
                 "UPDATE run SET state = ?, ending = '', timeout = ?, stop_on_failure = ?, jobs = ? WHERE number = ?",
                 (RUNNING, policy.timeout, policy.stop_on_failure, policy.jobs, number),
             )
+            # What is repaired is not reported again; what is not fails again.
+            connection.execute("DELETE FROM fault WHERE run = ? AND shared", (number,))
             (self._simulator,) = connection.execute("SELECT simulator FROM run WHERE number = ?", (number,)).fetchone()
             results = restored(connection, number, self.manifest)
         self._done = {index for index, one in enumerate(results.scenarios) if one.finished is not None}
@@ -106,8 +115,11 @@ class Recording:
                 self._use_simulator(message.simulator)
             case ScenarioStarted(index):
                 self._open[index] = []
-            case ClauseJudged(index) | MarginRanges(index):
+            case ClauseJudged(index) | MarginRanges(index) | UserCodeFailed(int(index)) | Output(int(index)):
                 self._open.setdefault(index, []).append(message)
+            case UserCodeFailed(None, fault):
+                with self._writing() as connection:
+                    self._write_fault(connection, fault, shared=True)
             case ScenarioFinished(index):
                 judged = self._open.pop(index, [])
                 if index not in self._done:
@@ -170,7 +182,11 @@ class Recording:
         with self._writing() as connection:
             connection.execute("UPDATE run SET simulator = ? WHERE number = ?", (simulator, self._place.number))
 
-    def _write(self, finished: ScenarioFinished, messages: Sequence[ClauseJudged | MarginRanges]) -> None:
+    def _write_fault(self, connection: sqlite3.Connection, fault: Fault, *, shared: bool) -> None:
+        row = (self._place.number, fault.id, shared, json.dumps(asdict(fault)))
+        connection.execute("INSERT OR REPLACE INTO fault (run, id, shared, content) VALUES (?, ?, ?, ?)", row)
+
+    def _write(self, finished: ScenarioFinished, messages: Sequence[Detail]) -> None:
         spec = self.manifest.scenarios[finished.index]
         judged = {message.line: message for message in messages if isinstance(message, ClauseJudged)}
         varied = {message.line: message for message in messages if isinstance(message, MarginRanges)}
@@ -192,8 +208,11 @@ class Recording:
             "stepping": finished.stepping,
             "host": platform.node(),
             "ended": _now(),
+            "printed": "".join(f"{message.text}\n" for message in messages if isinstance(message, Output)),
         }
         with self._writing() as connection:
+            for fault in (message.fault for message in messages if isinstance(message, UserCodeFailed)):
+                self._write_fault(connection, fault, shared=False)
             execution = _insert(connection, "execution", row)
             for position, (line, one) in enumerate(judged.items()):
                 clause = {

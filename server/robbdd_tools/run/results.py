@@ -7,8 +7,17 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from robbdd_tools.catalog.coordination import TreeSpec
+from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.verdict import Cause, Outcome
-from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, RunMessage, never_judged
+from robbdd_tools.protocol.messages import (
+    ClauseJudged,
+    MarginRanges,
+    Output,
+    RunFinished,
+    RunMessage,
+    UserCodeFailed,
+    never_judged,
+)
 from robbdd_tools.protocol.messages import ScenarioFinished as Finished
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
 from robbdd_tools.run.vacuous_clauses import Vacuity
@@ -21,6 +30,8 @@ class ScenarioResult:
     spec: ScenarioSpec
     judged: dict[int, ClauseJudged] = field(default_factory=dict[int, ClauseJudged])
     finished: Finished | None = None
+    printed: str = ""
+    """What users' code printed, lines with their ends."""
 
     @property
     def verdict(self) -> Outcome:
@@ -43,6 +54,10 @@ class RunResults:
     complete: bool = False
     ending: str = ""
     cause: Cause | None = None
+    faults: dict[str, Fault] = field(default_factory=dict[str, Fault])
+    """Errors in users' code by their ``id``."""
+    shared_faults: set[str] = field(default_factory=set[str])
+    """Those of code that all scenarios load."""
     _vacuity: Vacuity = field(default_factory=Vacuity)
 
     def __post_init__(self) -> None:
@@ -57,6 +72,12 @@ class RunResults:
             case MarginRanges(index, line, ranges, held_before):
                 self._vacuity.varied(self._clause(index, line), ranges)
                 self._vacuity.held(self._clause(index, line), held_before)
+            case UserCodeFailed(index, fault):
+                self.faults[fault.id] = fault
+                if index is None:
+                    self.shared_faults.add(fault.id)
+            case Output(int(index), text):
+                self.scenarios[index].printed += f"{text}\n"
             case Finished():
                 self.scenarios[message.index].finished = message
             case RunFinished(ok):
@@ -82,6 +103,15 @@ class RunResults:
         for scenario in self.scenarios:
             if scenario.finished is None:
                 scenario.judged.clear()
+                scenario.printed = ""
+
+    def faults_of(self, scenario: ScenarioResult) -> list[Fault]:
+        """Return the errors in users' code that left clauses of a scenario unknown, each once."""
+        named = dict.fromkeys(one.fault for one in scenario.judged.values())
+        found = [self.faults[name] for name in named if name in self.faults]
+        if scenario.finished is None:
+            found += [self.faults[name] for name in sorted(self.shared_faults - set(named))]
+        return found
 
     def vacuous(self) -> Mapping[str, str]:
         """Return, by clause IRI, why a clause could not have failed in this run."""

@@ -19,6 +19,7 @@ from time import monotonic
 from typing import Self
 
 from robbdd_tools.monitor.verdict import Cause, Outcome
+from robbdd_tools.protocol.fault_places import sources_in
 from robbdd_tools.protocol.messages import (
     ClauseJudged,
     ClauseStarted,
@@ -33,9 +34,10 @@ from robbdd_tools.protocol.messages import (
     UserCodeFailed,
     never_judged,
 )
+from robbdd_tools.protocol.run_folder import STARTUP
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.agent_log import LIMIT
-from robbdd_tools.run.agent_worker import STARTUP, AgentWorker
+from robbdd_tools.run.agent_worker import GRACE, AgentWorker
 from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.run.misfit import misfit
 from robbdd_tools.run.order import InOrder
@@ -110,6 +112,7 @@ class Scheduler:
     ) -> None:
         self._folder = folder
         self._specs = manifest.scenarios
+        self._sources = sources_in(folder, manifest.sources)
         self._policy = policy or Policy()
         self._watch = watch
         self._events: SimpleQueue[Event | None] = SimpleQueue()
@@ -195,7 +198,8 @@ class Scheduler:
             worker.employ(self._waiting.popleft())
 
     def _launch(self) -> AgentWorker:
-        worker = AgentWorker(Agent(self._folder, next(self._agent_numbers), log_limit=self._policy.log_limit))
+        policy, number = self._policy, next(self._agent_numbers)
+        worker = AgentWorker(Agent(self._folder, number, log_limit=policy.log_limit, timeout=policy.timeout))
         self._workers.append(worker)
         threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
         return worker
@@ -238,10 +242,10 @@ class Scheduler:
             case LogLine(level, text):
                 worker.complaint = text if level == "error" else worker.complaint
                 yield from self._pass_on(worker, message)
-            case ScenarioStarted(index):
+            case ScenarioStarted():
                 self._wasted = 0
                 if not worker.started:
-                    worker.started, worker.deadline = True, monotonic() + self._limit(index)
+                    worker.started, worker.deadline = True, monotonic() + self._limit + GRACE
                 yield from self._pass_on(worker, message)
             case UserCodeFailed(None, fault):
                 # Each process loads the code that all scenarios share.
@@ -277,8 +281,9 @@ class Scheduler:
             case _:
                 return misfit(message, self._specs, worker.index)
 
-    def _limit(self, _index: int) -> float:
-        """Return a scenario's time limit, s."""
+    @property
+    def _limit(self) -> float:
+        """Seconds of wall time that a scenario may take."""
         return self._policy.timeout or inf
 
     def _finish(self, worker: AgentWorker, message: ScenarioFinished) -> Iterator[RunMessage]:
@@ -308,14 +313,17 @@ class Scheduler:
             if worker.following:
                 self._waiting.appendleft(tuple(worker.following))
                 worker.following.clear()
-            limit = self._limit(worker.index)
-            late = f"timed out after {limit:g} s"
-            reason = late if worker.timed_out else worker.agent.ending()
             cause = Cause.TIMED_OUT if worker.timed_out else Cause.PROCESS_ENDED
+            fault = worker.fault(self._limit, spec, self._sources)
+            late = f"timed out after {self._limit:g} s"
+            reason = late if worker.timed_out else worker.agent.ending()
+            if fault is not None:
+                reason = fault.words
+                yield from self._pass_on(worker, UserCodeFailed(worker.index, fault))
             for clause in spec.clauses:
                 if clause.line not in worker.judged:
                     worker.failed = True
-                    judged = never_judged(worker.index, clause.line, reason, cause)
+                    judged = never_judged(worker.index, clause.line, reason, cause, fault)
                     yield from self._pass_on(worker, judged)
             yield from self._finish(worker, ScenarioFinished(worker.index, 0.0, 0.0, 0.0))
             return
@@ -323,7 +331,12 @@ class Scheduler:
         self._waiting.appendleft((worker.index, *worker.following))
         if self._wasted == ATTEMPTS:
             late = f"the agent process did not begin within {STARTUP:g} s"
+            fault = worker.fault(STARTUP, None, self._sources)
             self.ending = late if worker.timed_out else worker.agent.ending()
+            if fault is not None:
+                self.ending = fault.words
+                self._watch(failed := UserCodeFailed(None, fault))
+                yield failed
 
     def _pass_on(self, worker: AgentWorker, message: RunMessage) -> Iterator[RunMessage]:
         self._watch(message)

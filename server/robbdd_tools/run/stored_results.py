@@ -11,6 +11,7 @@ from pathlib import Path
 
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.monitor.contact import Contact
+from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.verdict import Cause
 from robbdd_tools.protocol.messages import ClauseJudged, MarginRanges, RunFinished, ScenarioFinished
 from robbdd_tools.protocol.specs import Manifest
@@ -131,8 +132,17 @@ def read_results(database: Path, number: int, manifest: Manifest, *, live: bool 
 def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) -> RunResults:
     """Return the finished executions of a run as results that accept more; raises ``sqlite3.Error``."""
     results = RunResults(manifest)
-    query = "SELECT id, idx, simulated, wall, stepping, resampled, contacts FROM execution WHERE run = ? ORDER BY idx"
-    for identifier, position, simulated, wall, stepping, resampled, contacts in connection.execute(query, (number,)):
+    faults = connection.execute("SELECT shared, content FROM fault WHERE run = ? ORDER BY id", (number,))
+    for shared, content in faults:
+        fault = from_plain(Fault, json.loads(content))
+        results.faults[fault.id] = fault
+        if shared:
+            results.shared_faults.add(fault.id)
+    query = """SELECT id, idx, simulated, wall, stepping, resampled, contacts, printed
+        FROM execution WHERE run = ? ORDER BY idx"""
+    for identifier, position, simulated, wall, stepping, resampled, contacts, printed in connection.execute(
+        query, (number,)
+    ):
         index = int(position)
         if index >= len(manifest.scenarios):
             continue
@@ -148,6 +158,7 @@ def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) ->
                 if ranges is not None:
                     held = None if held_before is None else bool(held_before)
                     results.apply(MarginRanges(index, line, json.loads(ranges), held))
+        results.scenarios[index].printed = printed
         results.apply(ScenarioFinished(index, simulated, wall, stepping, resampled, touched))
     return results
 

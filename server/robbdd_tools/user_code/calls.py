@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import sys
-import sysconfig
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import redirect_stderr
-from dataclasses import replace
-from pathlib import Path
 from traceback import extract_tb
 from typing import Any
 
-from robbdd_tools.base.files import load_bytes
 from robbdd_tools.base.printable import encodable
 from robbdd_tools.monitor.fault import Fault, Frame
+from robbdd_tools.protocol.fault_places import is_library, is_ours, with_digest
+from robbdd_tools.user_code import call_note
 from robbdd_tools.user_code.modules import NotImported, folder_of, refuse_hidden, search
 
 MOST_FRAMES = 20
@@ -59,17 +56,20 @@ def called(name: str, code: Callable[..., Any], *arguments: Any) -> Any:
 
     Standard error is redirected to the same place as its ``print`` output.
     """
+    before = call_note.begin(name, code)
     try:
         with redirect_stderr(sys.stdout):
             return code(*arguments)
     except (Exception, SystemExit) as error:  # any exception here is the user's error
         fault = fault_of(error, name, code)
         raise UserCodeError(f"{name} failed: {fault.summary}{_place(error, fault)}", fault) from error
+    finally:
+        call_note.end(before)
 
 
 def refused(name: str, message: str, frames: tuple[Frame, ...] = ()) -> UserCodeError:
-    """Return the error for users' code that raises nothing but returns an invalid answer."""
-    return UserCodeError(message, _with_digest(Fault("", message, name, frames)))
+    """Return the error for user code that raises nothing but returns an invalid answer."""
+    return UserCodeError(message, with_digest(Fault("", message, name, frames)))
 
 
 def definition_of(code: object) -> tuple[Frame, ...]:
@@ -83,44 +83,19 @@ def definition_of(code: object) -> tuple[Frame, ...]:
 def fault_of(error: BaseException, name: str, code: object = None) -> Fault:
     """Describe an exception raised by ``code``, called ``name``."""
     words = error.msg if isinstance(error, SyntaxError) else str(error)
-    frames = tuple(_frames(error)) or tuple(frame for frame in definition_of(code) if not _is_ours(frame.file))
+    frames = tuple(_frames(error)) or tuple(frame for frame in definition_of(code) if not is_ours(frame.file))
     if len(frames) > MOST_FRAMES:
         frames = (*frames[: MOST_FRAMES // 2], *frames[-MOST_FRAMES // 2 :])
-    return _with_digest(Fault(type(error).__name__, encodable(str(words)[:MOST_WORDS]), name, frames))
-
-
-def original(fault: Fault, sources: Mapping[str, str]) -> Fault:
-    """Return a fault with the user's own files in place of the copies that ran; both are absolute paths."""
-    frames = tuple(replace(one, file=sources.get(str(Path(one.file).resolve()), one.file)) for one in fault.frames)
-    return _with_digest(replace(fault, frames=frames))
+    return with_digest(Fault(type(error).__name__, encodable(str(words)[:MOST_WORDS]), name, frames))
 
 
 def _frames(error: BaseException) -> Iterator[Frame]:
     """Yield the frames outside this package, without those of the import system."""
     for call in extract_tb(error.__traceback__):
-        if not call.filename.startswith("<") and call.filename != importlib.__file__ and not _is_ours(call.filename):
-            yield Frame(call.filename, call.lineno or 1, call.name, call.line or "", not _is_library(call.filename))
+        if not call.filename.startswith("<") and call.filename != importlib.__file__ and not is_ours(call.filename):
+            yield Frame(call.filename, call.lineno or 1, call.name, call.line or "", not is_library(call.filename))
     if isinstance(error, SyntaxError) and error.filename:
         yield Frame(error.filename, error.lineno or 1, "", (error.text or "").strip())
-
-
-def _is_ours(file: str) -> bool:
-    return Path(__file__).parents[1] in Path(file).parents
-
-
-def _is_library(file: str) -> bool:
-    path = Path(file)
-    installed = not {"site-packages", "dist-packages"}.isdisjoint(path.parts)
-    return installed or Path(sysconfig.get_path("stdlib")) in path.parents
-
-
-def _with_digest(fault: Fault) -> Fault:
-    place = fault.place
-    try:
-        digest = "" if place is None else hashlib.sha256(load_bytes(Path(place.file))).hexdigest()
-    except OSError:
-        digest = ""
-    return replace(fault, digest=digest)
 
 
 def _place(error: BaseException, fault: Fault) -> str:

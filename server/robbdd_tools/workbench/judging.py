@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.protocol.manifest_file import STORED_RESULTS
-from robbdd_tools.protocol.messages import LogLine, ScenarioStarted
+from robbdd_tools.protocol.messages import LogLine, ScenarioStarted, UserCodeFailed
 from robbdd_tools.protocol.specs import scenario_key
 from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.run.misfit import misfit
@@ -106,15 +106,23 @@ class Judgement:
     def messages(self) -> Iterator[RunMessage]:
         """Yield the judging process's messages, each after ``progress`` has applied it."""
         self._agent = agent = Agent(self._folder, module=JUDGE, arguments=[str(self._place.folder.absolute())])
-        complaint = ""
+        complaint, present = "", None
         try:
             for message in _possible(agent.messages(), self._manifest):
                 self.progress.apply(message)
                 complaint = message.text if isinstance(message, LogLine) else complaint
+                present = message.index if isinstance(message, ScenarioStarted) else present
                 yield message
         finally:
             stop([agent])
         if not self.progress.complete:
+            spec = None if present is None else self._manifest.scenarios[present]
+            fault = None if self._reason else agent.crash.fault(f"the process ended with {agent.exit()}", spec, {})
+            if fault is not None:
+                failed = UserCodeFailed(None, fault)
+                self.progress.apply(failed)
+                yield failed
+                complaint = fault.words
             self.ending = self._reason or complaint or agent.ending()
             self.progress.close(self.ending)
 

@@ -1,0 +1,65 @@
+"""Dumps the stack of this process where it crashes, leaves at once or takes too long, for its parent to read.
+
+The interpreter's own fault handler writes it: in a signal handler, or in a thread that does not need the interpreter.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from robbdd_tools.protocol.run_folder import CRASH, LIMIT, STARTUP, call_file, dump_file
+from robbdd_tools.user_code import call_note
+
+_file: BinaryIO | None = None
+_limit = 0.0
+
+
+def install() -> None:
+    """Dump the stack where this process crashes from now on, or is not ready within ``STARTUP`` seconds.
+
+    Without effect in a process that is started by hand.
+    """
+    global _file, _limit
+    base, limit = os.environ.pop(CRASH, ""), os.environ.pop(LIMIT, "0")
+    if not base:
+        return
+    _limit = float(limit)
+    _file = dump_file(Path(base)).open("ab", buffering=0)
+    call_note.keep_in(call_file(Path(base)))
+    faulthandler.enable(_file)
+    _dump_before_leaving(_file)
+    _watch(STARTUP)
+
+
+def watch() -> None:
+    """Dump the stack when the time that a scenario may take is over."""
+    _watch(_limit)
+
+
+def rest() -> None:
+    """Dump no stack for taking too long, and forget an earlier one."""
+    if _file is not None:
+        faulthandler.cancel_dump_traceback_later()
+        _file.truncate(0)
+
+
+def _watch(seconds: float) -> None:
+    rest()
+    if _file is not None and seconds:
+        faulthandler.dump_traceback_later(seconds, file=_file)
+
+
+def _dump_before_leaving(file: BinaryIO) -> None:
+    """Let ``os._exit``, which no handler sees, dump the stack first; not in the children of this process."""
+    leave, own = os._exit, os.getpid()
+
+    def dump_and_leave(status: int) -> None:
+        if os.getpid() == own:
+            faulthandler.dump_traceback(file, all_threads=False)
+        leave(status)
+
+    replaced: Any = os
+    replaced._exit = dump_and_leave
