@@ -102,7 +102,7 @@ def test_a_policy_that_fails_on_stored_traces_is_reported_by_judge(tmp_path: Pat
 WAYS = {
     "segfault": ("__import__('ctypes').string_at(0)", "the process ended with signal SIGSEGV"),
     "exit": ("__import__('os')._exit(3)", "the process ended with code 3"),
-    "hang": ("[0 for _ in iter(int, 1)]", "still running after 3 s"),
+    "hang": ("[0 for _ in iter(int, 1)]", "timed out after 3 s"),
 }
 
 

@@ -12,7 +12,7 @@ from robbdd_tools.base.processes import run_for
 from robbdd_tools.protocol.messages import LogLine, RunFinished
 from robbdd_tools.run.launch import LOGS, MOST_STRANGE
 from robbdd_tools.run.scheduler import Policy
-from run.test_scheduler import HOLDS, prepared, reasons, run, verdicts
+from run.test_scheduler import HOLDS, prepared, reasons_without_places, run, verdicts
 
 pytestmark = [pytest.mark.physics, pytest.mark.skipif(sys.platform != "linux", reason="/proc")]
 USER_STEPS = r"""
@@ -139,7 +139,7 @@ def test_an_endless_stream_of_messages_is_timed_out(tmp_path: Path) -> None:
     )
     results, _, _ = run(tmp_path / "run", manifest, Policy(1, timeout=5.0))
     assert verdicts(results) == ["holds", "unknown", "holds"]
-    assert reasons(results, 1) == {"", "timed out after 5 s"}
+    assert reasons_without_places(results, 1) == {"", "model_steps:endless failed: timed out after 5 s"}
 
 
 def test_much_output_is_kept_from_its_beginning_and_its_end(tmp_path: Path) -> None:
@@ -178,9 +178,8 @@ def test_processes_left_behind_end_with_their_agent(tmp_path: Path, pids: Path) 
     manifest = prepared(tmp_path / "run", [("given", "processes left behind at an exit")], [HOLDS], user=USER_STEPS)
     results, _, _ = run(tmp_path / "run", manifest, Policy(1))
     assert verdicts(results) == ["unknown", "holds"]
-    assert {reason.partition(":")[0] for reason in reasons(results, 0)} == {
-        "the agent process ended unexpectedly with code 7"
-    }
+    (reason,) = reasons_without_places(results, 0)
+    assert reason.endswith(" failed: the process ended with code 7")
     left = list(map(int, pids.read_text().split()))
     assert len(left) == 3
     assert not any(map(is_running, left))

@@ -60,5 +60,5 @@ class AgentWorker:
 
         ``limit`` are the seconds that it had, ``spec`` is the scenario that it had begun.
         """
-        ended = f"still running after {limit:g} s" if self.timed_out else f"the process ended with {self.agent.exit()}"
+        ended = f"timed out after {limit:g} s" if self.timed_out else f"the process ended with {self.agent.exit()}"
         return self.agent.crash.fault(ended, spec, sources)
