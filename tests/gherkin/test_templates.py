@@ -128,7 +128,7 @@ def test_our_templates_need_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_template_that_cannot_be_read_is_answered_with_ours(tmp_path: Path) -> None:
-    with pytest.raises(TemplateProblem, match="templates that come along: default, compact, de"):
+    with pytest.raises(TemplateProblem, match="built-in templates: default, compact, de"):
         feature(MODEL, str(tmp_path / "missing.jinja"))
     (tmp_path / "latin.jinja").write_bytes(b"\xff")
     with pytest.raises(TemplateProblem, match="not UTF-8"):

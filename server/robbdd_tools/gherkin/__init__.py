@@ -1,1 +1,1 @@
-"""Graph to Gherkin: variations expanded, sentences from the catalog, text by Jinja templates."""
+"""Gherkin from the graph's data: expand variations, take sentences from the catalog, render Jinja templates."""

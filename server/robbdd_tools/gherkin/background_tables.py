@@ -1,4 +1,4 @@
-"""The tables that list a scene for the reader."""
+"""Tables that list the elements of a scene."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class SceneTable:
 
 
 def scene_tables(writer: StepWriter, scene: SceneModel) -> tuple[SceneTable, ...]:
-    """Return the tables of a scene's members, without empty ones."""
+    """Return the non-empty tables of a scene's members."""
     titled = (
         ("a set of objects", scene.objects),
         ("a set of workspaces", scene.workspaces),
@@ -29,7 +29,7 @@ def scene_tables(writer: StepWriter, scene: SceneModel) -> tuple[SceneTable, ...
 
 
 def variable_table(writer: StepWriter, elements: Iterable[Iri]) -> tuple[SceneTable, ...]:
-    """Return the table of what the values of a scenario add to its scene, none without any."""
+    """Return the table of the elements that a scenario's values add to its scene; empty if there are none."""
     names = tuple(elements)
     return (_table(writer, "variable scene elements", names),) if names else ()
 
@@ -40,12 +40,12 @@ def members(scene: SceneModel) -> frozenset[Iri]:
 
 
 def extra_elements(cells: Iterable[Cell], kinds: Mapping[Iri, str], present: Collection[Iri]) -> tuple[Iri, ...]:
-    """Return the scene elements among some values that are not present yet."""
+    """Return the scene elements among some values that are not in the scene yet."""
     return tuple(element for element in elements_of(cells) if element in kinds and element not in present)
 
 
 def elements_of(cells: Iterable[Cell]) -> tuple[Iri, ...]:
-    """Return the IRIs among the values of a scenario, sets included, each once, in order."""
+    """Return the IRIs among a scenario's values, including those in sets, each once, in order."""
     found: dict[Iri, None] = {}
     for cell in cells:
         for value in cell if isinstance(cell, tuple) else (cell,):

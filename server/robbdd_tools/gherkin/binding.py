@@ -1,4 +1,4 @@
-"""Fills the variables of a model's clauses in: what a clause states in one scenario."""
+"""Replace the variables of a model's clauses by the values of one scenario."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.registry import Catalog
 
 Value = Cell | stated.AnyOf
-"""What a variable stands for; in a Scenario Outline a ``Placeholder``."""
+"""Value of a variable; in a Scenario Outline a ``Placeholder``."""
 Values = Mapping[Iri, Value]
 
 
 class UnknownElements(Exception):
-    """A set whose elements a Scenario Outline leaves open would have to be gone through."""
+    """A clause needs the elements of a set that a Scenario Outline leaves open."""
 
 
 @dataclass(frozen=True, slots=True)
 class Binder:
-    """Fills the clauses of one model in. Clauses whose IRIs are in ``by_code`` carry their values by name."""
+    """Binds the clauses of one model to values. Clauses with IRIs in ``by_code`` also carry their values by name."""
 
     model: AcceptanceModel
     catalog: Catalog
@@ -49,14 +49,14 @@ class Binder:
     _curies: dict[str, str] = field(default_factory=dict[str, str])
 
     def curie(self, iri: str) -> str:
-        """Return the short form of an IRI; a model has few and writes them often."""
+        """Return the short form of an IRI (cached)."""
         found = self._curies.get(iri)
         if found is None:
             found = self._curies[iri] = self.model.curie(iri)
         return found
 
     def bind(self, clause: Clause, values: Values) -> stated.Statement:
-        """Return what a clause states."""
+        """Return the statement of a clause."""
         match clause:
             case BehaviourClause():
                 behaviour = self.catalog.behaviours[clause.behaviour]
@@ -70,7 +70,7 @@ class Binder:
                 return self.clause(clause, values)
 
     def clause(self, clause: Clause, values: Values) -> stated.Clause:
-        """Return what a clause states that is no When clause."""
+        """Return the statement of a clause other than a When clause."""
         match clause:
             case Fluent():
                 predicate = self.catalog.predicates[clause.predicate]
@@ -96,7 +96,7 @@ class Binder:
                 each = tuple(self._joined("and", clause.clauses, inner) for inner in self._each(clause, values))
                 return each[0] if len(each) == 1 else stated.Junction("and", each)
             case BehaviourClause() | EventClause():
-                raise TypeError("a When clause cannot be a part of a group")
+                raise TypeError("a When clause cannot be part of a group")
 
     def elements(self, in_set: Iri, values: Values) -> tuple[Cell, ...]:
         """Return the elements of a set: the value of a variable, or a constant set; raises ``UnknownElements``."""
@@ -111,14 +111,15 @@ class Binder:
                 return (one,)
 
     def some(self, exists: Exists, values: Values) -> Values:
-        """Return values in which the variable of a quantifier stands for any element of its set."""
+        """Return values in which a quantifier's variable is any element of its set."""
         elements = tuple(self._plain(element) for element in self.elements(exists.in_set, values))
         return {**values, exists.variable: stated.AnyOf(elements)}
 
     def is_one_choice(self, exists: Exists, values: Values) -> bool:
-        """Whether *any of* in one place says all: otherwise each choice has to be written out and joined by *or*.
+        """Return whether *any of* in one place expresses the quantifier: otherwise each choice is written out and
+        joined by *or*.
 
-        One element must satisfy all clauses, and "some element is not there" is not "it is not any of them".
+        The same element must satisfy all clauses, and "some element is not there" differs from "none of them is there".
         """
         if not self.elements(exists.in_set, values):
             return True
@@ -126,7 +127,7 @@ class Binder:
         return not about or (len(about) == 1 and _mentions_once(about[0], exists.variable))
 
     def filler(self, value: Value) -> stated.Filler:
-        """Return a value as it fills a slot."""
+        """Return a value as the filler of a slot."""
         match value:
             case Iri():
                 return self.curie(value)
@@ -142,7 +143,7 @@ class Binder:
         return found[0] if len(found) == 1 else stated.Junction("or" if operator == "or" else "and", found)
 
     def _any_of(self, place: Iri, values: Values) -> Value:
-        """Return what a place stands for; of a set, a behaviour chooses any element."""
+        """Return the value of a place; from a set, a behaviour chooses any element."""
         value = values.get(place, self.model.sets.get(place, place))
         return stated.AnyOf(tuple(map(self._plain, value))) if isinstance(value, tuple) else value
 
@@ -159,7 +160,7 @@ class Binder:
         return {slot: self._slot(slot, arguments.get(slot), values) for slot in slots}
 
     def _slot(self, slot: str, term: Iri | str | None, values: Values) -> stated.Filler:
-        # An incomplete graph may leave a slot open; its name in braces shows it.
+        # An incomplete graph may leave a slot empty; show its name in braces.
         if term is None:
             return f"{{{slot}}}"
         return self.filler(values.get(term, term) if isinstance(term, Iri) else term)
@@ -174,7 +175,7 @@ class Binder:
                 return After(self.curie(event), horizon)
 
     def _named(self, clause: Fluent | TextFluent | TextClause, values: Values) -> dict[str, object]:
-        """Return by name what the variables of a clause stand for, and what fills its slots."""
+        """Return by name the values of a clause's variables and slots."""
         if clause.iri not in self.by_code:
             return {}
         slots: Mapping[str, Iri | str] = {} if isinstance(clause, TextClause) else clause.arguments
@@ -193,7 +194,7 @@ class Binder:
 
 
 def mentions(clause: Clause, variable: Iri) -> bool:
-    """Tell whether a clause speaks of a variable."""
+    """Return whether a clause refers to a variable."""
     match clause:
         case Fluent() | TextFluent() | BehaviourClause():
             return variable in clause.arguments.values()

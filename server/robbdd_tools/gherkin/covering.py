@@ -1,4 +1,4 @@
-"""Covering arrays: few scenarios in which every combination of values of two or three variables occurs."""
+"""Covering arrays: few scenarios that contain every combination of values of two or three variables."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from robbdd_tools.gherkin.where import Condition
 
 MOST_COMBINATIONS = 100_000
-"""Combinations to be covered in a product; making the array takes some minutes for as many."""
+"""Maximum number of combinations to cover in a product; such an array takes some minutes."""
 
 Row = tuple[int, ...]
-"""One scenario: for each variable the number of its value."""
+"""One scenario: for each variable the index of its value."""
 Combined = tuple[tuple[int, int], ...]
-"""A combination to be covered: (variable, value) for each of its variables."""
+"""A combination to cover: (variable, value) for each of its variables."""
 
 
 class TooManyCombinations(Exception):
@@ -31,7 +31,7 @@ class TooManyCombinations(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Cover:
-    """Numbers of scenarios (from 0, ascending); how many combinations are possible, and how many of them occur."""
+    """Indices of scenarios (from 0, ascending); the number of possible combinations, and of covered ones."""
 
     indices: tuple[int, ...]
     covered: int
@@ -54,7 +54,7 @@ def cover(variation: Product | Table, strength: int, allowed: Condition | None =
     else:
         possible = len({combined for row in space.rows(allowed) for combined in _combined(row, strength)})
     most = comb(len(variation.variables), strength)
-    # The suggestions may leave gaps: take the scenarios that fill most of them first.
+    # The suggestions may leave gaps: first take the scenarios that fill most of them.
     for least in range(most, 0, -1):
         if len(covered) == possible:
             break
@@ -68,7 +68,7 @@ def cover(variation: Product | Table, strength: int, allowed: Condition | None =
 
 @dataclass(frozen=True, slots=True)
 class _Space:
-    """The scenarios of a variation as rows of numbers. ``numbers`` maps a table's rows to their places."""
+    """The scenarios of a variation as rows of indices. ``numbers`` maps a table's rows to their indices."""
 
     columns: tuple[tuple[Cell, ...], ...]
     numbers: dict[Row, int] | None
@@ -120,7 +120,7 @@ def _combinations_of(sizes: Sequence[int], strength: int) -> int:
 def _suggested(space: _Space, strength: int, allowed: Condition | None) -> list[Row]:
     if not all(space.columns):
         return []
-    # covertable comes without types.
+    # covertable has no type information.
     make: Any = import_module("covertable").make
     columns = [list(range(len(column))) for column in space.columns]
     rows = (tuple(row) for row in make(columns, strength=strength))

@@ -21,7 +21,7 @@ Numbered = tuple[int, Binding]
 
 @dataclass(frozen=True, slots=True)
 class StoryHeader:
-    """What stands above the scenarios. ``background`` holds the scene tables that all scenarios share."""
+    """The text above the scenarios. ``background`` holds the scene tables that all scenarios share."""
 
     name: str
     iri: Iri
@@ -34,10 +34,10 @@ class StoryHeader:
 
 @dataclass(frozen=True, slots=True)
 class VariantHeader:
-    """What the scenarios of a variant share.
+    """The data shared by the scenarios of a variant.
 
-    ``columns`` names its variables; ``tables`` are those of its scene that the background lacks. ``outline`` states
-    all scenarios at once, ``None`` where that is not possible.
+    ``columns`` names its variables; ``tables`` are the scene tables that the background lacks. ``outline`` contains all
+    scenarios at once, ``None`` if that is not possible.
     """
 
     name: str
@@ -53,8 +53,8 @@ class VariantHeader:
 class ScenarioText:
     """One scenario: ``number`` counts from 1 within the variation, ``line`` is that of its heading in the feature.
 
-    ``cells`` gives the values as words, in the order of the variant's columns. ``lines`` gives the feature line of
-    each step of ``steps``, 0 for one that the template leaves out. ``tables`` are those that the background lacks.
+    ``cells`` are the values as words, in the order of the variant's columns. ``lines`` are the feature lines of
+    ``steps``, 0 for a step that the template omits. ``tables`` are the scene tables that the background lacks.
     """
 
     name: str
@@ -89,7 +89,7 @@ class ScenarioData:
 
 @dataclass(frozen=True, slots=True)
 class FeaturePiece:
-    """A run of text of one feature: its head, the head of a variant, one scenario, or its end."""
+    """A part of a feature's text: its head, the head of a variant, one scenario, or its end."""
 
     text: str
     scenario: ScenarioText | None
@@ -108,7 +108,7 @@ def feature_pieces(
 ) -> Iterator[FeaturePiece]:
     """Yield the feature of a story piece by piece, in written order, in constant memory.
 
-    ``scenarios`` selects the scenarios of each variant; ``sheet`` is the template, our default when ``None``. Raises
+    ``scenarios`` selects the scenarios of each variant; ``sheet`` is the template, by default ours. Raises
     ``TemplateProblem``.
     """
     writer = _FeatureWriter(StepWriter(model, load_catalog()), sheet or our_sheet(), story)
@@ -116,9 +116,9 @@ def feature_pieces(
 
 
 def feature_file_name(model: AcceptanceModel, story: Story) -> str:
-    """Return the name of a story's feature file, safe for every file system.
+    """Return the name of a story's feature file, valid on every file system.
 
-    It is the story's name; stories of one name in several namespaces are numbered.
+    It is the story's name; stories with the same name in several namespaces are numbered.
     """
     name = _file_stem(model, story.iri)
     same = [other.iri for other in model.stories if _file_stem(model, other.iri).casefold() == name.casefold()]
@@ -130,7 +130,7 @@ def _file_stem(model: AcceptanceModel, iri: Iri) -> str:
 
 
 class _FeatureWriter:
-    """Keeps count of the lines of one feature."""
+    """Counts the lines of one feature."""
 
     def __init__(self, writer: StepWriter, sheet: Sheet, story: Story) -> None:
         self._writer = writer
@@ -176,7 +176,7 @@ class _FeatureWriter:
 
 
 class _VariantWriter:
-    """Makes the scenarios of one variant; ``outlined`` asks for its outline."""
+    """Makes the scenarios of one variant; with ``outlined`` also its outline."""
 
     def __init__(
         self, writer: StepWriter, variant: Variant, background: tuple[SceneTable, ...], outlined: bool
@@ -199,7 +199,7 @@ class _VariantWriter:
         )
 
     def scenario(self, number: int, values: Binding) -> ScenarioText:
-        """Return one scenario, not yet placed in a feature."""
+        """Return one scenario, without its lines in a feature."""
         cells = tuple(values.values())
         steps = tuple(self._writer.steps(self._clauses, values))
         extra = extra_elements(cells, self._writer.model.kinds, self._members)
@@ -223,20 +223,20 @@ class _VariantWriter:
 
 
 def _in_order(variant: Variant) -> tuple[Clause, ...]:
-    """Template's before the variant's in each role: what is given, what happens, what then holds."""
+    """Order the clauses by role (given, when, then), in each role the template's before the variant's."""
     clauses = (*variant.template.clauses, *variant.clauses)
     return tuple(clause for role in ("given", "when", "then") for clause in clauses if _role(clause) == role)
 
 
 def _role(clause: Clause) -> str:
-    # What happens, and a body that is repeated, has no role of its own.
+    # When clauses and repeated bodies have no role attribute.
     return getattr(clause, "role", "when")
 
 
 def _located(scenario: ScenarioText, rendered: str, first_line: int, shared: tuple[int, ...]) -> ScenarioText:
     """Find the lines of a scenario's heading and steps in its rendered text.
 
-    One that has no steps of its own, a row of an outline, has those of the outline (``shared``).
+    A scenario without steps of its own, a row of an outline, has those of the outline (``shared``).
     """
     heading = 0
     for number, text_line in enumerate(rendered.split("\n"), start=first_line):
@@ -251,7 +251,7 @@ def _located(scenario: ScenarioText, rendered: str, first_line: int, shared: tup
 
 
 def _places(rendered: str, steps: tuple[Step, ...], first_line: int) -> tuple[int, ...]:
-    """Return the line of each step, 0 for one that is not there; steps stand in their order."""
+    """Return the line of each step, 0 for a missing one; steps are in order."""
     found: list[int] = []
     lines = enumerate(rendered.split("\n"), start=first_line)
     written = [(number, text_line.strip()) for number, text_line in lines]

@@ -1,4 +1,4 @@
-"""Feature files, each with a map from its lines to clauses, written as they are made."""
+"""Feature files, each with a map from its lines to clauses, written incrementally."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 MAP_ENDING = ".map.json"
-"""What follows the name of a feature in the name of its line map."""
+"""Suffix of the line map's file name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a clause is written: a file's name and (line, column) of start and end, counted from 1."""
+    """Source range of a clause: a file's name and (line, column) of start and end, counted from 1."""
 
     file: str
     start: tuple[int, int]
@@ -35,7 +35,7 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class FeaturePlan:
-    """What to write: a model's stories, the scenarios of each variant, the template; ``origins`` as far as known."""
+    """A model's stories, the scenarios of each variant, the template; ``origins`` where known."""
 
     model: AcceptanceModel
     stories: tuple[Story, ...]
@@ -46,7 +46,7 @@ class FeaturePlan:
 
 @dataclass(frozen=True, slots=True)
 class WrittenScenario:
-    """A scenario that stands in a feature file now."""
+    """A scenario that has been written to a feature file."""
 
     file: Path
     story: Story
@@ -54,12 +54,12 @@ class WrittenScenario:
 
 
 def whole_plan(model: AcceptanceModel, origins: Mapping[str, Origin] | None = None) -> FeaturePlan:
-    """Return the plan to write everything by our default template."""
+    """Return the plan that writes everything with our default template."""
     return FeaturePlan(model, model.stories, every_scenario, our_sheet(), origins or {})
 
 
 def clause_origins(built: BuiltGraph, snapshot: Snapshot, model: AcceptanceModel) -> dict[str, Origin]:
-    """Return where the clauses of a model are written; those of a model without source text are left out."""
+    """Return the source ranges of a model's clauses; clauses without source text are left out."""
     found: dict[str, Origin] = {}
     documents: dict[str, Document | None] = {}
     for story in model.stories:
@@ -80,16 +80,18 @@ def clause_origins(built: BuiltGraph, snapshot: Snapshot, model: AcceptanceModel
 
 
 def write_features(plan: FeaturePlan, folder: Path) -> list[Path]:
-    """Write a feature and its line map per story; returns the features' paths. Raises as ``written_scenarios``."""
+    """Write a feature and its line map per story; returns the features' paths. Raises the same as
+    ``written_scenarios``."""
     for _ in written_scenarios(plan, folder):
         pass
     return [folder / feature_file_name(plan.model, story) for story in plan.stories]
 
 
 def written_scenarios(plan: FeaturePlan, folder: Path) -> Iterator[WrittenScenario]:
-    """Write a feature and its line map per story into ``folder`` (made if missing), one scenario per step.
+    """Write a feature and its line map per story into ``folder`` (created if missing); yield each scenario once
+    written.
 
-    Raises ``OSError``, and ``TemplateProblem`` when the template fails.
+    Raises ``OSError``, and ``TemplateProblem`` if the template fails.
     """
     folder.mkdir(parents=True, exist_ok=True)
     for story in plan.stories:
@@ -105,7 +107,7 @@ def written_scenarios(plan: FeaturePlan, folder: Path) -> Iterator[WrittenScenar
 
 
 def only(story: Story, wanted: Callable[[Iri], bool]) -> Story:
-    """Return a story with some of its variants."""
+    """Return a story with the variants selected by ``wanted``."""
     return replace(story, variants=tuple(variant for variant in story.variants if wanted(variant.iri)))
 
 
@@ -123,7 +125,7 @@ class _LineMap:
         file.write(f'{{{inner}, "clauses": [\n' + ",\n".join(map(_json, clauses)) + '\n], "scenarios": [')
 
     def add(self, scenario: ScenarioText) -> None:
-        """Add a scenario of which the place is known."""
+        """Add a scenario with known lines."""
         entry = {
             "line": scenario.line,
             "name": scenario.name,

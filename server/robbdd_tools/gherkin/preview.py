@@ -1,4 +1,4 @@
-"""What the Gherkin of a model looks like, for reading beside its text: the first scenarios, with the way back."""
+"""Preview of a model's Gherkin: the first scenarios, with links back to the model."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 MOST_SHOWN = 50
-"""Scenarios that a reader is shown unless they ask for more."""
+"""Maximum number of scenarios in a preview by default."""
 
 
 @dataclass(frozen=True, slots=True)
 class PreviewLine:
-    """A line of a preview, from 0, and what in the text it comes from: a clause, a variant, a row of its table."""
+    """A line of a preview, from 0, and its source: a clause, a variant, or a row of its table."""
 
     line: int
     iri: str
@@ -34,7 +34,7 @@ class PreviewLine:
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """Features one below the other; how many scenarios they show of how many there are."""
+    """Concatenated features, the number of scenarios shown, and their total number."""
 
     text: str
     lines: tuple[PreviewLine, ...]
@@ -43,7 +43,7 @@ class Preview:
 
 
 def preview(snapshot: Snapshot, uri: str, variant: str | None = None, most: int = MOST_SHOWN) -> Preview:
-    """Return the features of a file without errors, of one variant where given, with ``most`` scenarios at most."""
+    """Return the features of a file without errors, or of one ``variant``, with at most ``most`` scenarios."""
     from robbdd_tools.graph.read.acceptance import read_model
     from robbdd_tools.graph.write.build import build_graph
 
@@ -74,7 +74,7 @@ def _written(model: AcceptanceModel, stories: list[Story], most: int, places: _P
 
 
 def _pieces(model: AcceptanceModel, story: Story, most: int) -> Iterator[FeaturePiece]:
-    """Yield the pieces of a story with so many scenarios at most."""
+    """Yield the pieces of a story with at most ``most`` scenarios."""
     limits: dict[str, int] = {}
     for variant in story.variants:
         limits[variant.iri] = min(most, count(variant.variation))
@@ -87,7 +87,7 @@ def _pieces(model: AcceptanceModel, story: Story, most: int) -> Iterator[Feature
 
 
 class _Places:
-    """Finds the whole text of clauses, variants and rows."""
+    """Source ranges of clauses, variants and rows."""
 
     def __init__(self, snapshot: Snapshot, uri: str, sources: SourceMap) -> None:
         self._sources = sources
@@ -103,13 +103,13 @@ class _Places:
                     self._rows[variant.iri, number] = Location(name, row)
 
     def lines(self, scenario: ScenarioText, above: int) -> Iterator[PreviewLine]:
-        """Yield what the lines of a scenario come from; ``above`` is the number of lines before its feature."""
+        """Yield the sources of a scenario's lines; ``above`` is the number of lines before its feature."""
         variant = scenario.variant.iri
         heading = self._rows.get((variant, scenario.number), self._variants.get(variant))
         if heading is not None:
             yield PreviewLine(above + scenario.line - 1, variant, heading)
         for line, step in zip(scenario.lines, scenario.steps, strict=True):
-            # A model that is read from a graph has no clauses in its text, but places.
+            # A model read from a graph has no clauses in its text, but a source map.
             written = self._clauses.get(step.clause) or self._sources.node(step.clause)
             if line and written is not None:
                 yield PreviewLine(above + line - 1, step.clause, written)

@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     from jinja2 import Template
 
 OURS = ("default", "compact", "de")
-"""Names of the templates that come with us."""
+"""Names of the built-in templates."""
 BLOCKS = ("feature", "variant", "scenario", "end")
-"""What a template may define; ``scenario`` is the one that it must."""
+"""Blocks that a template may define; ``scenario`` is required."""
 ENDING = ".feature.jinja"
 LONGEST_MESSAGE = 2000
 """Characters of an error message; expressions of a template can make them as long as they like."""
 
 
 class TemplateProblem(Exception):
-    """A template cannot be used; the message begins with its file and, where one is to blame, the line (from 1)."""
+    """A template cannot be used; the message starts with its file and, if known, the line (from 1)."""
 
     def __init__(self, file: str, line: int, message: str) -> None:
         super().__init__(f"{file}:{line}: {message}" if line else f"{file}: {message}")
@@ -58,11 +58,11 @@ class CompiledSheet:
     largest: int | None = None
 
     def has(self, block: str) -> bool:
-        """Tell whether the template has a block."""
+        """Return whether the template has a block."""
         return any(block in template.blocks for template in self.chain)
 
     def render(self, block: str, values: Mapping[str, object]) -> str:
-        """Return the text of one block, nothing when the template lacks it; raises ``TemplateProblem``."""
+        """Return the text of one block, empty if the template lacks it; raises ``TemplateProblem``."""
         context = self.chain[0].new_context(dict(values))
         for parent in self.chain[1:]:
             for name, render in parent.blocks.items():
@@ -140,7 +140,7 @@ def compiled(file: str, source: str, largest: int | None = None) -> CompiledShee
         raise TemplateProblem(error.filename or file, error.lineno, error.message or "is not valid") from None
     except TemplateNotFound as error:
         known = ", ".join(f"{own}{ENDING}" for own in OURS)
-        raise TemplateProblem(file, line, f"there is no template '{error.name}' to extend, only {known}") from None
+        raise TemplateProblem(file, line, f"there is no template '{error.name}' to extend; there are {known}") from None
     except TemplateError as error:
         raise TemplateProblem(file, 0, str(error)) from None
     except (MemoryError, OverflowError, RecursionError, SyntaxError) as error:
@@ -159,7 +159,7 @@ def _problem(sheet: CompiledSheet, error: Exception) -> TemplateProblem:
     places = [entry for entry in traceback.extract_tb(error.__traceback__) if entry.filename in templates]
     file, line = sheet.file, 0
     if places:
-        # The frames are those of the Python code that a template is compiled to.
+        # These frames belong to the Python code compiled from a template.
         file = places[-1].filename
         line = templates[file].get_corresponding_lineno(places[-1].lineno or 0)
     if isinstance(error, MemoryError):

@@ -1,4 +1,4 @@
-"""Selection before generation: which scenarios of which variants, without writing the others."""
+"""Select scenarios of variants before generation, without making the others."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from robbdd_tools.graph.acceptance_model import AcceptanceModel, Iri, Variant
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What a user asks for: values that fit ``where``, and of these at most one of the others.
+    """A user's selection: the conjunction of ``where`` and at most one of the other criteria.
 
     ``first`` and ``sample`` are numbers of scenarios of the whole model, ``strength`` is that of a covering array per
-    variant; ``seed`` decides the sample.
+    variant; ``seed`` determines the sample.
     """
 
     where: str | None = None
@@ -31,18 +31,18 @@ class Wanted:
 
 
 class SelectionError(RobbddError):
-    """The selection cannot be made; the message says why, for the user."""
+    """The selection is not possible; the message gives the user the reason."""
 
 
 class Selected:
     """The selected scenarios of some variants.
 
-    ``total`` is their number, ``None`` when it is known only after going through them; ``covers`` tells for each
-    variant what a covering array covers.
+    ``total`` is their number, ``None`` if counting needs iterating over them; ``covers`` maps each variant to its
+    covering array.
     """
 
     def __init__(self, model: AcceptanceModel, variants: Sequence[Variant], wanted: Wanted) -> None:
-        """Raises ``SelectionError``."""
+        """Raise ``SelectionError`` if the selection is not possible."""
         self._variants = tuple(variants)
         self._conditions = _conditions(model, variants, wanted.where)
         self._indices: dict[Iri, Sequence[int]] = {}
@@ -57,14 +57,14 @@ class Selected:
         self.total = self._total()
 
     def scenarios(self, variant: Variant) -> Iterator[Numbered]:
-        """Yield the selected scenarios of a variant in written order, with their numbers among all of them."""
+        """Yield the selected scenarios of a variant in written order, with their numbers among all its scenarios."""
         indices = self._indices.get(variant.iri)
         if indices is not None:
             return ((index + 1, at(variant.variation, index)) for index in indices)
         return islice(self._fitting(variant), self._limits.get(variant.iri))
 
     def is_empty(self) -> bool:
-        """Tell whether nothing is selected; goes through the scenarios up to the first that is."""
+        """Return whether nothing is selected; iterates up to the first selected scenario."""
         if self.total is not None:
             return self.total == 0
         return all(next(self.scenarios(variant), None) is None for variant in self._variants)
@@ -106,7 +106,7 @@ class Selected:
             wanted -= found
 
     def _sample(self, variants: Sequence[Variant], wanted: int, dice: random.Random) -> None:
-        """Draw without replacement, each set of scenarios equally likely."""
+        """Sample without replacement, each set of scenarios equally likely."""
         drawn: Sequence[tuple[int, int]]
         if self._conditions:
             fitting = (
@@ -131,7 +131,7 @@ def _conditions(model: AcceptanceModel, variants: Sequence[Variant], where: str 
 
 
 def _drawn(sizes: Sequence[int], wanted: int, dice: random.Random) -> list[tuple[int, int]]:
-    """Draw from groups of known sizes by Floyd's algorithm: as many steps as draws, however large the groups."""
+    """Sample from groups of known sizes by Floyd's algorithm: one step per sample, however large the groups."""
     total = sum(sizes)
     chosen: set[int] = set()
     for top in range(max(0, total - wanted), total):
@@ -148,7 +148,7 @@ def _drawn(sizes: Sequence[int], wanted: int, dice: random.Random) -> list[tuple
 
 
 def _reservoir(entries: Iterator[tuple[int, int]], wanted: int, dice: random.Random) -> list[tuple[int, int]]:
-    """Draw from entries of unknown number in one pass."""
+    """Sample from an unknown number of entries in one pass."""
     kept: list[tuple[int, int]] = []
     for seen, entry in enumerate(entries):
         if seen < wanted:

@@ -1,4 +1,4 @@
-"""Step functions to be filled in for another robot or simulator: one per distinct sentence of a model."""
+"""Step function stubs for another robot or simulator: one per distinct sentence of a model."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from parse import with_pattern
 
 @with_pattern(r'(?:[^"\\\\]|\\\\.)*')
 def _quoted(text: str) -> str:
-    """What stands between double quotes, backslashes included."""
+    """Text between double quotes, backslashes included."""
     return text
 
 
@@ -51,7 +51,7 @@ _QUOTED_SLOT = re.compile(r'(?<=")\{(\w[\w-]*)\}(?=")|\{(\w[\w-]*)\}')
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """A sentence as behave's ``parse`` matcher reads it; ``parameters`` are names with their Python types."""
+    """A sentence in the form of behave's ``parse`` matcher; ``parameters`` are names with their Python types."""
 
     role: str
     text: str
@@ -59,7 +59,7 @@ class Pattern:
 
 
 def patterns(model: AcceptanceModel) -> list[Pattern]:
-    """Return the distinct sentences of a model: those of the scene first, then in the order of the clauses."""
+    """Return the distinct sentences of a model: those of the scene first, then in clause order."""
     found: dict[Pattern, None] = {}
     writer = StepWriter(model, load_catalog())
     for story in model.stories:
@@ -74,7 +74,7 @@ def patterns(model: AcceptanceModel) -> list[Pattern]:
 
 
 def free_patterns(model: AcceptanceModel) -> list[Pattern]:
-    """Return the distinct sentences of a model that are free text: nothing in the catalog can judge them."""
+    """Return the distinct free-text sentences of a model, which the catalog cannot judge."""
     clauses = (
         c
         for story in model.stories
@@ -85,9 +85,9 @@ def free_patterns(model: AcceptanceModel) -> list[Pattern]:
 
 
 def add_steps(wanted: Collection[Pattern], target: Path, name: str) -> int:
-    """Add what a file of steps lacks, making it where it is missing; return how many functions are new.
+    """Add the missing steps to a file of steps, creating it if missing; return the number of new functions.
 
-    Raises ``OSError``, and ``SyntaxError`` when the file is not Python.
+    Raises ``OSError``, and ``SyntaxError`` if the file is not Python.
     """
     existing = load_text(target) if os.path.lexists(target) else None
     text, new = skeleton(wanted, existing, name)
@@ -98,10 +98,10 @@ def add_steps(wanted: Collection[Pattern], target: Path, name: str) -> int:
 
 
 def skeleton(wanted: Iterable[Pattern], existing: str | None, name: str) -> tuple[str, int]:
-    """Return the text of a file of steps and how many functions are new in it.
+    """Return the text of a file of steps and the number of new functions in it.
 
-    ``existing`` is the text that the file has, ``None`` without one; what it defines is left as it is. Raises
-    ``SyntaxError`` when it is not Python.
+    ``existing`` is the file's current text or ``None``; its definitions are kept. Raises ``SyntaxError`` if it is not
+    Python.
     """
     defined, names = defined_steps(existing or "")
     grouped: dict[tuple[str, tuple[tuple[str, str], ...]], list[str]] = {}
@@ -169,7 +169,7 @@ def _pattern(role: str, sentence: str) -> Pattern:
 
 
 def _parameter(slot: str, taken: Collection[str]) -> str:
-    """Return a name for a slot that Python takes and no other slot of the sentence has."""
+    """Return a valid, unused parameter name for a slot."""
     base = re.sub(r"\W|^(?=\d)", "_", slot)
     base = f"{base}_" if iskeyword(base) or base == "context" else base
     name, number = base, 2
@@ -188,7 +188,7 @@ def _function(sentence: str, parameters: tuple[tuple[str, str], ...], roles: lis
 
 
 def _name(sentence: str, taken: set[str]) -> str:
-    """Return a free function name made of the words of a sentence."""
+    """Return an unused function name made of the words of a sentence."""
     words = re.findall(r"[a-z0-9]+", re.sub(r"\{(\w+)[^}]*\}", r" \1 ", sentence).lower())
     base = "_".join(words)[:60].strip("_") or "step"
     base = base if not base[0].isdigit() else f"step_{base}"

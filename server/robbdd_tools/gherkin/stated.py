@@ -1,4 +1,4 @@
-"""What one scenario states, clause by clause."""
+"""The clauses of one scenario with their sentences."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def stated(model: AcceptanceModel, variant: str, variation: int) -> set[tuple[str, str]]:
     """Return clauses (IRIs) and sentences of scenario number ``variation`` (from 1) of a variant (its IRI).
 
-    A clause that is repeated for each element of a set has several. Nothing where there is no such scenario.
+    A clause repeated for each element of a set has several sentences. Empty if there is no such scenario.
     """
     found = next((one for story in model.stories for one in story.variants if one.iri == variant), None)
     values = None if found is None else next(islice(bindings(found.variation), variation - 1, None), None)

@@ -1,4 +1,4 @@
-"""Clauses with their values filled in, as Gherkin steps; every sentence comes from the catalog."""
+"""Clauses with their values as Gherkin steps; every sentence comes from the catalog."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.registry import Catalog
 
 Scope = tuple[tuple[Iri, int], ...]
-"""Iterations of ``for all``, outermost first: the quantifier and the number of its element, from 0."""
+"""Iterations of ``for all``, outermost first: the quantifier and the index of its element, from 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step: keyword, text, and the clause that it states. ``role`` is ``given``, ``when`` or ``then``.
+    """One step: keyword, text, and its clause. ``role`` is ``given``, ``when`` or ``then``.
 
-    ``statement`` is what the text says, as data; ``source`` is the model's clause with the values that it was made of.
-    ``scope`` is the iterations that it belongs to, outermost first.
+    ``statement`` is the text's content as data; ``source`` is the model's clause with the values of its variables.
+    ``scope`` is its iterations, outermost first.
     """
 
     keyword: str
@@ -47,7 +47,7 @@ class Step:
 
 
 class StepWriter:
-    """Writes the steps of clauses of one model."""
+    """Writes the steps of one model's clauses."""
 
     def __init__(self, model: AcceptanceModel, catalog: Catalog) -> None:
         self.model = model
@@ -58,7 +58,7 @@ class StepWriter:
         return self._binder.curie(iri)
 
     def steps(self, clauses: Collection[Clause], values: Values, scope: Scope = ()) -> Iterator[Step]:
-        """Yield the steps of clauses in order; ``for all`` is repeated per element, ``and`` becomes several steps."""
+        """Yield the steps of clauses in order; ``for all`` is repeated per element, ``and`` is split into steps."""
         for clause in clauses:
             match clause:
                 case ForAll():
@@ -79,7 +79,7 @@ class StepWriter:
         return sentence(self._binder.bind(clause, values))
 
     def word(self, value: Value) -> str:
-        """Return a value as it stands inside the quotes of a sentence."""
+        """Return a value as written inside the quotes of a sentence."""
         return word(self._binder.filler(value))
 
     def _step(self, role: str, clause: Clause, values: Values, scope: Scope) -> Step:
@@ -88,7 +88,7 @@ class StepWriter:
 
 
 def sentence(statement: stated.Statement, *, within: bool = False) -> str:
-    """Return the sentence of a statement; ``within``: it is a part of a group."""
+    """Return the sentence of a statement; ``within``: as part of a group."""
     match statement:
         case stated.Fluent(predicate, arguments, time):
             return f"{filled(predicate.sentence, arguments)} {_time_words(time)}"

@@ -1,4 +1,4 @@
-"""Expands a variation into the values of its scenarios, one at a time, in written order."""
+"""Expand a variation into the values of its scenarios, one at a time, in written order."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ def bindings(variation: Product | Table) -> Iterator[Binding]:
 
 
 def count(variation: Product | Table) -> int:
-    """Return the number of scenarios without making them."""
+    """Return the number of scenarios without generating them."""
     if isinstance(variation, Table):
         return len(variation.rows)
     return prod(size_of(choices) for choices in variation.choices)
 
 
 def at(variation: Product | Table, index: int) -> Binding:
-    """Return the values of one scenario, counted from 0, without making the others; raises ``IndexError``."""
+    """Return the values of one scenario, counted from 0, without generating the others; raises ``IndexError``."""
     if not 0 <= index < count(variation):
         raise IndexError(index)
     if isinstance(variation, Table):
@@ -42,7 +42,7 @@ def at(variation: Product | Table, index: int) -> Binding:
 
 
 def _product(choices: tuple[tuple[Cell, ...] | Selection, ...]) -> Iterator[tuple[Cell, ...]]:
-    """As ``itertools.product``, which would first write every selection out in memory."""
+    """Same as ``itertools.product``, which would expand every selection in memory first."""
     if not choices:
         yield ()
         return

@@ -1,4 +1,4 @@
-"""The expression that selects scenarios by their values: ``robot=panda and target=~cube.*``.
+"""Expressions that select scenarios by their values: ``robot=panda and target=~cube.*``.
 
 ::
 
@@ -7,10 +7,10 @@
     negation    = "not" negation | "(" expression ")" | comparison
     comparison  = variable ( "=" | "!=" | "=~" | "<" | "<=" | ">" | ">=" ) value
 
-A variable is named as in the model, with or without its template (``fetch.part``). A value is a word or stands in
-quotes; it is compared with an element's name with or without prefix, a string, or a number. ``=~`` wants a regular
-expression that matches all of it, the last four compare numbers. Of a set, one element has to fit. ``a != b`` is
-``not a = b``; a comparison with a variable that the variant lacks is false.
+A variable is named as in the model, with or without its template (``fetch.part``). A value is a word or a quoted
+string; it is compared with an element's name with or without prefix, a string, or a number. ``=~`` matches the whole
+value with a regular expression; ``<``, ``<=``, ``>`` and ``>=`` compare numbers. A set matches if one element does. ``a
+!= b`` is ``not a = b``; a comparison with a variable that the variant lacks is false.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from robbdd_tools.gherkin.scenario_outline import variable_name
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Iri, Value, Variant
 
 Condition = Callable[[Sequence[Cell]], bool | None]
-"""Judges the first values of a scenario, in the order of its variables; ``None`` while the others matter."""
+"""Tests the first values of a scenario, in the order of its variables; ``None`` if the result depends on later ones."""
 
 _TOKEN = re.compile(
     r"""\s*(?:(?P<sign>!=|=~|<=|>=|=|<|>)|(?P<paren>[()])|(?P<quoted>"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*')"""
@@ -32,7 +32,7 @@ _TOKEN = re.compile(
 )
 _BARE_VALUE = re.compile(r"\s*([^\s()\"'][^\s()]*)")
 MOST_NESTED = 100
-"""Parentheses and negations of one expression."""
+"""Maximum nesting of parentheses and negations in one expression."""
 _NUMBERS: Mapping[str, Callable[[float, float], bool]] = {
     "<": lambda a, b: a < b,
     "<=": lambda a, b: a <= b,
@@ -42,7 +42,7 @@ _NUMBERS: Mapping[str, Callable[[float, float], bool]] = {
 
 
 class WhereError(Exception):
-    """An expression cannot be used; ``column`` counts from 1."""
+    """An expression is invalid; ``column`` counts from 1."""
 
     def __init__(self, column: int, message: str) -> None:
         super().__init__(f"--where, column {column}: {message}")
@@ -51,7 +51,7 @@ class WhereError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """``variable sign value``; ``column`` is that of the variable, ``fits`` judges one value."""
+    """``variable sign value``; ``column`` is that of the variable, ``fits`` tests one value."""
 
     variable: str
     column: int
@@ -60,7 +60,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """Expressions joined by ``and`` or ``or``, or one that is negated."""
+    """Expressions joined by ``and`` or ``or``, or one negated expression."""
 
     operator: Literal["and", "or", "not"]
     operands: tuple[Expression, ...]
@@ -70,7 +70,7 @@ Expression = Comparison | Combination
 
 
 def parse_where(text: str) -> Expression:
-    """Read an expression; raises ``WhereError``."""
+    """Parse an expression; raises ``WhereError``."""
     parser = _Parser(text)
     found = parser.expression()
     parser.expect_end()
@@ -78,7 +78,7 @@ def parse_where(text: str) -> Expression:
 
 
 def check_where(expression: Expression, model: AcceptanceModel, variants: Sequence[Variant]) -> None:
-    """Raise ``WhereError`` for a variable that none of the variants has."""
+    """Raise ``WhereError`` for a variable that no variant has."""
     every = [(variant, variable) for variant in variants for variable in variant.variation.variables]
     names = {name for variant, variable in every for name in _names(model, variant, variable)}
     for comparison in _comparisons(expression):
@@ -169,7 +169,7 @@ class _Token:
 
 
 class _Parser:
-    """Recursive descent over the text; the value after a sign is read as one word, whatever it contains."""
+    """Recursive-descent parser; the value after an operator is read as one word, whatever it contains."""
 
     def __init__(self, text: str) -> None:
         self._text = text
@@ -278,14 +278,14 @@ def _matching(wanted: str, column: int) -> Callable[[AcceptanceModel, Value], bo
         pattern = re.compile(wanted)
     except re.error as error:
         at = column + (error.pos or 0)
-        raise WhereError(at, f"'{wanted}' is no regular expression: {error.msg}") from None
+        raise WhereError(at, f"'{wanted}' is not a regular expression: {error.msg}") from None
     return lambda model, value: any(pattern.fullmatch(word) for word in _words(model, value))
 
 
 def _number(sign: str, wanted: str, column: int) -> Callable[[AcceptanceModel, Value], bool]:
     number = _as_number(wanted)
     if number is None:
-        raise WhereError(column, f"'{sign}' compares numbers and '{wanted}' is none")
+        raise WhereError(column, f"'{sign}' compares numbers and '{wanted}' is not one")
     compare = _NUMBERS[sign]
 
     def fits(_model: AcceptanceModel, value: Value) -> bool:

@@ -1,4 +1,4 @@
-"""How values stand in the sentences of steps."""
+"""Values in the sentences of steps."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from robbdd_tools.protocol.clauses import AnyOf, Filler
 
 
 class Placeholder(str):
-    """What a variable stands for in a Scenario Outline: the name of its column."""
+    """Value of a variable in a Scenario Outline: the name of its column."""
 
     __slots__ = ()
 
 
 def word(filler: Filler) -> str:
-    """Return a value as it stands inside the quotes of a sentence."""
+    """Return a value as written inside the quotes of a sentence."""
     match filler:
         case Placeholder():
             return f"<{filler}>"
@@ -30,7 +30,7 @@ def word(filler: Filler) -> str:
 
 
 def filled(sentence: str, fillers: Mapping[str, Filler]) -> str:
-    """Return a sentence with its ``{slots}`` filled in; a slot that nothing fills stays."""
+    """Return a sentence with its ``{slots}`` filled in; unfilled slots stay."""
     parts = list(_slots(sentence))
     for index in range(1, len(parts), 2):
         filler = fillers.get(parts[index])
@@ -41,5 +41,5 @@ def filled(sentence: str, fillers: Mapping[str, Filler]) -> str:
 # Not str.format: a user's template must not reach attributes or items of our objects.
 @cache
 def _slots(sentence: str) -> tuple[str, ...]:
-    """Split a sentence at its ``{slots}``: words and names of slots in turn."""
+    """Split a sentence at its ``{slots}``: words and slot names alternate."""
     return tuple(re.split(r"\{(\w[\w-]*)\}", sentence))

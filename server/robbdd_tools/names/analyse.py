@@ -1,4 +1,4 @@
-"""Puts together what is known of one file in one revision."""
+"""Build the analysis of one file in one revision."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Definitions(Mapping[str, Definition]):
-    """What a file itself declares, by qualified name (the first declaration of each), made when asked for."""
+    """The declarations of a file itself, by qualified name (the first one of each); made on access."""
 
     def __init__(self, scope: Scope) -> None:
         self._scope = scope
@@ -34,7 +34,7 @@ class Definitions(Mapping[str, Definition]):
         return path in self._names
 
     def __iter__(self) -> Iterator[str]:
-        """Yield the names in the order of the text, whatever edits led to it."""
+        """Yield the names in text order, whatever edits were made."""
         return iter(sorted(self._names, key=lambda path: self._names[path][0].place))
 
     def __len__(self) -> int:
@@ -43,7 +43,7 @@ class Definitions(Mapping[str, Definition]):
 
 @dataclass(frozen=True, slots=True)
 class Resolved:
-    """A file's analysis, with what its successor may take over."""
+    """A file's analysis, with data that its successor may reuse."""
 
     scope: Scope
     resolutions: tuple[Resolution, ...]

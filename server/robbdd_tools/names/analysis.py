@@ -1,4 +1,4 @@
-"""What is known of one file in one revision: declarations in place, targets of references, diagnostics."""
+"""Analysis of one file in one revision: declarations in place, targets of references, diagnostics."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PlacedDeclaration:
-    """A declaration at its offset in a document, with the definitions its references lead to.
+    """A declaration at its offset in a document, with the definitions of its references.
 
-    ``targets`` lacks a reference that leads nowhere.
+    ``targets`` lacks references that resolve to nothing.
     """
 
     declaration: Declaration
@@ -35,7 +35,7 @@ class PlacedDeclaration:
 
     @property
     def parts(self) -> tuple[PlacedDeclaration, ...]:
-        """Its parts at their places in the document; a declaration that is not read in parts is the only one."""
+        """Its parts at their places in the document; the declaration itself if it has no parts."""
         inner = self.declaration.parts
         if not inner:
             return (self,)
@@ -47,7 +47,7 @@ class PlacedDeclaration:
 
 @dataclass(frozen=True, slots=True)
 class ImportLink:
-    """An import: the span of its path, the file it means, and why that cannot be used, if so."""
+    """An import: the span of its path, the imported file, and why it cannot be used, if so."""
 
     span: Span
     uri: str
@@ -56,7 +56,7 @@ class ImportLink:
 
 @dataclass(frozen=True, slots=True)
 class FileAnalysis:
-    """One file of a snapshot. ``definitions`` maps qualified names to what this file itself declares."""
+    """One file of a snapshot. ``definitions`` maps qualified names to this file's own declarations."""
 
     document: Document
     declarations: tuple[PlacedDeclaration, ...]
@@ -65,7 +65,7 @@ class FileAnalysis:
     diagnostics: tuple[Diagnostic, ...]
 
     def parts(self, within: Span | None = None) -> Iterator[PlacedDeclaration]:
-        """Yield the declarations that touch a part of the document (``None``: all), those in parts part by part."""
+        """Yield the declarations, or their parts, that touch a span of the document (``None``: all)."""
         for placed in self.declarations:
             if within is None or (placed.offset <= within.end and within.start <= placed.span.end):
                 for part in placed.parts:

@@ -1,4 +1,4 @@
-"""Findings that stay valid wherever their declarations move to: their places count from declarations."""
+"""Diagnostics with positions relative to declarations, so that they stay valid when the declarations move."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Anchor:
-    """The declaration that a span counts from; ``None`` in a file without declarations."""
+    """The declaration that a span is relative to; ``None`` in a file without declarations."""
 
     uri: str
     declaration: Declaration | None
@@ -27,7 +27,7 @@ class Anchor:
 
 @dataclass(frozen=True, slots=True)
 class Anchored:
-    """A diagnostic whose spans count from its anchors, in the order diagnostic, related places, edits."""
+    """A diagnostic with spans relative to its anchors, in the order diagnostic, related places, edits."""
 
     diagnostic: Diagnostic
     anchors: tuple[Anchor, ...]
@@ -35,12 +35,12 @@ class Anchored:
 
 @dataclass(frozen=True, slots=True)
 class Anchors:
-    """Turns absolute places into ones that count from declarations, and back."""
+    """Converts absolute spans to spans relative to declarations, and back."""
 
     snapshot: Snapshot
 
     def loosened(self, diagnostic: Diagnostic, uri: str, own: PlacedDeclaration) -> Anchored:
-        """Return a finding about the declaration ``own`` of a file without absolute places."""
+        """Return a diagnostic about the declaration ``own`` with relative spans."""
         anchors: list[Anchor] = []
 
         def loosen(file: str, span: Span) -> Span:
@@ -51,7 +51,7 @@ class Anchors:
         return Anchored(_moved(diagnostic, loosen), tuple(anchors))
 
     def fixed(self, anchored: Anchored, uri: str, own: PlacedDeclaration) -> Diagnostic:
-        """Return a finding about the declaration ``own`` with the places that its anchors have now."""
+        """Return a diagnostic about the declaration ``own`` with the current places of its anchors."""
         following = iter(anchored.anchors)
 
         def fix(_: str, span: Span) -> Span:

@@ -1,4 +1,4 @@
-"""Where the clauses of a file stand, each with the IRI that the graph gives it."""
+"""The positions of the clauses of a file, each with its IRI in the graph."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 MOST_NESTED = 100
-"""Clauses in clauses; deeper ones are in no graph."""
+"""Maximum nesting depth; deeper clauses are in no graph."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedClause:
-    """A clause, a group of clauses or a quantifier: all of its text (absolute), its name or else what it is."""
+    """A clause, a group of clauses or a quantifier: its whole span (absolute), and its name or kind."""
 
     iri: str
     name: str
@@ -27,7 +27,7 @@ class PlacedClause:
 
 
 def clauses_in(snapshot: Snapshot, uri: str) -> Iterator[PlacedClause]:
-    """Yield the clauses of the templates and variants of a file, those in others after these."""
+    """Yield the clauses of the templates and variants of a file, nested clauses after their parents."""
     file = snapshot.file(uri)
     for placed in file.declarations if file is not None else ():
         template = placed.declaration.tree
@@ -46,7 +46,7 @@ def clauses_in(snapshot: Snapshot, uri: str) -> Iterator[PlacedClause]:
 
 @dataclass(frozen=True, slots=True)
 class _Walk:
-    """Goes through the clauses of one owner; the paths are those of ``graph.write.clauses``."""
+    """Walks the clauses of one owner; the paths are those of ``graph.write.clauses``."""
 
     namespace: str
     owner: str

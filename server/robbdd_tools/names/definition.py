@@ -1,4 +1,4 @@
-"""What a reference leads to."""
+"""The target of a reference."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """Where a name is declared: ``span`` and ``extent`` are absolute in the document ``uri``.
+    """A declared name: ``span`` and ``extent`` are absolute in the document ``uri``.
 
     ``iri`` is ``None`` while the namespace of the declaration is unknown.
     """
@@ -25,5 +25,5 @@ class Definition:
 
     @property
     def kind(self) -> SymbolKind:
-        """What the name stands for."""
+        """Kind of the name."""
         return self.symbol.kind

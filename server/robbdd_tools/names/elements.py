@@ -1,4 +1,4 @@
-"""What sets and scenes consist of, read from their trees without building a graph."""
+"""The contents of sets and scenes, read from their trees without building a graph."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class Element:
     """One member of a set: ``kind`` is ``object``, ``workspace``, ``agent``, ``number`` or ``string``.
 
-    ``key`` tells equal members: document and qualified name of an element, the value of a literal.
+    ``key`` identifies equal members: document and qualified name of an element, the value of a literal.
     """
 
     kind: str
@@ -39,12 +39,12 @@ class Site:
 
     @property
     def uri(self) -> str:
-        """The document it stands in."""
+        """The declaration's document."""
         return self.file.document.uri
 
     @property
     def tree(self) -> tree.ChunkTree | None:
-        """Its tree, ``None`` when it is broken."""
+        """Its tree, ``None`` if it is broken."""
         return self.placed.declaration.tree
 
     def span(self, node: tree.Node) -> Span:
@@ -52,15 +52,15 @@ class Site:
         return node.span.shifted(self.placed.offset)
 
     def target(self, ref: tree.Ref) -> Definition | None:
-        """Return what one of its references leads to."""
+        """Return the definition of one of its references."""
         return self.placed.targets.get(ref)
 
     def whole(self, node: tree.Node) -> bool:
-        """Tell whether the text of a node has no syntax error, so that nothing is missing from its tree."""
+        """Return whether the text of a node has no syntax error, so that its tree is complete."""
         return not any(node.span.start <= fault.span.start <= node.span.end for fault in self.placed.declaration.faults)
 
     def follow(self, ref: tree.Ref) -> Site | None:
-        """Return the declaration that a reference leads into."""
+        """Return the declaration that contains the target of a reference."""
         definition = self.target(ref)
         return None if definition is None else site_of(self.snapshot, definition)
 
@@ -75,14 +75,14 @@ def site_of(snapshot: Snapshot, definition: Definition) -> Site | None:
 
 
 def story_sites(snapshot: Snapshot, file: FileAnalysis, within: Span | None = None) -> Iterator[Site]:
-    """Yield the stories of a file, or of a part of it; one that is read in parts scenario by scenario."""
+    """Yield the stories of a file, or of a part of it; a story with parts is yielded scenario by scenario."""
     for part in file.parts(within):
         if isinstance(part.declaration.tree, tree.Story | tree.Variant):
             yield Site(snapshot, file, part)
 
 
 def element_of(site: Site, value: tree.Value) -> Element | None:
-    """Return the element or literal that a value of a declaration stands for; ``None`` for an unknown name."""
+    """Return the element or literal of a value in a declaration; ``None`` for an unknown name."""
     match value:
         case tree.Number():
             return Element("number", str(value.value), ("", str(value.value)))
@@ -96,7 +96,7 @@ def element_of(site: Site, value: tree.Value) -> Element | None:
 
 
 def elements_of(site: Site | None) -> tuple[Element, ...] | None:
-    """Return the members of a set in written order; ``None`` when it is no set or not all of it is known."""
+    """Return the members of a set in written order; ``None`` if it is not a set or not completely known."""
     declared = None if site is None else site.tree
     if site is None or declared is None or not site.whole(declared):
         return None
@@ -121,9 +121,9 @@ def _members(uri: str, kind: str, owner: str, names: list[str]) -> tuple[Element
 
 
 def scene_members(site: Site | None) -> frozenset[Element] | None:
-    """Return the members of a scene; ``None`` when it is no scene or not all of it is known.
+    """Return the members of a scene; ``None`` if it is not a scene or not completely known.
 
-    A composition counts with its workspace and what it names, one inside it by its workspace only.
+    A composition contributes its workspace and its entries; a nested one, only its workspace.
     """
     scene = None if site is None else site.tree
     if site is None or not isinstance(scene, tree.Scene) or not site.whole(scene):

@@ -1,4 +1,4 @@
-"""What the path of an import means, and which kind of file may import which."""
+"""Resolve import paths, and define which kinds of file may import which."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ IMPORTABLE: Mapping[str, tuple[str, ...]] = {
 BACKSLASH = "\\"
 _PACKAGE = "package:"
 _ADDRESS = "address:"
-# URLs, and the shared folders of other machines as Windows and URLs write them.
+# URLs, and network paths of Windows and URLs.
 _ADDRESSES = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*://|file:|//|\\\\")
 
 
 def import_uri(importer: str, path: str) -> str:
-    """Return the URI that an import's path means: relative to its file, or ``package:path`` inside a package.
+    """Return the URI of an import's path: relative to its file, or ``package:path`` inside a package.
 
-    A file of a package that is not installed has a URI by which ``missing_package`` knows it; an address of another
-    machine, a URL or a path with backslashes has one by which ``not_a_path`` does: nothing is read from there.
+    A file of a package that is not installed has a URI that ``missing_package`` recognises; a network path, a URL or a
+    path with backslashes has one that ``not_a_path`` recognises: nothing is read from there.
     """
     if _ADDRESSES.match(path) or BACKSLASH in path:
         return f"{_ADDRESS}{quote(path)}"
@@ -40,7 +40,7 @@ def import_uri(importer: str, path: str) -> str:
     if drive is not None:
         return drive
     package, colon, inside = path.partition(":")
-    # A package's code must not run: only its place is looked up. One letter is a drive, which POSIX has none of.
+    # A package's code must not run: only its path is looked up. A single letter is a drive, which POSIX does not have.
     if not colon or not package.isidentifier() or len(package) == 1 or inside.startswith("//"):
         return urljoin(importer, quote(path))
     folder = _package_folder(package)
@@ -51,7 +51,7 @@ def import_uri(importer: str, path: str) -> str:
 
 @lru_cache(maxsize=10_000)
 def import_path(importer: str, imported: str) -> str | None:
-    """Return how a file is named in an import: relative to its importer; ``None`` where no such path leads to it."""
+    """Return the path that imports a file, relative to its importer; ``None`` if there is none."""
     here, there = urlsplit(importer), urlsplit(imported)
     if (here.scheme, here.netloc) != (there.scheme, there.netloc) or not there.path.startswith("/"):
         return None
@@ -59,18 +59,18 @@ def import_path(importer: str, imported: str) -> str | None:
 
 
 def missing_package(uri: str) -> str | None:
-    """Say that the package of an import is not installed; ``None`` when the import is none of a package."""
+    """Return the message for an import of a package that is not installed; ``None`` for any other import."""
     if not uri.startswith(_PACKAGE):
         return None
     package, _, inside = uri.removeprefix(_PACKAGE).partition("/")
     return (
-        f"the package '{package}' is not installed here, so that the names of '{inside}' are unknown: "
+        f"the package '{package}' is not installed here, so the names of '{inside}' are unknown: "
         "install it, or import the file by its path"
     )
 
 
 def not_a_path(uri: str) -> str | None:
-    """Say that an import is no path that every system reads; ``None`` when it is one."""
+    """Return the message for an import that is not a path valid on every system; ``None`` if it is."""
     if not uri.startswith(_ADDRESS):
         return None
     written = unquote(uri.removeprefix(_ADDRESS))
@@ -80,7 +80,8 @@ def not_a_path(uri: str) -> str | None:
 
 
 def not_importable(importer: str, imported: str) -> str | None:
-    """Say which kinds of file a kind may import when ``imported`` (``""``: not ours) is none of them."""
+    """Return the message for a file kind that must not import ``imported`` (``""``: not a model file); ``None`` if it
+    may."""
     kinds = IMPORTABLE.get(importer, ())
     if imported in kinds:
         return None
@@ -90,12 +91,12 @@ def not_importable(importer: str, imported: str) -> str | None:
 
 
 def reached(edges: Mapping[str, Iterable[str]], start: str) -> frozenset[str]:
-    """Return where edges lead to from a start, which is itself left out."""
+    """Return the nodes reachable from a start, without the start."""
     return reached_from(edges, (start,)) - {start}
 
 
 def reached_from(edges: Mapping[str, Iterable[str]], starts: Iterable[str]) -> frozenset[str]:
-    """Return the starts and where edges lead to from them."""
+    """Return the starts and the nodes reachable from them."""
     found = set(starts)
     waiting = list(found)
     while waiting:

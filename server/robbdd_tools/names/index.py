@@ -1,4 +1,4 @@
-"""One file by itself: its declarations, the names it declares and the files it imports."""
+"""Index of a single file: its declarations, the names it declares and the files it imports."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ImportPath:
-    """The path of an import as it was written (absolute ``span`` without quotes) and the URI that it means."""
+    """The path of an import as written (absolute ``span`` without quotes) and its URI."""
 
     span: Span
     text: str
@@ -40,7 +40,7 @@ class Declared:
 
 @dataclass(frozen=True, eq=False)
 class FileIndex:
-    """What a file says without looking at any other; a function of its document only."""
+    """The contents of a file without its imports; a function of its document only."""
 
     document: Document
     chunks: tuple[Chunk, ...]
@@ -49,25 +49,25 @@ class FileIndex:
     imports: tuple[ImportPath, ...]
 
     def declared(self, path: str) -> Iterator[Declared]:
-        """Yield the declarations of a qualified name in the order of the text."""
+        """Yield the declarations of a qualified name in text order."""
         for entry in self.names.entries.get(path, ()):
             yield self.at(entry)
 
     def at(self, entry: Entry) -> Declared:
-        """Return what an entry of the name table stands for."""
+        """Return the declaration of an entry of the name table."""
         placed = self.declarations[entry.declaration]
         return Declared(placed.declaration.symbols[entry.symbol], placed.offset)
 
 
 @lru_cache(maxsize=20_000)
 def language_of(uri: str) -> str:
-    """Return the language of a file by its ending; ``""`` for a kind that is not ours."""
+    """Return the language of a file by its extension; ``""`` for other files."""
     ending = PurePosixPath(uri).suffix.removeprefix(".").lower()
     return ending if ending in LANGUAGES else ""
 
 
 def index_file(document: Document, previous: FileIndex | None = None) -> FileIndex:
-    """Split and parse a document; what an edit left alone is taken over from the ``previous`` revision."""
+    """Split and parse a document; parts unchanged since the ``previous`` revision are reused."""
     language = language_of(document.uri)
     if not language:
         chunks: tuple[Chunk, ...] = ()
@@ -85,7 +85,7 @@ def index_file(document: Document, previous: FileIndex | None = None) -> FileInd
 
 
 def imports_of(document: Document) -> tuple[ImportPath, ...]:
-    """Return the imports of a file by itself; nothing else in it is parsed."""
+    """Return the imports of a file without parsing anything else in it."""
     language = language_of(document.uri)
     chunks = (
         chunk for chunk in (split(language, document.text) if language else ()) if chunk.text.startswith("import")
@@ -93,7 +93,7 @@ def imports_of(document: Document) -> tuple[ImportPath, ...]:
     return _imports(document, (Placed(parse_declaration(language, chunk.text), chunk.offset) for chunk in chunks))
 
 
-# Quotes and backslashes are what else is escaped.
+# Other escapes are of quotes and backslashes only.
 _WINDOWS_PATH = re.compile(r"\\[^\\\"']")
 
 
@@ -103,7 +103,8 @@ def _imports(document: Document, declarations: Iterable[Placed]) -> tuple[Import
         if isinstance(placed.declaration.tree, tree.Import):
             path = placed.declaration.tree.path
             span = Span(path.span.start + 1, path.span.end - 1).shifted(placed.offset)
-            # A backslash is an escape in a string: the one between two folders of Windows is not part of its value.
+            # A backslash escapes in a string, so the value lacks the ones between Windows folders: use the written
+            # text.
             written = document.text[span.start : span.end]
             meant = written if _WINDOWS_PATH.search(written) and BACKSLASH not in path.value else path.value
             found.append(ImportPath(span, path.value, import_uri(document.uri, meant)))

@@ -1,9 +1,9 @@
-"""Names that lead through another one: parts of trees, clauses of a variant, elements of a scene.
+"""Names that resolve through another name: parts of trees, clauses of a variant, elements of a scene.
 
-``ktree inst … arm of <gen3>`` makes every part of the template a part of the instance (``arm.base.origin``);
-``tree <arm>`` inside a tree makes it ``cell.arm.base.origin``; a clause of a variant may be named without the user
-story around it; and an element of a scene by the scene (``lab_scene.cube``). All of these have their declaration
-under another path, which is found here.
+``ktree inst … arm of <gen3>`` makes every part of the template a part of the instance (``arm.base.origin``); ``tree
+<arm>`` inside a tree makes it ``cell.arm.base.origin``; a clause of a variant may be named without its user story; and
+an element of a scene by the scene (``lab_scene.cube``). All of these are declared under another path, which this module
+finds.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 ELEMENT_ROLES = frozenset({"Element", "Object", "Workspace", "Agent"})
 ROLES = ELEMENT_ROLES | {"Frame", "Body", "Joint", "Tree", "Fluent"}
-"""What a reference may lead to through another name."""
+"""Roles of references that may resolve through another name."""
 MOST_PATHS = 50
-"""Paths that are tried for one reference: trees that contain one another must not go round for ever."""
+"""Maximum number of paths tried for one reference: trees that contain one another must not loop for ever."""
 _PARTS = frozenset({SymbolKind.BODY, SymbolKind.FRAME, SymbolKind.POSE, SymbolKind.JOINT})
 
 
 def paths_through(files: Sequence[FileIndex], paths: Iterable[str]) -> list[str]:
-    """Return the paths under which what some qualified names mean may be declared, nearest first."""
+    """Return the paths under which the targets of some qualified names may be declared, nearest first."""
     waiting = list(paths)
     found: dict[str, None] = {}
     for path in waiting:
@@ -42,7 +42,7 @@ def paths_through(files: Sequence[FileIndex], paths: Iterable[str]) -> list[str]
 def instance_parts(
     files: Sequence[FileIndex], kinds: Iterable[SymbolKind]
 ) -> Iterator[tuple[str, FileIndex, Declared]]:
-    """Yield each part of each instance of a tree as it is written, with the declaration in the template."""
+    """Yield each part of each tree instance under its written name, with its declaration in the template."""
     wanted = _PARTS.intersection(kinds)
     if not wanted:
         return
@@ -56,7 +56,7 @@ def instance_parts(
 
 
 def instances(files: Sequence[FileIndex]) -> Iterator[tuple[str, str]]:
-    """Yield the name of each instance of a tree with that of its template."""
+    """Yield the name of each tree instance and of its template."""
     for file in files:
         for placed in file.declarations:
             for symbol in placed.declaration.symbols[:1]:
@@ -65,7 +65,7 @@ def instances(files: Sequence[FileIndex]) -> Iterator[tuple[str, str]]:
 
 
 def _rewritten(files: Sequence[FileIndex], path: str) -> Iterator[str]:
-    """Replace the beginning of a path by what it stands for."""
+    """Replace an alias at the beginning of a path by its targets."""
     parts = path.split(".")
     for length in range(1, len(parts) + 1):
         head, rest = ".".join(parts[:length]), path[len(".".join(parts[:length])) :]
@@ -76,7 +76,7 @@ def _rewritten(files: Sequence[FileIndex], path: str) -> Iterator[str]:
 
 @kept_with_key
 def _targets(file: FileIndex) -> Mapping[str, tuple[str, ...]]:
-    """Map each name of a file that stands for others to these."""
+    """Map each alias in a file to its targets."""
     found: dict[str, tuple[str, ...]] = {}
     for placed in file.declarations:
         for name, target in _of_declaration(placed.declaration):
@@ -105,7 +105,7 @@ def _of_declaration(declaration: Declaration) -> Iterator[tuple[str, str]]:
 
 
 def _composed(composition: tree.Composition) -> Iterator[tuple[str, str]]:
-    """Yield what the elements of a composition, and those of the compositions in it, are called in a scene."""
+    """Yield alias and target of the elements of a composition and of the compositions in it, as named in a scene."""
     held = [entry.reference for entry in composition.entries]
     for ref in (composition.workspace, *held):
         if ref.role == "Composition":

@@ -1,4 +1,4 @@
-"""Which names a file declares, by path: what can be kept while the text around the names is edited."""
+"""Table of the names that a file declares, by path; kept while the text around the names is edited."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A declared name: its kind, the position of its declaration in the file and its own in the declaration."""
+    """A declared name: its kind, the index of its declaration in the file, and its index in the declaration."""
 
     kind: SymbolKind
     declaration: int
@@ -21,15 +21,15 @@ class Entry:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Sorts entries as they stand in the text."""
+        """Sort key of entries in text order."""
         return (self.declaration, self.symbol)
 
 
 @dataclass(frozen=True, eq=False)
 class NameTable:
-    """The names of one file, each with all its declarations in the order of the text.
+    """The names of one file, each with all its declarations in text order.
 
-    Tables are compared by identity: an edit that neither adds, removes nor moves a name keeps the object.
+    Tables are compared by identity: an edit that neither adds, removes nor reorders a name keeps the object.
     """
 
     entries: Mapping[str, tuple[Entry, ...]]
@@ -37,7 +37,7 @@ class NameTable:
 
     @cached_property
     def of_kind(self) -> Mapping[SymbolKind, Mapping[str, Entry]]:
-        """The names of each kind with the first declaration of that kind."""
+        """The names of each kind, each with its first declaration of that kind."""
         found: dict[SymbolKind, dict[str, Entry]] = {}
         for path, entries in self.entries.items():
             for entry in entries:
@@ -46,7 +46,7 @@ class NameTable:
 
     @cached_property
     def repeated(self) -> tuple[str, ...]:
-        """The paths that are declared more than once."""
+        """The paths declared more than once."""
         return tuple(path for path, entries in self.entries.items() if len(entries) > 1)
 
 
@@ -58,7 +58,7 @@ def make_table(declarations: Sequence[Declaration]) -> NameTable:
 
 
 def update_table(old: NameTable, before: Sequence[Declaration], after: Sequence[Declaration]) -> NameTable:
-    """Return the table of ``after``, given that of ``before``; the same object where no name has changed."""
+    """Return the table of ``after``, given that of ``before``; the same object if no name changed."""
     if len(before) != len(after):
         return make_table(after)
     changed = [position for position, declaration in enumerate(after) if declaration is not before[position]]
@@ -81,7 +81,7 @@ def update_table(old: NameTable, before: Sequence[Declaration], after: Sequence[
 
 
 def changed_paths(old: NameTable, new: NameTable) -> set[str]:
-    """Return the paths that two tables do not agree on."""
+    """Return the paths on which two tables differ."""
     return set() if old is new else {path for path, _ in old.kinds.items() ^ new.kinds.items()}
 
 
@@ -103,6 +103,6 @@ def _kinds(entries: tuple[Entry, ...]) -> tuple[SymbolKind, ...]:
 
 
 def _names(declaration: Declaration) -> list[tuple[str, SymbolKind]]:
-    """Return what a declaration declares; its parts tell it without being moved to their places."""
+    """Return the names that a declaration declares; its parts need not be moved to their places for this."""
     every = [part.declaration for part in declaration.parts] or [declaration]
     return [(symbol.path, symbol.kind) for one in every for symbol in one.symbols]

@@ -1,7 +1,7 @@
-"""The namespace of declarations that name none.
+"""Namespaces of declarations without an explicit one.
 
-It is the only one of their file. In a file of several namespaces, events and tasks take the namespace of the templates
-that use them, if these agree.
+It is the only namespace of their file. In a file of several namespaces, events and tasks take the namespace of the
+templates that use them, if these agree.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _USED = {"Event": SymbolKind.EVENT, "Task": SymbolKind.TASK}
 
 @kept_with_key
 def _by_use(file: FileIndex) -> Mapping[tuple[SymbolKind, str], str]:
-    """Map the events and tasks that templates of the file use to these templates' namespace, if they agree."""
+    """Map the events and tasks used by the file's templates to the namespace of these templates, if they agree."""
     found: dict[tuple[SymbolKind, str], set[str]] = {}
     for placed in file.declarations:
         declaration = placed.declaration
@@ -57,7 +57,7 @@ def _by_use(file: FileIndex) -> Mapping[tuple[SymbolKind, str], str]:
 
 
 def without_namespace(file: FileIndex) -> Iterator[Diagnostic]:
-    """Yield an error for each declaration that gives no namespace where neither its file nor its users tell it."""
+    """Yield an error for each declaration whose namespace is neither written nor implied by its file or its users."""
     if only_namespace(file.names) is not None:
         return
     for placed in file.declarations:

@@ -1,4 +1,4 @@
-"""Did you mean, for references that may lead through another name."""
+"""Suggestions ("did you mean") for references that may resolve through another name."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def nearest(scope: Scope, reference: Reference, kinds: tuple[SymbolKind, ...]) -> tuple[tuple[str, ...], bool]:
-    """Return the names nearest to a reference, and whether there is any: ``closest``, but through instances too."""
+    """Return the names nearest to a reference, and whether there is any: as ``closest``, but also through instances."""
     path = reference.ref.path
     if reference.ref.role in ROLES:
         for name, target in instances(scope.files):

@@ -1,4 +1,4 @@
-"""What each part of a written name stands for: in ``<places.tray_ws>`` the set, then its element."""
+"""The definition of each part of a written name: in ``<places.tray_ws>`` the set, then its element."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Part = tuple[Span, "Definition"]
 
 
 def parts_of(snapshot: Snapshot, uri: str, placed: PlacedDeclaration, reference: Reference) -> Iterator[Part]:
-    """Yield the parts of a reference that leads somewhere, each with its absolute span and what it stands for."""
+    """Yield the parts of a resolved reference, each with its absolute span and definition."""
     target = placed.targets[reference.ref]
     written = reference.ref.path.split(".")
     above = _owners(snapshot, target, len(written) - 1)
@@ -34,7 +34,7 @@ def parts_of(snapshot: Snapshot, uri: str, placed: PlacedDeclaration, reference:
 
 
 def find_path(scope: Scope, paths: tuple[str, ...]) -> Definition | None:
-    """Return what the first of some qualified names means, by itself or through another name; ``None`` if nothing."""
+    """Return the definition of the first of ``paths`` that resolves, directly or through another name, or ``None``."""
     for path in (*paths, *paths_through(scope.files, paths)):
         for file, declared in scope.find(path):
             return scope.define(file, declared)
@@ -42,7 +42,7 @@ def find_path(scope: Scope, paths: tuple[str, ...]) -> Definition | None:
 
 
 def _owners(snapshot: Snapshot, target: Definition, number: int) -> list[Definition | None]:
-    """Return the nearest ``number`` declarations around another one, the outermost first."""
+    """Return the nearest ``number`` declarations around another one, outermost first."""
     file = snapshot.file(target.uri)
     path = target.symbol.path.split(".")
     ends = range(len(path) - number, len(path))
@@ -50,7 +50,7 @@ def _owners(snapshot: Snapshot, target: Definition, number: int) -> list[Definit
 
 
 def _owners_through(scope: Scope, reference: Reference, target: Definition) -> list[Definition | None]:
-    """Return what the parts before the last one stand for where one of them stands for another name."""
+    """Return the definitions of the parts before the last one if one of them resolves through another name."""
     written = reference.ref.path.split(".")
     for full in candidates(reference):
         if target.symbol.path in paths_through(scope.files, (full,)):

@@ -1,4 +1,4 @@
-"""Says what is wrong with names: unknown, of the wrong kind, declared twice."""
+"""Diagnostics of names: unknown, of the wrong kind, declared twice."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def unresolved(scope: Scope, resolution: Resolution, offset: int) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for each reference of a declaration (at ``offset``) that leads nowhere."""
+    """Yield a diagnostic for each unresolved reference of a declaration (at ``offset``)."""
     for problem in resolution.unresolved:
         if problem.other is not None:
             yield _wrong_kind(scope, problem, offset)
@@ -33,7 +33,7 @@ def unresolved(scope: Scope, resolution: Resolution, offset: int) -> Iterator[Di
 
 
 def repeated(scope: Scope) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for each name of the scope's own file that is declared again."""
+    """Yield a diagnostic for each repeated declaration in the scope's own file."""
     file = scope.files[0]
     uri = file.document.uri
     for path in file.names.repeated:
@@ -50,7 +50,7 @@ def repeated(scope: Scope) -> Iterator[Diagnostic]:
 
 
 def _renamed(file: FileIndex, path: str, place: Span) -> Iterator[Fix]:
-    """Yield a new name for what is declared again; what refers to the name means the first one."""
+    """Yield a fix that renames the second declaration; references to the name mean the first one."""
     name = path.rpartition(".")[2]
     free = free_name(name, file.names.entries)
     if file.document.text[place.start : place.end] == name:
@@ -58,19 +58,19 @@ def _renamed(file: FileIndex, path: str, place: Span) -> Iterator[Fix]:
 
 
 def free_name(name: str, paths: Iterable[str]) -> str:
-    """Return a name like another one that ends none of some qualified names."""
+    """Return a variant of a name that no qualified name ends with."""
     taken = {path.rpartition(".")[2] for path in paths}
     return next(found for number in count(2) if (found := f"{name}-{number}") not in taken)
 
 
 def _same_variable(first: Declared, second: Declared) -> bool:
-    """Tell whether two quantifiers of one declaration use one variable name, which is no clash."""
+    """Return whether two quantifiers of one declaration use the same variable name, which is allowed."""
     variable = first.symbol.kind is second.symbol.kind is SymbolKind.VARIABLE
     return variable and first.offset == second.offset and second.symbol.span == second.symbol.extent
 
 
 def _could_be_unread(scope: Scope, reference: Reference) -> bool:
-    """Tell whether an import that could not be read may declare the name; its own error is enough then."""
+    """Return whether an unreadable import may declare the name; its own error is then sufficient."""
     kinds = ROLE_KINDS[reference.ref.role]
     return any(may_declare(language_of(uri), kinds) for uri in scope.unread)
 

@@ -1,4 +1,4 @@
-"""The set of open files: a mutable Project that hands out immutable Snapshots."""
+"""The set of open files: a mutable Project that returns immutable Snapshots."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Source = FileIndex | Unreadable
 
 @dataclass
 class Project:
-    """Open documents over files on disk; every change makes the next snapshot a new revision."""
+    """Open documents over files on disk; after every change the next snapshot is a new revision."""
 
     revision: int = 0
     _open: dict[str, Source] = field(default_factory=dict[str, Source])
@@ -34,7 +34,7 @@ class Project:
         self.revision += 1
 
     def open(self, uri: str, version: int, text: str) -> None:
-        """Set the text of a document that an editor holds (also on every change)."""
+        """Set the text of a document that is open in an editor (also on every change)."""
         refused = too_large(uri.rsplit("/", 1)[-1], len(text))
         known = self._open.get(uri)
         previous = known if isinstance(known, FileIndex) else None
@@ -47,7 +47,7 @@ class Project:
         self.refresh(uri)
 
     def refresh(self, uri: str) -> None:
-        """Forget what was read of a file, because it may have changed on disk."""
+        """Drop the cached text of a file that may have changed on disk."""
         self._disk.pop(uri, None)
         self.revision += 1
 
@@ -57,7 +57,7 @@ class Project:
         return {document.uri: (document.version, document.text) for document in documents}
 
     def replace(self, texts: Mapping[str, tuple[int, str]]) -> None:
-        """Make exactly these documents the open ones, and read every other file afresh."""
+        """Make exactly these documents the open ones, and reread every other file."""
         for uri in [uri for uri in self._open if uri not in texts]:
             del self._open[uri]
         for uri, (version, text) in texts.items():
@@ -67,11 +67,11 @@ class Project:
         self._disk.clear()
 
     def has(self, uri: str) -> bool:
-        """Tell whether a file was loaded, by itself or as an import."""
+        """Return whether a file was loaded, directly or as an import."""
         return uri in self._open or uri in self._disk
 
     def load(self, uri: str) -> Source:
-        """Return a file, from the editor where it is open there, else from disk; kept until ``refresh``."""
+        """Return a file: the editor's text if open, otherwise the one on disk; cached until ``refresh``."""
         if uri in self._open:
             return self._open[uri]
         if uri not in self._disk:
@@ -79,7 +79,7 @@ class Project:
         return self._disk[uri]
 
     def snapshot(self) -> Snapshot:
-        """Return the present state of all files and of everything that they import."""
+        """Return the current state of all files and of everything that they import."""
         sources: dict[str, Source] = {}
         waiting = [*self._open, *self._disk]
         while waiting:
@@ -94,14 +94,14 @@ class Project:
 def _read(uri: str) -> Source:
     path = uri_to_path(uri)
     if path is None:
-        return Unreadable("file-missing", f"'{uri}' is not open and is no file")
+        return Unreadable("file-missing", f"'{uri}' is neither open nor a file")
     text = read_text(path)
     return text if isinstance(text, Unreadable) else index_file(Document(uri, 0, text))
 
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """One revision of all files. Analyses are made when first asked for; asking never changes the answer."""
+    """One revision of all files. Analyses are made on first access; access never changes a result."""
 
     revision: int
     sources: Mapping[str, Source]
@@ -118,7 +118,7 @@ class Snapshot:
         return {}
 
     def file(self, uri: str) -> FileAnalysis | None:
-        """Return what is known of a file; ``None`` when it is not in the project or cannot be read."""
+        """Return the analysis of a file; ``None`` if it is not in the project or cannot be read."""
         if uri in self._files:
             return self._files[uri]
         if not isinstance(self.sources.get(uri), FileIndex):
@@ -133,12 +133,12 @@ class Snapshot:
         return kept.analysis
 
     def document(self, uri: str) -> Document:
-        """Return the document of a file; an empty one for a file without text, so that places in it are its start."""
+        """Return the document of a file; an empty one for an unreadable file, so that positions in it are its start."""
         source = self.sources.get(uri)
         return source.document if isinstance(source, FileIndex) else Document(uri, 0, "")
 
     def unreadable(self, uri: str) -> Unreadable | None:
-        """Return why a file has no text, ``None`` when it has."""
+        """Return why a file cannot be read, ``None`` if it can."""
         source = self.sources.get(uri)
         return source if isinstance(source, Unreadable) else None
 
@@ -149,12 +149,12 @@ class Snapshot:
         return self._scopes[uri]
 
     def closure(self, uri: str) -> tuple[FileAnalysis, ...]:
-        """Return the analyses of a file and of all it imports, itself first, nearest imports first."""
+        """Return the analyses of a file and of all its imports, itself first, nearest imports first."""
         found = (self.file(index.document.uri) for index in self.scope(uri).files)
         return tuple(analysis for analysis in found if analysis is not None)
 
     def importers(self, uri: str) -> tuple[str, ...]:
-        """Return the files that import a file, directly or not, in alphabetical order."""
+        """Return the files that import a file, directly or indirectly, in alphabetical order."""
         return tuple(sorted(reached(self._users, uri)))
 
     @cached_property
@@ -168,23 +168,23 @@ class Snapshot:
 
     @cached_property
     def _faults(self) -> dict[str, list[Related]]:
-        """Syntax errors and unusable imports of each file that has any."""
+        """Syntax errors and unusable imports by file."""
         files = (source for source in self.sources.values() if isinstance(source, FileIndex))
         return {index.document.uri: faults for index in files if (faults := self._faults_of(index))}
 
     @cached_property
     def _leading_to_faults(self) -> frozenset[str]:
-        """The files with faults and those that import one, directly or not."""
+        """The files with faults and those that import one, directly or indirectly."""
         return reached_from(self._users, self._faults)
 
     @cached_property
     def _cycles(self) -> dict[str, int]:
-        """A number for each file, equal for files that import each other, directly or not."""
+        """A component number for each file, equal for files that import each other, directly or indirectly."""
         files = self.sources.items()
         return components({uri: [i.uri for i in f.imports] for uri, f in files if isinstance(f, FileIndex)})
 
     def import_each_other(self, one: str, other: str) -> bool:
-        """Tell whether each of two files imports the other, directly or not."""
+        """Return whether two files import each other, directly or indirectly."""
         return one in self._cycles and self._cycles[one] == self._cycles.get(other)
 
     def _reach(self, uri: str) -> Scope:
@@ -226,7 +226,7 @@ class Snapshot:
         return source.reason if isinstance(source, Unreadable) else None
 
     def _broken_imports(self, index: FileIndex, imports: tuple[ImportLink, ...]) -> list[Diagnostic]:
-        """Report on each import line what is wrong in the files behind it, with their own places."""
+        """Report on each import line the faults of the files that it imports, with their own places."""
         found: list[Diagnostic] = []
         for link in imports:
             if link.problem is not None:
@@ -241,7 +241,7 @@ class Snapshot:
         return found
 
     def _faults_behind(self, uri: str) -> list[Related]:
-        """Return the faults of a file and all it imports."""
+        """Return the faults of a file and all its imports."""
         if uri not in self._leading_to_faults:
             return []
         return [fault for name in self.scope(uri).uris for fault in self._faults.get(name, ())]

@@ -1,4 +1,4 @@
-"""Finds what references lead to, and finds it again only where an edit can have changed the answer."""
+"""Resolve references, and resolve them again only if an edit can have changed the result."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ KEPT_TABLES = 4
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A declaration found: the position of its file in the scope, its path, and which of that path's it is."""
+    """A declaration: the index of its file in the scope, its path, and its index among that path's declarations."""
 
     file: int
     path: str
@@ -36,7 +36,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Unresolved:
-    """A reference without a fitting target; ``other`` is a declaration of the name that has another kind."""
+    """A reference without a matching target; ``other`` is a declaration of the name with another kind."""
 
     reference: Reference
     other: Target | None
@@ -44,11 +44,11 @@ class Unresolved:
 
 @dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
 class Resolution:
-    """What the references of one declaration lead to; ``looked_up`` are all paths that the answer depends on.
+    """The targets of the references of one declaration; ``looked_up`` are all paths that the result depends on.
 
-    It stays the same object as long as no edit can have changed it. ``through_others`` when it also depends on what
-    other names stand for, which does not follow from the paths. That of a declaration in parts is put together from
-    ``parts``, those of its parts, which alone have what they depend on.
+    It stays the same object as long as no edit can have changed it. ``through_others``: it also depends on names that
+    resolve through other names, which ``looked_up`` does not cover. For a declaration in parts it combines ``parts``,
+    the resolutions of its parts; only these have ``looked_up``.
     """
 
     declaration: Declaration
@@ -60,7 +60,7 @@ class Resolution:
 
 
 class _InParts(Mapping["Ref", Target]):
-    """What the references of a declaration lead to, asked of its parts."""
+    """The targets of the references of a declaration in parts."""
 
     __slots__ = ("_offsets", "_parts")
 
@@ -84,9 +84,9 @@ class _InParts(Mapping["Ref", Target]):
 
 
 class Targets(Mapping["Ref", Definition]):
-    """The definitions that the references of one declaration lead to, made when they are asked for.
+    """The definitions of the references of one declaration, made on access.
 
-    ``made`` keeps those of all declarations of a file: many refer to the same few names.
+    ``made`` caches those of all declarations of a file: many refer to the same few names.
     """
 
     __slots__ = ("_made", "_scope", "_targets", "resolution")
@@ -114,18 +114,18 @@ class Targets(Mapping["Ref", Definition]):
         return len(self._targets)
 
     def parts(self) -> tuple[Targets, ...]:
-        """Return the definitions that the references of each part of the declaration lead to."""
+        """Return the definitions of the references of each part of the declaration."""
         return tuple(Targets(self._scope, part, self._made) for part in self.resolution.parts)
 
     def declarations(self) -> Iterator[tuple[str, int]]:
-        """Yield for each reference the document and the position in it of the declaration that it leads to."""
+        """Yield for each reference the document of its target's declaration and its position there."""
         for target in self._targets.values():
             file = self._scope.files[target.file]
             yield file.document.uri, file.names.entries[target.path][target.number].declaration
 
 
 def define(scope: Scope, target: Target) -> Definition:
-    """Return the definition that a target stands for."""
+    """Return the definition of a target."""
     file = scope.files[target.file]
     return scope.define(file, file.at(file.names.entries[target.path][target.number]))
 
@@ -146,7 +146,7 @@ def resolve_file(scope: Scope, before: Scope | None, known: tuple[Resolution, ..
 def _put_together(
     scope: Scope, declaration: Declaration, kept: Mapping[Declaration, Resolution], before: Resolution | None
 ) -> Resolution:
-    """Return the resolution of a declaration in parts, the one of ``before`` where none of them has changed."""
+    """Return the resolution of a declaration in parts; ``before`` itself if no part changed."""
     parts = tuple(kept.get(part.declaration) or _resolve(scope, part.declaration) for part in declaration.parts)
     if before is not None and before.parts == parts:
         return before
@@ -203,7 +203,7 @@ def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
 
 
 def candidates(reference: Reference) -> tuple[str, ...]:
-    """Return the qualified names that a reference may mean, innermost scope first."""
+    """Return the qualified names that a reference may denote, innermost scope first."""
     path = reference.ref.path
     return (*[f"{scope}.{path}" for scope in reference.scopes], path)
 
@@ -213,12 +213,12 @@ _Lookups = dict[tuple[str, str, tuple[str, ...]], tuple[tuple[str, ...], Target 
 
 @lru_cache(maxsize=KEPT_TABLES)
 def _known_lookups(_: tuple[NameTable, ...]) -> _Lookups:
-    """Return what was looked up in some tables, by role, path and scopes; it holds as long as no name changes."""
+    """Return the lookup cache of some tables, by role, path and scopes; valid as long as no name changes."""
     return {}
 
 
 def _lookup_in_scene(scope: Scope, role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
-    """Return the element that a scene has under a name; none if it has several of that name."""
+    """Return the element with a name in a scene; none if several have it."""
     found = [_lookup(scope.tables, role, (path,)) for path in paths_through(scope.files, paths)]
     fitting = {target for target, _ in found if target is not None}
     others = (other for _, other in found if other is not None)
@@ -226,7 +226,7 @@ def _lookup_in_scene(scope: Scope, role: str, paths: tuple[str, ...]) -> tuple[T
 
 
 def _lookup(tables: tuple[NameTable, ...], role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
-    """Return the nearest declaration of a fitting kind, else the nearest of another kind."""
+    """Return the nearest declaration of a matching kind, else the nearest of another kind."""
     kinds = ROLE_KINDS[role]
     other: Target | None = None
     for path in paths:

@@ -1,4 +1,4 @@
-"""What a reference may lead to, by the grammar rule that reads it."""
+"""The kinds of target of each reference rule in the grammar."""
 
 from __future__ import annotations
 
@@ -64,5 +64,5 @@ _DECLARED_BEHIND = {
 
 
 def may_declare(language: str, kinds: Iterable[SymbolKind]) -> bool:
-    """Tell whether a file of a kind, or one that it imports, may declare a name of one of some kinds."""
+    """Return whether a file of a language, or a file that it can import, may declare a name of some kinds."""
     return not _DECLARED_BEHIND.get(language, set()).isdisjoint(kinds)

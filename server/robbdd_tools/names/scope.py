@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Scope:
-    """The files whose names a file can use: itself first, then its imports in order of nearness.
+    """The files whose names a file can use: itself first, then its imports in order of distance.
 
     ``unread`` are the URIs of imports that could not be read.
     """
@@ -31,12 +31,12 @@ class Scope:
 
     @property
     def uris(self) -> list[str]:
-        """The files' URIs, in their order."""
+        """The files' URIs, in order."""
         return [file.document.uri for file in self.files]
 
     @property
     def tables(self) -> tuple[NameTable, ...]:
-        """The files' name tables: equal (by identity) as long as no name appears, vanishes or moves."""
+        """The files' name tables: identical as long as no name is added, removed or reordered."""
         return tuple(file.names for file in self.files)
 
     def find(self, path: str) -> Iterator[tuple[FileIndex, Declared]]:
@@ -52,7 +52,7 @@ class Scope:
         return Definition(file.document.uri, symbol, span, extent, self._iri(file, declared))
 
     def visible(self, kinds: Iterable[SymbolKind], scopes: tuple[str, ...]) -> dict[str, tuple[FileIndex, Declared]]:
-        """Return every name of some kinds as it would be written at a place, nearest declaration first."""
+        """Return every name of some kinds as written at a place, nearest declaration first."""
         wanted = dict.fromkeys(kinds)
         names: dict[str, tuple[FileIndex, Declared]] = {}
         for position, file in enumerate(self.files):
@@ -73,10 +73,10 @@ class Scope:
         return None if start is None else start + local_name(declared.symbol)
 
     def namespace_iri(self, file: FileIndex, namespace: str | None) -> str | None:
-        """Return what the IRIs of a file's declarations in a namespace begin with, ``None`` while that is unknown."""
+        """Return the IRI prefix of a file's declarations in a namespace, ``None`` if unknown."""
         if namespace is None:
             return None
-        # A declaration's namespace is looked up from its own file; the nearest one outside is a file it imports.
+        # A namespace is looked up in the declaration's own file first, then in the files that it imports.
         for other in (file, *(other for other in self.files if other is not file)):
             for entry in other.names.entries.get(namespace, ()):
                 root = other.declarations[entry.declaration].declaration.tree
@@ -86,7 +86,7 @@ class Scope:
 
 
 def shortened(path: str, scopes: tuple[str, ...]) -> str:
-    """Return a qualified name as it may be written inside the innermost of some declarations that holds it."""
+    """Return a qualified name relative to the innermost scope that contains it."""
     for scope in scopes:
         if path.startswith(f"{scope}."):
             return path[len(scope) + 1 :]
@@ -94,8 +94,8 @@ def shortened(path: str, scopes: tuple[str, ...]) -> str:
 
 
 def local_name(symbol: Symbol) -> str:
-    """Return what the IRI of a declared name ends with."""
+    """Return the last part of the IRI of a declared name."""
     if symbol.kind is SymbolKind.TREE_NODE:
-        # A node may have the name of the behaviour that it executes.
+        # A node may have the same name as the behaviour that it executes.
         return f"node-{symbol.path}"
     return f"var-{symbol.name}" if symbol.kind in ROLE_KINDS["Variable"] else symbol.name

@@ -1,4 +1,4 @@
-"""Did you mean: the known names nearest to one that was written."""
+"""Suggestions ("did you mean"): the known names most similar to a written one."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 MOST = 3
 KEPT_TABLES = 4
 LEAST_ALIKE = 60.0
-"""Per cent of alikeness (normalised insertions and deletions) below which a name is no suggestion."""
+"""Minimum similarity of a suggestion, per cent (normalised insertions and deletions)."""
 
 
 def closest(
     tables: tuple[NameTable, ...], kinds: tuple[SymbolKind, ...], scopes: tuple[str, ...], path: str
 ) -> tuple[tuple[str, ...], bool]:
-    """Return the nearest names of some kinds as they would be written at a place, and whether any is known at all.
+    """Return the nearest names of some kinds, as written at a place, and whether any name of these kinds is known.
 
-    The answer depends on the tables only (compared by identity), so it is kept while no name changes.
+    The result depends on the tables only (compared by identity), so it is cached while no name changes.
     """
     kept = _known_answers(tables)
     key = (kinds, scopes, path)

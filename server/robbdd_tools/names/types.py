@@ -1,7 +1,7 @@
-"""Types of variables, which the language does not write: inferred from clauses and from the values given.
+"""Types of variables, inferred from clauses and values because the language has no type declarations.
 
-A type is a set of kinds: what a variable, or each element of the set it stands for, may be. A phrase narrows it to
-what its slot takes; values in variants narrow it further where the phrases leave it open.
+A type is a set of kinds that a variable, or each element of its set, may have. A phrase narrows it to the kinds of its
+slot; values in variants narrow it further where the phrases leave it open.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ _ORDER = ("object", "workspace", "agent", "number", "string")
 
 @dataclass(frozen=True, slots=True)
 class VariableType:
-    """What a variable may stand for; with ``is_set`` what each element of its set may be."""
+    """Kinds that a variable may have; with ``is_set``, the kinds of each element of its set."""
 
     kinds: Kinds
     is_set: bool
 
     @property
     def is_known(self) -> bool:
-        """Tell whether anything narrows the type."""
+        """Return whether anything narrows the type."""
         return bool(self.kinds) and self.kinds != ANYTHING
 
     def __str__(self) -> str:
@@ -42,31 +42,31 @@ class VariableType:
 
 
 def kind_words(kinds: Kinds) -> str:
-    """Return kinds in words: ``object or workspace``; ``anything`` when nothing is excluded."""
+    """Return kinds in words: ``object or workspace``; ``anything`` if none is excluded."""
     if kinds == ANYTHING:
         return "anything"
     return " or ".join(kind for kind in _ORDER if kind in kinds)
 
 
 def narrowed(uses: Iterable[Use]) -> Kinds:
-    """Return what fits all of some uses."""
+    """Return the kinds that all uses allow."""
     return ANYTHING.intersection(*(use.kinds for use in uses))
 
 
 def variable_of(site: Site, use: Use) -> Definition | None:
-    """Return the variable that a use narrows: a quantified one stands for the elements of its set variable."""
+    """Return the variable that a use narrows: for a quantified variable, its set variable."""
     found = site.target(use.bound.in_set if use.bound is not None else use.ref)
     variable = found is not None and found.kind in (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
     return found if variable else None
 
 
 def variable_key(definition: Definition) -> str:
-    """Return what tells variables apart: templates of one namespace share those of one name."""
+    """Return the identity of a variable: templates of one namespace share variables of the same name."""
     return definition.iri or f"{definition.uri} {definition.symbol.path}"
 
 
 def uses_by_variable(site: Site, clauses: Clauses) -> dict[str, list[Use]]:
-    """Return the uses in the clauses of a template or variant by the key of the variable that they narrow."""
+    """Return the uses in the clauses of a template or variant, by the key of the variable that they narrow."""
     found: dict[str, list[Use]] = {}
     for use in clauses.uses:
         variable = variable_of(site, use)
@@ -79,7 +79,7 @@ Written = tree.Value | tree.Link | tree.ValueList | tree.Selection | tree.SetLis
 
 
 def written_elements(site: Site, written: Written) -> Iterator[tuple[tree.Node, Element]]:
-    """Yield each element that a cell or a line gives, with the node to point at."""
+    """Yield each element in a cell or a line, with the node to mark."""
     match written:
         case tree.Number() | tree.Text() | tree.Ref():
             element = element_of(site, written)
@@ -100,7 +100,7 @@ def written_elements(site: Site, written: Written) -> Iterator[tuple[tree.Node, 
 
 
 def columns_of(variation: tree.Table | tree.Product) -> Iterator[tuple[tree.Ref, tuple[Written, ...]]]:
-    """Yield each column or line of a variation: its variable and what is written for it."""
+    """Yield each column or line of a variation: its variable and its written values."""
     if isinstance(variation, tree.Product):
         for line in variation.assignments:
             yield line.variable, (line.choices,)
@@ -110,9 +110,9 @@ def columns_of(variation: tree.Table | tree.Product) -> Iterator[tuple[tree.Ref,
 
 
 def variable_type(snapshot: Snapshot, definition: Definition, *, from_values: bool = True) -> VariableType:
-    """Return what a variable stands for, derived from its template and from the variants that are known of it.
+    """Return the type of a variable, derived from its template and from the known variants.
 
-    Without ``from_values`` only what the template says counts, which no value in a variant may break.
+    Without ``from_values`` only the template counts; no value in a variant may violate that.
     """
     is_set = definition.kind is SymbolKind.SET_VARIABLE
     site = site_of(snapshot, definition)
@@ -135,7 +135,7 @@ def _owner(site: Site, definition: Definition) -> Clauses | None:
 
 
 def _bound_uses(site: Site, owner: Clauses, definition: Definition) -> Kinds | None:
-    """Return what a quantified variable stands for; ``None`` when the variable is not quantified."""
+    """Return the kinds of a quantified variable; ``None`` if the variable is not quantified."""
     bounds = [bound for bound in owner.bounds if site.span(bound.variable) == definition.span]
     if not bounds:
         return None
@@ -150,7 +150,7 @@ def _bound_uses(site: Site, owner: Clauses, definition: Definition) -> Kinds | N
 
 
 def _narrowed_by_variants(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> Kinds:
-    """Return what both the phrases and the values of all known variants allow."""
+    """Return the kinds that both the phrases and the values of all known variants allow."""
     given: set[str] = set()
     key = variable_key(definition)
     for site, variant, clauses in _variants(snapshot, definition):

@@ -1,4 +1,4 @@
-"""What clauses say about variables and events by themselves: one walk over each declaration, kept with it."""
+"""Uses of variables and events in the clauses of one declaration: one walk each, cached with the declaration."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """A variable in a slot of a phrase: what the slot takes, and the phrase it belongs to.
+    """A variable in a slot of a phrase: the kinds that the slot takes, and the phrase.
 
-    ``bound`` is the quantifier that the variable belongs to, if any.
+    ``bound`` is the quantifier of the variable, if any.
     """
 
     ref: tree.Ref
@@ -51,10 +51,10 @@ class Use:
 
 @dataclass(frozen=True, slots=True)
 class Clauses:
-    """The clauses of one template or variant, whose qualified name is ``path``; ``""`` where that is lost.
+    """The clauses of one template or variant with the qualified name ``path``; ``""`` if that is unknown.
 
-    ``phrases`` are in the order of the text. ``once`` are the durations outside of every ``for all``, whose events come
-    again in each round.
+    ``phrases`` are in text order. ``once`` are the durations outside of every ``for all``; events inside occur in each
+    iteration.
     """
 
     node: tree.Template | tree.Variant
@@ -68,7 +68,7 @@ class Clauses:
 
 @kept_with_key
 def clauses_of(declaration: Declaration) -> tuple[Clauses, ...]:
-    """Return the clauses of a template, or of each variant of a story; nothing for any other declaration."""
+    """Return the clauses of a template, or of each variant of a story; empty for any other declaration."""
     match declaration.tree:
         case tree.Template() as template:
             return (_collected(template, template.name.text, (template.duration, template.body)),)
@@ -144,7 +144,7 @@ class _Collector:
 
 @cache
 def slot_kinds(word: str) -> Mapping[str, Kinds]:
-    """Return what each slot of a word of the catalog takes."""
+    """Return the kinds of each slot of a catalog word."""
     catalog = load_catalog()
     known = catalog.predicates.get(word) or catalog.behaviours[word]
     return {slot.name: _SLOTS.get(slot.kind, ANYTHING) for slot in known.slots}
@@ -152,6 +152,6 @@ def slot_kinds(word: str) -> Mapping[str, Kinds]:
 
 @cache
 def phrase_words(word: str) -> str:
-    """Return the phrase of a word of the catalog."""
+    """Return the phrase of a catalog word."""
     catalog = load_catalog()
     return (catalog.predicates.get(word) or catalog.behaviours[word]).phrase

@@ -1,4 +1,4 @@
-"""Where scenario variants and the rows of their tables stand in a file."""
+"""The positions of scenario variants and their table rows in a file."""
 
 from __future__ import annotations
 
@@ -20,9 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PlacedVariant:
-    """A scenario variant as it is declared, its tree, the declaration (or part of one) that holds it, and its template.
-
-    The latter only where it is known.
+    """A scenario variant: its definition, its tree, its declaration (or part of one), and its template if known.
 
     ``rows`` are the absolute spans of its table's rows, in the order of its scenarios; empty without a table.
     """
@@ -36,7 +34,7 @@ class PlacedVariant:
 
 
 def variants_of(snapshot: Snapshot, uri: str) -> Iterator[PlacedVariant]:
-    """Yield the variants that a file declares and that have an IRI, in the order of the text."""
+    """Yield the variants of a file that have an IRI, in text order."""
     file = snapshot.file(uri)
     if file is None:
         return
