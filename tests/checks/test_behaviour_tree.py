@@ -27,7 +27,7 @@ def test_a_tree_that_no_scenario_is_linked_to_waits_for_them() -> None:
 
 def test_a_leaf_without_a_behaviour_is_told_once_the_tree_is_used() -> None:
     tree = TREE.replace(
-        "node place\n", "node place\n//           ^^^^^ behaviour-tree nothing says what 'handling.place' does\n"
+        "node place\n", "node place\n//           ^^^^^ behaviour-tree no behaviour is linked to 'handling.place'\n"
     )
     check(EVENTS + tree + linked("pick") + STORY)
     check(

@@ -7,7 +7,7 @@ CIRCLE = "//- a.scene\nimport 'b.scene'\n//- b.scene\nimport 'c.scene'\n//- c.sc
 
 def test_an_import_that_leads_back_is_a_warning_on_its_path() -> None:
     (entry,) = found(CIRCLE + "import 'a.scene'\n", "cyclic-import")
-    assert entry.message.startswith("'b.scene' imports 'a.scene' in turn: move what both need")
+    assert entry.message.startswith("'b.scene' also imports 'a.scene': move what both need")
     assert (entry.span.start, entry.span.end) == (8, 15)
 
 

@@ -1,7 +1,7 @@
-"""Semantic rules, one file per diagnostic code, beyond syntax, names and shapes.
+"""Semantic rules beyond syntax, names and shapes, one file per diagnostic code.
 
-A rule looks either at one declaration and what it refers to, and is asked again only when one of these changed, or
-at a whole file; the latter must do no more than a few operations for each declaration.
+A rule checks either one declaration and its references, and reruns only when one of these changed, or a whole file; the
+latter must do only a few operations per declaration.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ FILE_RULES = (
 
 
 def run_checks(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-    """Return the findings of every rule on one file."""
+    """Return the diagnostics of every rule for one file."""
     file = snapshot.file(uri)
     if file is None:
         return []

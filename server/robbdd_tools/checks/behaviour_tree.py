@@ -1,4 +1,4 @@
-"""``behaviour-tree``: a leaf without a behaviour or with two, a behaviour that no single node can execute."""
+"""``behaviour-tree``: a leaf with no behaviour or with two, or a behaviour that a single node cannot execute."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CODE = "behaviour-tree"
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A behaviour that is linked to a node, identified by its document and path, and the reference's place."""
+    """A behaviour linked to a node, identified by its document and path, and the reference's place."""
 
     node: tuple[str, str]
     behaviour: tree.BehaviourUse
@@ -34,14 +34,14 @@ class Link:
 
 
 def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Look at the trees of a file, with what its importers link to them, and at the links of the file."""
+    """Check the trees of a file, including links from its importers, and the file's own links."""
     for link in links_in(file):
         if link.is_repeated:
             message = (
                 "one node cannot execute a behaviour that is repeated for all elements of a set: "
-                "take the link out, or state the behaviour outside of 'for all'"
+                "remove the link, or state the behaviour outside of 'for all'"
             )
-            fixes = tuple(_without(snapshot, link, "Take the link out"))
+            fixes = tuple(_without(snapshot, link, "Remove the link"))
             yield Diagnostic(link.uri, link.span, Severity.ERROR, CODE, message, fixes=fixes)
     trees = [
         (root, placed.offset)
@@ -70,7 +70,7 @@ def _leaves(
         found = linked.get(path, [])
         if not found and linked and declared.source is None:
             message = (
-                f"nothing says what '{path}' does, so the tree cannot go on there: "
+                f"no behaviour is linked to '{path}', so the tree cannot go on there: "
                 f"link the behaviour of a scenario template to it, 'node: <{path}>'"
             )
             yield Diagnostic(uri, span, Severity.WARNING, CODE, message, fixes=tuple(_linking(snapshot, file, path)))
@@ -88,7 +88,7 @@ def _leaves(
 
 
 def _linking(snapshot: Snapshot, file: FileAnalysis, path: str) -> Iterator[Fix]:
-    """Yield the links to a node that behaviours of templates could have which have none yet."""
+    """Yield the fixes that link an unlinked behaviour of a template to a node."""
     for uri in (file.document.uri, *snapshot.importers(file.document.uri)):
         other = snapshot.file(uri)
         for placed in other.declarations if other is not None else ():
@@ -101,7 +101,7 @@ def _linking(snapshot: Snapshot, file: FileAnalysis, path: str) -> Iterator[Fix]
 
 
 def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
-    """Yield the behaviours of a sound template that name no node and are not repeated."""
+    """Yield the behaviours of a valid template that name no node and are not repeated."""
     root = declaration.tree
     if isinstance(root, tree.Template) and not declaration.faults and root.body.when is not None:
         use = root.body.when.behaviour
@@ -110,11 +110,11 @@ def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
 
 
 def _apart(snapshot: Snapshot, links: list[Link]) -> Iterator[Fix]:
-    """Yield the change that takes out some links, all of which are in the way of others."""
+    """Yield the fix that removes some links, all of which conflict with others."""
     removals = [fix for link in links for fix in _without(snapshot, link, "")]
     names = listed(list(dict.fromkeys(link.behaviour.name.text for link in links)))
     if removals and len(removals) == len(links):
-        yield Fix(f"Take out the link of {names}", tuple(edit for fix in removals for edit in fix.edits))
+        yield Fix(f"Remove the link of {names}", tuple(edit for fix in removals for edit in fix.edits))
 
 
 def _without(snapshot: Snapshot, link: Link, title: str) -> Iterator[Fix]:
@@ -126,14 +126,14 @@ def _without(snapshot: Snapshot, link: Link, title: str) -> Iterator[Fix]:
 
 
 def links_to(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Link]:
-    """Yield the links to nodes of a file's trees, and others, from the file itself and those that import it."""
+    """Yield the links to nodes of a file's trees, among others, from the file and its importers."""
     for uri in (file.document.uri, *snapshot.importers(file.document.uri)):
         other = snapshot.file(uri)
         yield from () if other is None else links_in(other)
 
 
 def links_in(file: FileAnalysis) -> Iterator[Link]:
-    """Yield the links of a file to nodes, in the order of the text."""
+    """Yield the links of a file to nodes, in text order."""
     for placed in file.declarations:
         for use, node, is_repeated in _linked_uses(placed.declaration):
             target = placed.targets.get(node)
@@ -144,7 +144,7 @@ def links_in(file: FileAnalysis) -> Iterator[Link]:
 
 @kept_with_key
 def _linked_uses(declaration: Declaration) -> tuple[tuple[tree.BehaviourUse, tree.Ref, bool], ...]:
-    """Return the behaviours of a template with the nodes that they name, and whether they are repeated."""
+    """Return the behaviours of a template with their nodes, and whether they are repeated."""
     root = declaration.tree
     if not isinstance(root, tree.Template):
         return ()

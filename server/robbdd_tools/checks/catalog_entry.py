@@ -1,4 +1,4 @@
-"""``catalog-entry``: ``catalog "…"`` names nothing that the catalog of this installation has."""
+"""``catalog-entry``: ``catalog "…"`` names an entry that the installed catalog lacks."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 
 def known_entries(language: str) -> Mapping[str, object]:
-    """Return what ``catalog "…"`` may name in a kind of file: behaviours in an execution, else models."""
+    """Return the entries that ``catalog "…"`` may name in a kind of file: behaviours in an execution, else models."""
     catalog = load_catalog()
     return catalog.behaviours if language == "bddx" else {**catalog.robots, **catalog.objects}
 
 
 def catalog_entry(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each model or behaviour that the catalog is asked for in vain."""
+    """Report each model or behaviour that the catalog lacks."""
     for placed in file.declarations:
         root = placed.declaration.tree
         if not isinstance(root, tree.SceneInstance | tree.Implementation):

@@ -1,4 +1,4 @@
-"""``catalog-models``: a scene that runs on models of the catalog, chosen by the names of its elements; and on which."""
+"""``catalog-models``: names the catalog models of a scene without executable scene, chosen by element names."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Tell once per scene which models its elements have, unless an executable scene among the files says it."""
+    """Report once per scene the models of its elements, unless a loaded executable scene defines them."""
     for placed in file.declarations:
         scene = placed.declaration.tree
         if not isinstance(scene, tree.Scene) or _is_executable(snapshot, scene.name.text):
@@ -40,7 +40,7 @@ def _is_executable(snapshot: Snapshot, scene: str) -> bool:
 
 
 def _chosen(members: frozenset[Element]) -> dict[str, list[str]]:
-    """Return model → names of the elements that it stands for."""
+    """Return model → names of its elements."""
     catalog = load_catalog()
     found: dict[str, list[str]] = {}
     for member in sorted(members, key=lambda element: element.name):

@@ -1,4 +1,4 @@
-"""``contradictory-order``: two events of which each comes before the other."""
+"""``contradictory-order``: two events, each of which must precede the other."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def contradictory_order(site: Site) -> Iterator[Diagnostic]:
-    """Report ``from <b> until <a>`` where ``from <a> until <b>`` stands before it in the same scenario."""
+    """Report ``from <b> until <a>`` if ``from <a> until <b>`` precedes it in the same scenario."""
     for clauses in clauses_of(site.placed.declaration):
         if isinstance(clauses.node, tree.Template):
             yield from _contradictions([(site, during) for during in clauses.once], site)
@@ -46,7 +46,7 @@ def _contradictions(durations: list[tuple[Site, tree.During]], own: Site) -> Ite
             during,
             Severity.WARNING,
             "contradictory-order",
-            f"'{start}' comes after '{end}' elsewhere in this scenario, so this time never is: swap the two events",
+            f"'{start}' comes after '{end}' elsewhere in this scenario, so this time is empty: swap the two events",
             (related_to(*other, f"here '{end}' comes first"),),
             (change(site, "Swap the two events", during, swapped),),
         )

@@ -1,4 +1,4 @@
-"""How many scenarios a variation makes, counted without expanding it."""
+"""Number of scenarios of a variation, counted without expanding it."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from robbdd_tools.names.types import Written
 
 MOST_SCENARIOS = 10_000
-"""Scenarios of one variant that are taken as meant; a night of simulation runs about as many."""
+"""Number of scenarios of one variant above which a mistake is assumed; about one night of simulation."""
 UNCOUNTED = 10**12
-"""What a count stops at."""
+"""Upper limit of a count."""
 
 
 def factors_of(scenario: Scenario) -> tuple[int, ...] | None:
-    """Return how many values each line of a product offers, or the number of a table's rows.
+    """Return the number of values in each line of a product, or the number of a table's rows.
 
     Their product is the number of scenarios; ``None`` while a set is unknown.
     """
@@ -34,13 +34,13 @@ def factors_of(scenario: Scenario) -> tuple[int, ...] | None:
 
 
 def scenario_count(scenario: Scenario) -> int | None:
-    """Return the number of scenarios that a variant stands for; ``None`` while a set is unknown."""
+    """Return the number of scenarios of a variant; ``None`` while a set is unknown."""
     factors = factors_of(scenario)
     return None if factors is None else prod(factors)
 
 
 def choices(site: Site, written: Written) -> int | None:
-    """Return how many values a line offers; ``None`` while the set is unknown."""
+    """Return the number of values of a line; ``None`` while the set is unknown."""
     match written:
         case tree.ValueList():
             return len(written.values)
@@ -61,6 +61,6 @@ def _selections(selection: tree.Selection, size: int) -> int | None:
     if not isinstance(length, int) or length < 1 or not size:
         return None
     if length > MOST_SCENARIOS:
-        # The exact number is slow to compute and of no use.
+        # The exact number is slow to compute and useless.
         return UNCOUNTED if selection.repeated and size > 1 else int(selection.repeated)
     return min(UNCOUNTED, SelectionRule(selection.kind, length, selection.repeated).count(size))

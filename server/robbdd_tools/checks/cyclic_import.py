@@ -1,6 +1,6 @@
-"""``cyclic-import``: a file that is imported imports this one in turn.
+"""``cyclic-import``: an imported file imports this one.
 
-Names are found all the same; but neither file can be read, moved or given away without the other.
+Names still resolve, but neither file can be read, moved or shared without the other.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def cyclic_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each import through which a file comes back to itself."""
+    """Report each import that leads back to its file."""
     uri = file.document.uri
     for link in file.imports:
         if link.problem is None and snapshot.import_each_other(uri, link.uri):
             name, own = link.uri.rsplit("/", 1)[-1], uri.rsplit("/", 1)[-1]
-            message = f"'{name}' imports '{own}' in turn: move what both need into a file of its own, imported by both"
+            message = f"'{name}' also imports '{own}': move what both need into a new file, imported by both"
             yield Diagnostic(uri, link.span, Severity.WARNING, "cyclic-import", message)

@@ -1,6 +1,6 @@
-"""``distribution``: one that a run cannot draw from, or that is not of the dimension which it states.
+"""``distribution``: a distribution that a run cannot sample, or whose dimension does not match its numbers.
 
-A warning: only what is placed by it cannot be run.
+A warning: only a run that places something by it fails.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ CODE = "distribution"
 
 
 def distribution(site: Site) -> Iterator[Diagnostic]:
-    """Report bounds and means of another dimension, else why nothing can be drawn."""
+    """Report bounds and means of another dimension, otherwise why the distribution cannot be sampled."""
     declared = site.tree
     if not isinstance(declared, tree.Distribution) or not site.whole(declared):
         return
@@ -43,13 +43,13 @@ def distribution(site: Site) -> Iterator[Diagnostic]:
         fixes = _resized(site, dimension, sized)
         yield finding(site, wrong, Severity.WARNING, CODE, text, fixes=fixes)
     elif fault:
-        text = f"the distribution '{name}' {fault}: a run cannot draw from it"
+        text = f"the distribution '{name}' {fault}: a run cannot sample from it"
         fixes = _ordered(site, declared.law) if isinstance(declared.law, tree.Uniform) else ()
         yield finding(site, blamed, Severity.WARNING, CODE, text, fixes=fixes)
 
 
 def _resized(site: Site, dimension: tree.Number, sized: tuple[tree.Vector | tree.Number, ...]) -> tuple[Fix, ...]:
-    """Return the fix that states the dimension of the numbers, where these agree on one."""
+    """Return the fix that adapts the dimension to the numbers, if these agree."""
     sizes = {len(_numbers(part)) for part in sized}
     if len(sizes) > 1:
         return ()
@@ -58,14 +58,14 @@ def _resized(site: Site, dimension: tree.Number, sized: tuple[tree.Vector | tree
 
 
 def _ordered(site: Site, law: tree.Uniform) -> tuple[Fix, ...]:
-    """Return the fix that swaps each lower bound with its upper one where it lies above."""
+    """Return the fix that swaps lower and upper bounds where the lower one is greater."""
     swaps: list[Edit] = []
     for low, high in zip(_parts(law.lower), _parts(law.upper), strict=True):
         if low.value > high.value:
             swaps += (
                 Edit(site.uri, site.span(old), written_text(site, new)) for old, new in ((low, high), (high, low))
             )
-    return (Fix("Swap the bounds that are the wrong way round", tuple(swaps)),) if swaps else ()
+    return (Fix("Swap the reversed bounds", tuple(swaps)),) if swaps else ()
 
 
 def _parts(value: tree.Vector | tree.Number) -> list[tree.Number]:
@@ -73,7 +73,7 @@ def _parts(value: tree.Vector | tree.Number) -> list[tree.Number]:
 
 
 def drawn(law: tree.Uniform | tree.UniformRotation | tree.Normal) -> int:
-    """Return how many numbers a distribution draws; a rotation has four."""
+    """Return the number of values of one sample; a rotation has four."""
     match law:
         case tree.UniformRotation():
             return 4

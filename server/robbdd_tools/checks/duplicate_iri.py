@@ -1,4 +1,4 @@
-"""``duplicate-iri``: two declarations whose namespaces and names make one IRI, so that the graph merges them."""
+"""``duplicate-iri``: two declarations with the same IRI, which the graph would merge."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 Taken = Mapping[str, Mapping[str, int]]
-"""IRI of a namespace → name → how often it is declared there."""
+"""IRI of a namespace → name → number of declarations."""
 
 
 def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each declaration of the file whose IRI is taken, here or in a file that it imports."""
+    """Report each declaration of the file whose IRI is already used, here or in an imported file."""
     uri = file.document.uri
     files = snapshot.scope(uri).files
     if not _may_repeat(snapshot, files[0]):
@@ -43,7 +43,7 @@ def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
             first.setdefault(str(definition.iri), definition)
     for definition in _definitions(file, names):
         other = first.setdefault(str(definition.iri), definition)
-        # The members of a similar set come from one piece of text.
+        # All members of a similar set share one declaration.
         if (other.uri, other.span) != (definition.uri, definition.span):
             yield _report(other, definition)
 
@@ -58,7 +58,7 @@ def _report(first: Definition, second: Definition) -> Diagnostic:
 
 
 def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
-    """Yield what a file declares under some names and with an IRI of its own."""
+    """Yield the declarations of a file that have some names and an IRI of their own."""
     for path in file.definitions:
         if path.rpartition(".")[2] in names:
             definition = file.definitions[path]
@@ -67,7 +67,7 @@ def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
 
 
 def _may_repeat(snapshot: Snapshot, file: FileIndex) -> bool:
-    """Tell whether any name of a file is declared twice in the project, whatever the namespaces: quick to know."""
+    """Return whether any name of a file is declared twice in the project, in any namespace: a quick test."""
     counted = _declared(snapshot)
     return any(counted[name] > 1 for name in _own_names(file))
 
@@ -90,7 +90,7 @@ def _taken(files: tuple[FileIndex, ...]) -> Taken:
 
 
 def _taken_by(files: Iterable[FileIndex], scope: tuple[FileIndex, ...]) -> Taken:
-    """Count the names of some files, whose namespaces are declared in the files themselves or else in a scope."""
+    """Count the names in some files, whose namespaces are declared in the files themselves or else in a scope."""
     outer = _namespaces(scope)
     found: dict[str, dict[str, int]] = {}
     for file in files:
@@ -107,7 +107,7 @@ def _taken_by(files: Iterable[FileIndex], scope: tuple[FileIndex, ...]) -> Taken
 
 
 def _namespaces(files: Iterable[FileIndex]) -> dict[str, str]:
-    """Return the namespaces of some files by name, the nearest file's first."""
+    """Return the namespaces of some files by name; the nearest file wins."""
     found: dict[str, str] = {}
     for file in files:
         for placed in file.declarations:

@@ -1,4 +1,4 @@
-"""``emission``: ``emits … as …`` names an event that the behaviour does not have, or one of them twice."""
+"""``emission``: ``emits … as …`` names an event that the behaviour lacks, or the same event twice."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def emission(site: Site) -> Iterator[Diagnostic]:
 
 @kept_with_key
 def _uses(declaration: Declaration) -> tuple[tree.BehaviourUse, ...]:
-    """Return the behaviours of a template that state what they emit."""
+    """Return the behaviours of a template that have ``emits``."""
     root = declaration.tree
     if not isinstance(root, tree.Template):
         return ()

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def empty_duration(site: Site) -> Iterator[Diagnostic]:
-    """Report durations that start and end with one event."""
+    """Report durations that start and end with the same event."""
     for clauses in clauses_of(site.placed.declaration):
         for during in clauses.durations:
             if during.start.path == during.end.path:
@@ -28,7 +28,7 @@ def empty_duration(site: Site) -> Iterator[Diagnostic]:
 
 
 def _after(site: Site, node: tree.Node, during: tree.During) -> Iterator[Fix]:
-    """Yield the time constraint that an instant stands for; a behaviour and a template must have a duration."""
+    """Yield the fix that writes the instant as a time constraint; behaviours and templates must have a duration."""
     if any(isinstance(clause, tree.Fluent | tree.TextClause) and clause.time is during for clause in walk(node)):
         text = f"after <{during.start.path}>"
         yield change(site, f"Change to '{text}'", during, text)

@@ -1,4 +1,4 @@
-"""``empty-set``: a set without elements; where a scenario takes its values from it there is no scenario."""
+"""``empty-set``: a set without elements; a variation that uses it has no scenario."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def empty_set(site: Site) -> Iterator[Diagnostic]:
-    """Report declared sets without elements and variations that take a value from nothing."""
+    """Report declared sets without elements and variations without values."""
     root = site.tree
     if isinstance(root, tree.ElementSet | tree.ConstantSet) and elements_of(site) == ():
         message = f"the set '{root.name.text}' is empty: add an element between the braces, or remove the set"
@@ -30,7 +30,7 @@ def empty_set(site: Site) -> Iterator[Diagnostic]:
 
 
 def _line(scenario: Scenario, column: Column, written: tree.Node) -> Iterator[Diagnostic]:
-    """A line without values leaves nothing to combine; an inner set without elements may be meant."""
+    """Report a line without values, which leaves no scenario; an inner empty set may be intended."""
     site = scenario.site
     related = (related_to(site, column.ref, "the variable"),)
     match written:
@@ -58,11 +58,11 @@ def _cell(scenario: Scenario, column: Column, written: tree.Node) -> Iterator[Di
 
 
 def _filled(scenario: Scenario, column: Column, written: tree.Node) -> tuple[Fix, ...]:
-    """Return the fix that writes all that the scene has for a variable in the place of an empty set."""
+    """Return the fix that replaces an empty set by all matching elements of the scene."""
     values = () if column.variable is None else scenario.fitting_for(column.variable)
     if not values:
         return ()
     text = f"{{ {', '.join(values)} }}"
     if isinstance(written, tree.SetList):
         text = f"{{ {text} }}"
-    return (change(scenario.site, "Write all that fits in the scene", written, text),)
+    return (change(scenario.site, "Insert all matching elements of the scene", written, text),)

@@ -1,4 +1,4 @@
-"""What the rules need of each declaration by itself; collected once, however often the file is checked."""
+"""Data that the rules need about a single declaration; collected once per declaration."""
 
 from __future__ import annotations
 
@@ -36,19 +36,17 @@ UNIQUE_KINDS = frozenset(
         SymbolKind.VARIANT,
     }
 )
-"""Kinds that need an IRI each; related scenarios speak of the same variables and behaviours by their names."""
+"""Kinds that need unique IRIs; related scenarios share variables and behaviours by name."""
 _REFERRED = re.compile(r"(?:<\s*|\bns\s*=\s*)([^\W\d][\w\-]*)")
 
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """Names in a declaration: no target is looked up, so that they hold wherever it stands.
+    """Names in a declaration; independent of reference targets, so valid wherever the declaration is.
 
-    ``own_names`` are the names it declares that need an IRI each, by the namespace that it is made with.
-
-    ``heads`` are the first parts of all names it refers to, ``clause_paths`` the names of variables in its clauses
-    as written, ``unused`` the variables that neither a clause nor a quantifier of their own template uses, and
-    ``unused_bounds`` the quantified ones.
+    ``own_names`` are the names it declares that need unique IRIs, by namespace. ``heads`` are the first parts of all
+    names it refers to, ``clause_paths`` the names of variables in its clauses as written, ``unused`` the variables that
+    neither a clause nor a quantifier of their own template uses, and ``unused_bounds`` the unused quantified ones.
     """
 
     own_names: Mapping[str, tuple[str, ...]]
@@ -67,7 +65,7 @@ def facts_of(declaration: Declaration) -> Facts:
     root = declaration.tree
     heads = frozenset(reference.ref.path.partition(".")[0] for reference in declaration.references)
     if declaration.faults:
-        # What the parser passed over may use names as well.
+        # Text that the parser skipped may use names as well.
         heads |= frozenset(_REFERRED.findall(declaration.text))
     names = _own_names(declaration)
     clauses = clauses_of(declaration)
@@ -77,7 +75,7 @@ def facts_of(declaration: Declaration) -> Facts:
 
 
 def _put_together(declaration: Declaration) -> Facts:
-    """Return the facts of a declaration in parts from those of its parts."""
+    """Combine the facts of a declaration's parts."""
     parts = [facts_of(part.declaration) for part in declaration.parts]
     names: dict[str, list[str]] = {}
     for part in parts:

@@ -1,4 +1,4 @@
-"""Makes diagnostics and edits out of places in trees."""
+"""Make diagnostics and edits for nodes of trees."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.tree import Node
 
 MOST_OFFERED = 3
-"""Names or values of which each has a fix of its own, where several fit."""
+"""Maximum number of alternative names or values with a fix each."""
 
 
 def finding(
@@ -37,17 +37,17 @@ def written_text(site: Site, node: Node) -> str:
 
 
 def related_to(site: Site, node: Node, message: str) -> Related:
-    """Return a node of a declaration as the other place of a diagnostic."""
+    """Return a node of a declaration as a related place of a diagnostic."""
     return Related(site.uri, site.span(node), message)
 
 
 def change(site: Site, title: str, node: Node, text: str) -> Fix:
-    """Return the fix that replaces a node by a text."""
+    """Return the fix that replaces a node by ``text``."""
     return Fix(title, (Edit(site.uri, site.span(node), text),))
 
 
 def removal(document: Document, title: str, span: Span) -> Fix:
-    """Return the fix that removes a piece of text, with its lines where nothing else stands on them."""
+    """Return the fix that removes a span, with its lines if nothing else is on them."""
     text = document.text
     start, end = span.start, span.end
     line_start = document.line_starts[document.position(start).line]

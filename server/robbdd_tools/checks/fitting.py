@@ -1,4 +1,4 @@
-"""What may take the place of a variable or a value that is of the wrong type."""
+"""Replacements for a variable or a value of the wrong type."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from robbdd_tools.names.uses import Clauses, Kinds, Use
 
 SET_WORDS = {"object": "obj set", "workspace": "ws set", "agent": "agn set"}
-"""Kind of an element → how a set of such is named in a scene or a variation."""
+"""Kind of an element → keyword of a set of that kind in a scene or a variation."""
 
 
 def variables_with_kinds(template: Site, uses: Mapping[str, list[Use]]) -> Iterator[tuple[str, Kinds]]:
-    """Yield the paths of a template's variables that are no sets, with what they may stand for by some uses."""
+    """Yield the paths and kinds of a template's variables that are not sets, according to some uses."""
     root = template.tree
     paths = (
         [f"{root.name.text}.{entry.name.text}" for entry in root.variables] if isinstance(root, tree.Template) else []
@@ -33,7 +33,7 @@ def variables_with_kinds(template: Site, uses: Mapping[str, list[Use]]) -> Itera
 
 
 def other_variables(site: Site, use: Use, clauses: Clauses, others: Mapping[str, Kinds]) -> Iterator[Fix]:
-    """Yield the variables that may take the place of one and are not in its phrase already."""
+    """Yield the fixes that replace a variable by one of the right type that its phrase does not use yet."""
     if use.bound is not None:
         return
     phrase = next((phrase for phrase in clauses.phrases if phrase.span.contains(use.ref.span.start)), None)
@@ -43,9 +43,9 @@ def other_variables(site: Site, use: Use, clauses: Clauses, others: Mapping[str,
 
 
 def other_values(scenario: Scenario, column: Column, node: tree.Node, kinds: Kinds, written: set[str]) -> Iterator[Fix]:
-    """Yield what the scene has of some kinds for the place of a value, or its sets for that of a set.
+    """Yield the fixes that replace a value by a scene element of some kinds, or a set by such a set.
 
-    What is ``written`` for the variable already is not said again.
+    Values already ``written`` for the variable are left out.
     """
     site, members = scenario.site, scenario.members(kinds)
     link = next((one for one in column.written if isinstance(one, tree.Link) and one.reference is node), None)

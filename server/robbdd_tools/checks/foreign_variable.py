@@ -1,4 +1,4 @@
-"""``foreign-variable``: a variant that speaks of a variable of another template than its own."""
+"""``foreign-variable``: a variant uses a variable of another template than its own."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ def foreign_variable(site: Site) -> Iterator[Diagnostic]:
 
 
 def _variables(scenario: Scenario) -> Iterator[tree.Ref]:
-    """Yield what is written for variables, in the variation first."""
+    """Yield the variable references of a scenario, those in the variation first."""
     yield from (column.ref for column in scenario.columns)
     yield from (use.ref for use in scenario.clauses.uses if use.bound is None)
     yield from (bound.in_set for bound in scenario.clauses.bounds)
 
 
 def _is_of_template(scenario: Scenario, found: Definition) -> bool:
-    """Tell whether a name is a variable of a template; one that the variant quantifies itself is not."""
+    """Return whether a name is a variable of a template, not one quantified by the variant."""
     extent = scenario.site.span(scenario.variant)
     inside = found.uri == scenario.site.uri and extent.contains(found.span.start)
     return found.kind in VARIABLES and not inside
@@ -65,7 +65,7 @@ def _report(scenario: Scenario, ref: tree.Ref, found: Definition, own: dict[str,
         ref,
         Severity.ERROR,
         "foreign-variable",
-        f"'{ref.path}' is no variable of '{template}', the template of this scenario: "
+        f"'{ref.path}' is not a variable of '{template}', the template of this scenario: "
         + (f"write '{same[0].symbol.path}'" if same else "name one of its variables, or another template"),
         (Related(found.uri, found.span, f"'{ref.path}' is declared here"),),
         tuple(

@@ -1,4 +1,4 @@
-"""Lines that come and go: a new import below the others, a new event below the events, an import taken out."""
+"""Edits of whole lines: add an import or an event, remove an import."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def import_edit(file: FileAnalysis, path: str) -> Edit:
 
 
 def import_removal(file: FileAnalysis, link: ImportLink, title: str) -> Iterator[Fix]:
-    """Yield the fix that takes out an import."""
+    """Yield the fix that removes an import."""
     for placed in file.declarations:
         root = placed.declaration.tree
         if isinstance(root, tree.Import) and placed.span.contains(link.span.start):
@@ -30,7 +30,7 @@ def import_removal(file: FileAnalysis, link: ImportLink, title: str) -> Iterator
 
 
 def below(file: FileAnalysis, kinds: tuple[type[tree.Node], ...], line: str) -> Edit:
-    """Return the edit that adds a line below the last declaration of the first kind of which there is one."""
+    """Return the edit that adds a line below the last declaration of the first of ``kinds`` that occurs."""
     document = file.document
     for kind in kinds:
         ends = [
@@ -46,7 +46,7 @@ def below(file: FileAnalysis, kinds: tuple[type[tree.Node], ...], line: str) -> 
 
 
 def line_end(document: Document, offset: int) -> int:
-    """Return the end of the line of an offset if only white space and a comment follow there, else the offset."""
+    """Return the end of an offset's line if only white space and a comment follow, else the offset."""
     place = document.position(offset)
     rest = document.line_text(place.line)[place.column :]
     is_last = not rest.strip() or rest.lstrip().startswith("//")

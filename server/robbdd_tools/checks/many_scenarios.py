@@ -1,4 +1,4 @@
-"""``many-scenarios``: a variation that explodes."""
+"""``many-scenarios``: a variation with too many scenarios."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def many_scenarios(site: Site) -> Iterator[Diagnostic]:
-    """Report each variant that stands for more scenarios than anybody will run."""
+    """Report each variant with more scenarios than anybody will run."""
     for scenario in scenarios(site):
         known = factors_of(scenario)
         if known is None or isinstance(scenario.variant.variation, tree.Table):

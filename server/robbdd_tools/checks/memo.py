@@ -1,4 +1,4 @@
-"""Keeps the findings in a declaration, of a story in each scenario, while neither it nor what it builds on changes."""
+"""Cache the diagnostics of each declaration, or scenario of a story, until it or a dependency changes."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ _RULED = (
     tree.Policy,
     tree.Execution,
 )
-"""Declarations that rules look at."""
+"""Declarations that rules check."""
 _TRANSPARENT = (tree.Scene, tree.Composition, tree.ConstantSet)
-"""Declarations whose own references matter to those that refer to them."""
+"""Declarations whose own references matter to declarations that refer to them."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """Findings, which depend on the declarations in ``around`` and on which declarations have the ``names``.
+    """Cached diagnostics; they depend on the declarations in ``around`` and on which declarations have the ``names``.
 
     ``paths`` are all qualified names that the declaration itself looked up.
     """
@@ -59,7 +59,7 @@ class _Entry:
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """What was found in a file the last time."""
+    """The cached results of a file."""
 
     scope: Scope
     entries: Mapping[Declaration, _Entry]
@@ -69,7 +69,7 @@ _runs: dict[str, _Run] = {}
 
 
 def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
-    """Yield what the rules find in the declarations of a file; unchanged ones are not looked at again."""
+    """Yield the rules' diagnostics for the declarations of a file; unchanged ones are not checked again."""
     uri = file.document.uri
     scope = snapshot.scope(uri)
     known = _still_valid(_runs.get(uri), scope)
@@ -98,7 +98,7 @@ def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...])
 
 
 def _still_valid(run: _Run | None, scope: Scope) -> Mapping[Declaration, _Entry]:
-    """Return the entries of the last time that no change can have touched."""
+    """Return the cached entries that no change can have affected."""
     if run is None or run.scope.files[1:] != scope.files[1:]:
         return {}
     before, after = run.scope.files[0], scope.files[0]
@@ -108,7 +108,7 @@ def _still_valid(run: _Run | None, scope: Scope) -> Mapping[Declaration, _Entry]
     new = {placed.declaration for placed in after.declarations}
     gone = old - new
     if any(map(_is_namespace, old ^ new)):
-        # What leaves its namespace to the file does not name it.
+        # The lookups of a declaration without an explicit namespace do not include the file's namespaces.
         return {}
     paths = _renamed(before.names, after.names)
     names = {path.partition(".")[0] for path in paths}
@@ -124,7 +124,7 @@ def _is_namespace(declaration: Declaration) -> bool:
 
 
 def _renamed(before: NameTable, after: NameTable) -> set[str]:
-    """Return the qualified names that two tables may not agree on; repeated ones may have changed places."""
+    """Return the qualified names on which two tables may differ; repeated ones may be reordered."""
     if before is after:
         return set()
     paths = changed_paths(before, after)
@@ -133,9 +133,9 @@ def _renamed(before: NameTable, after: NameTable) -> set[str]:
 
 
 def _around(scope: Scope, declaration: Declaration) -> tuple[frozenset[str], frozenset[Declaration]]:
-    """Return the names that a declaration depends on, and which declarations these stand for in its own file.
+    """Return the names that a declaration depends on, and their declarations in its own file.
 
-    Sets and scenes depend on what they refer to in turn.
+    Sets and scenes also depend on what they refer to.
     """
     names: set[str] = {declaration.symbols[0].path} if declaration.symbols else set()
     found: dict[Declaration, None] = {}
@@ -158,7 +158,7 @@ def _declared(file: FileIndex, name: str) -> Iterator[Declaration]:
 
 @contextmanager
 def nothing_kept() -> Generator[None]:
-    """Look at everything afresh for a while, to compare with."""
+    """Disable the cache inside the block, for comparison."""
     kept = dict(_runs)
     _runs.clear()
     yield

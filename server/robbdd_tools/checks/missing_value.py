@@ -1,4 +1,4 @@
-"""``missing-value``: a variant that gives no value to a variable of its template."""
+"""``missing-value``: a variant without a value for a variable of its template."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def missing_value(site: Site) -> Iterator[Diagnostic]:
-    """Report once per variant all variables that get no value; an unknown name may be the missing one."""
+    """Report once per variant all variables without a value; an unknown name may be the missing one."""
     for scenario in scenarios(site):
         given = [column.variable for column in scenario.columns if column.variable is not None]
         if len(given) < len(scenario.columns):
@@ -47,7 +47,7 @@ def _report(scenario: Scenario, missing: list[Definition]) -> Diagnostic:
 
 
 def _filled(scenario: Scenario, missing: list[Definition]) -> Iterator[Fix]:
-    """Yield the lines or columns that give each variable what its scene has for it."""
+    """Yield the fixes that add a line or column with values from the scene for each missing variable."""
     variation = scenario.variant.variation
     names = listed([variable.symbol.name for variable in missing])
     if isinstance(variation, tree.Table):
@@ -56,13 +56,13 @@ def _filled(scenario: Scenario, missing: list[Definition]) -> Iterator[Fix]:
         fitting = [scenario.fitting_for(variable) for variable in missing]
         if all(fitting):
             edit = _lines(scenario, variation, missing, fitting)
-            yield Fix(f"Give {names} all that fits in the scene", (edit,))
+            yield Fix(f"Give {names} all matching elements of the scene", (edit,))
 
 
 def _lines(scenario: Scenario, product: tree.Product, missing: list[Definition], fitting: list[list[str]]) -> Edit:
     site = scenario.site
     document, end = site.file.document, site.span(product.assignments[-1]).end
-    # A scenario that stands in one line has its findings by itself, whatever is before it.
+    # For a scenario written in one line, text before it does not matter.
     begin = max(document.line_starts[document.position(end).line], site.span(scenario.variant).start)
     line = document.text[begin:end]
     lines: list[str] = []
@@ -75,7 +75,7 @@ def _lines(scenario: Scenario, product: tree.Product, missing: list[Definition],
 
 
 def _columns(scenario: Scenario, table: tree.Table, missing: list[Definition]) -> Iterator[Fix]:
-    """Yield columns with a value for every row: one variable may have any of the first that fit, several the first."""
+    """Yield fixes that add columns: one per matching value of a single variable, or the first match of several."""
     if len(missing) == 1 and missing[0].kind is SymbolKind.VARIABLE:
         choices = [[value] for value in scenario.fitting_for(missing[0])[:MOST_OFFERED]]
     else:

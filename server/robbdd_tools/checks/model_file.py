@@ -1,4 +1,4 @@
-"""``model-file``: a model file of a scene instance that is not on this machine; an error only when it is run."""
+"""``model-file``: a model file of a scene instance that is missing on this machine; an error only in a run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def model_file(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each ``sys path`` that leads to no file."""
+    """Report each ``sys path`` without a file."""
     own = uri_to_path(file.document.uri)
     if own is None:
         return
@@ -36,7 +36,7 @@ def _problem(folder: Path, path: str) -> str | None:
     try:
         found = unreadable(folder / Path(path).expanduser())
     except RuntimeError:
-        # A home folder that nobody has.
+        # The home folder of an unknown user.
         return missing
     if found is None:
         return None

@@ -1,4 +1,4 @@
-"""``namespace-iri``: a namespace whose string cannot begin an IRI; what it names would be missing from the graph."""
+"""``namespace-iri``: a namespace that is not a valid IRI prefix; its names would be missing from the graph."""
 
 from __future__ import annotations
 
@@ -24,6 +24,6 @@ def namespace_iri(_: Snapshot, analysis: FileAnalysis) -> Iterator[Diagnostic]:
         if isinstance(root, Namespace) and not _IRI.fullmatch(root.iri.value):
             uri, span = analysis.document.uri, root.iri.span.shifted(placed.offset)
             example = f"'https://example.org/{root.name.text}/'"
-            message = f"'{root.iri.value}' is no absolute IRI: write one such as {example}"
+            message = f"'{root.iri.value}' is not an absolute IRI: write one such as {example}"
             fix = Fix(f"Change to {example}", (Edit(uri, span, example),))
             yield Diagnostic(uri, span, Severity.ERROR, "namespace-iri", message, fixes=(fix,))

@@ -1,4 +1,4 @@
-"""``no-emitter``: a clause that refers to an event which nothing in its scenario emits, so that it stays unknown."""
+"""``no-emitter``: a clause refers to an event that nothing in its scenario emits, so it stays unknown."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ Key = tuple[str, str]
 
 @dataclass(slots=True)
 class _Emitters:
-    """What an execution of a template emits.
+    """The events that an execution of a template emits.
 
-    ``bound`` are the events that delimit the scenario and its behaviours, with their names; ``inner`` are those of the
-    behaviours by the names of the catalog.
+    ``bound`` are the events that delimit the scenario and its behaviours, with their names; ``inner`` are the
+    behaviours' events by their catalog names.
     """
 
     bound: dict[Key, str] = field(default_factory=dict[Key, str])
     inner: dict[str, None] = field(default_factory=dict[str, None])
 
     def emits(self, event: Definition) -> bool:
-        """Tell whether a run stamps an event."""
+        """Return whether a run emits an event."""
         return _key(event) in self.bound or inner_event(event.symbol.name, self.inner) is not None
 
 
 def no_emitter(site: Site) -> Iterator[Diagnostic]:
-    """Report each reference to such an event in the clauses of a template and of the variants of a story."""
+    """Report references to events without an emitter in the clauses of templates and variants."""
     root = site.tree
     if isinstance(root, tree.Template):
         if site.whole(root):

@@ -1,6 +1,6 @@
-"""``no-model``: an object or agent of a scene for which neither the catalog nor a ``.scenex`` has a model.
+"""``no-model``: a scene's object or agent without a model in the catalog or a ``.scenex``.
 
-A run of a scenario that uses it can judge nothing; one that does not use it leaves it out.
+A run cannot judge a scenario that uses it; other scenarios leave it out.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Key = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Elements of a scene without a model that are reported at one place: a name, or an entry of the scene."""
+    """Elements without a model that are reported at one place: a name, or an entry of the scene."""
 
     scene: Site
     span: Span
@@ -38,7 +38,7 @@ class Gap:
 
 
 def no_model(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report elements without a model, as a warning where a scenario uses one of them."""
+    """Report elements without a model, as a warning if a scenario uses one of them."""
     for placed in file.declarations:
         scene = Site(snapshot, file, placed)
         gaps = gaps_of(scene)
@@ -51,7 +51,7 @@ def no_model(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 def gaps_of(scene: Site) -> list[Gap]:
-    """Return what a scene has without a model; nothing where a model of the whole scene may have it."""
+    """Return the elements of a scene without a model; empty if a model of the whole scene may have them."""
     if not isinstance(scene.tree, tree.Scene):
         return []
     unfit = [element for element in sorted(scene_members(scene) or (), key=lambda one: one.key) if not _fits(element)]
@@ -94,7 +94,7 @@ def _fits(element: Element) -> bool:
 
 
 def _may_have_all(instance: Site) -> bool:
-    """Tell whether an executable scene takes its things from a file, whose bodies are known in a run only."""
+    """Return whether an executable scene loads its objects from a file, whose bodies are known only in a run."""
     root = instance.tree
     return isinstance(root, tree.SceneInstance) and any(isinstance(entry, tree.Model) for entry in root.entries)
 
@@ -115,7 +115,7 @@ def _modelled(instance: Site) -> frozenset[Key]:
 
 
 def place_of(scene: Site, element: Element) -> Span:
-    """Return the name of an element in the scene's file, else the entry of the scene that brings it."""
+    """Return the name of an element in the scene's file, else the scene entry that includes it."""
     root = scene.tree
     assert isinstance(root, tree.Scene)
     uri, path = element.key
@@ -150,7 +150,7 @@ def _findings(gaps: list[Gap], keys: set[Key], severity: Severity) -> Iterator[D
             message += f": it has none of the words {_words(gap)}; give it another name, or a model in a .scenex"
             message += " that an execution of a .bddx uses"
         else:
-            message += ": no scenario uses it, so runs leave it out"
+            message += ": no scenario uses it, so runs omit it"
         uri = gap.scene.uri
         related = tuple(Related(uri, other.span, "no model fits this name") for other in gaps if other.span != gap.span)
         yield Diagnostic(uri, gap.span, severity, CODE, message, related)

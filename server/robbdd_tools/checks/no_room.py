@@ -1,4 +1,4 @@
-"""``no-room``: more agents or containers in a scene than find room around and on its table without a ``.scenex``."""
+"""``no-room``: too many agents or containers for the table of a scene without a ``.scenex``."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def no_room(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         scene = Site(snapshot, file, placed)
         if isinstance(scene.tree, tree.Scene) and used_elements(scene) and not any(scene_instances(scene)):
             yield from _containers(scene)
-    # Only a file that knows this many agents can have such a scenario.
+    # Only a file with access to this many agents can have such a scenario.
     known = (len(table.of_kind.get(SymbolKind.AGENT, ())) for table in snapshot.scope(file.document.uri).tables)
     if sum(known) > SIDES:
         for site in story_sites(snapshot, file):
@@ -50,7 +50,7 @@ def _containers(scene: Site) -> Iterator[Diagnostic]:
     models = {name: model for name, model in found.items() if model is not None}
     tables = [name for name, model in models.items() if not model.free]
     standing = [name for name, model in models.items() if model.free and not model.graspable]
-    # With several tables, compositions say what stands on which; a run finds out whether there is room.
+    # With several tables, compositions assign objects to them; only a run checks the room.
     groups = [(tables, "the room"), *([(standing, tables[0] if tables else "the table")] if len(tables) < 2 else [])]
     for names, where in groups:
         try:
@@ -61,7 +61,7 @@ def _containers(scene: Site) -> Iterator[Diagnostic]:
 
 
 def _too_many_agents(site: Site) -> Iterator[Diagnostic]:
-    """Report each scenario that uses more agents than there are sides of a table."""
+    """Report each scenario that uses more agents than a table has sides."""
     for scenario in scenarios(site):
         scene = site.follow(scenario.variant.scene)
         if scene is None or any(scene_instances(scene)):
@@ -76,7 +76,7 @@ def _too_many_agents(site: Site) -> Iterator[Diagnostic]:
 
 
 def _agents(scenario: Scenario) -> Iterator[Names]:
-    """Yield sets of agents that a scenario certainly uses together; there may be further ones in each execution."""
+    """Yield sets of agents that a scenario is certain to use together; executions may use more."""
     site, variation = scenario.site, scenario.variant.variation
     quantified = frozenset(chain.from_iterable(_quantified(scenario)))
     if isinstance(variation, tree.Table):
@@ -98,7 +98,7 @@ def _agents(scenario: Scenario) -> Iterator[Names]:
 
 
 def _quantified(scenario: Scenario) -> Iterator[Names]:
-    """Yield the agents of the sets that quantifiers of the clauses name."""
+    """Yield the agents of the sets that the clauses' quantifiers name."""
     places = [(scenario.site, scenario.clauses)]
     if scenario.template is not None and scenario.outer is not None:
         places.append((scenario.template, scenario.outer))

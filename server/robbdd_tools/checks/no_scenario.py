@@ -1,4 +1,4 @@
-"""``no-scenario``: a ``.bdd`` file that holds neither a scenario nor anything that another file could use."""
+"""``no-scenario``: a ``.bdd`` file without a scenario or anything that another file could use."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def no_scenario(_: Snapshot, analysis: FileAnalysis) -> Iterator[Diagnostic]:
-    """Tell once, at the start of the file, that there is nothing to run."""
+    """Report once, at the start of the file, that there is nothing to run."""
     uri = analysis.document.uri
     if language_of(uri) == "bdd" and not _has_variant(analysis):
         first_line = analysis.document.line_text(0)
@@ -30,6 +30,6 @@ def no_scenario(_: Snapshot, analysis: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 def _has_variant(analysis: FileAnalysis) -> bool:
-    """Look from the end of the file, where the stories usually stand."""
+    """Search from the end of the file, where stories usually are."""
     symbols = (symbol for placed in reversed(analysis.declarations) for symbol in placed.declaration.symbols)
     return any(symbol.kind is SymbolKind.VARIANT for symbol in symbols)

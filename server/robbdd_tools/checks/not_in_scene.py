@@ -1,7 +1,7 @@
-"""``not-in-scene``: a value that the variant's scene does not hold, though it holds others of that kind.
+"""``not-in-scene``: a value that is missing in the variant's scene, although the scene has others of that kind.
 
-It is allowed, the element then belongs to that scenario only; a scene without any agent, say, leaves the choice of
-agents to its variants on purpose.
+This is allowed: the element then belongs to that scenario only. A scene without any agent, for example, leaves the
+choice of agents to its variants on purpose.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ _BROUGHT = ("ObjectSet", "WorkspaceSet", "AgentSet")
 
 
 def not_in_scene(site: Site) -> Iterator[Diagnostic]:
-    """Report each element once per variant, where it is first written."""
+    """Report each element once per variant, at its first occurrence."""
     known: dict[tuple[str, str], frozenset[Element] | None] = {}
     for scenario in scenarios(site):
         scene = site.target(scenario.variant.scene)
         if scene is None:
             continue
-        # The scenarios of a long story mostly share a few scenes.
+        # Most scenarios of a long story share a few scenes.
         key = (scene.uri, scene.symbol.path)
         if key not in known:
             known[key] = scene_members(site.follow(scenario.variant.scene))
@@ -65,7 +65,7 @@ def _strangers(scenario: Scenario, members: frozenset[Element]) -> Iterator[Diag
 
 
 def _extended(site: Site | None, element: Element) -> Iterator[Fix]:
-    """Yield the entry that adds the set of an element to a scene, with the import of the set where that is missing."""
+    """Yield the fix that adds the set of an element to a scene, with the import of the set if missing."""
     scene = None if site is None else site.tree
     if site is None or not isinstance(scene, tree.Scene):
         return
@@ -91,7 +91,7 @@ def _extended(site: Site | None, element: Element) -> Iterator[Fix]:
 
 
 def _brought(scenario: Scenario) -> Iterator[Element]:
-    """Yield the members of element sets in the variation: naming a whole set brings it into the scene."""
+    """Yield the members of element sets in the variation: naming a whole set adds it to the scene."""
     for column in scenario.columns:
         for written in column.written:
             if isinstance(written, tree.Link) and written.reference.role in _BROUGHT:

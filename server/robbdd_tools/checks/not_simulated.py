@@ -1,6 +1,6 @@
-"""``not-simulated``: a ROS action, topic or listener, which a run in simulation does not have.
+"""``not-simulated``: a ROS action, topic or listener, which is not available in simulation.
 
-An information: the model may be meant for a robot. What depends on it stays unknown in simulation.
+An information: the model may be meant for a robot. Clauses that depend on it stay unknown in simulation.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _GROUND_TRUTH = "simulation ground truth update-rate: 100 Hz"
 
 
 def not_simulated(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each of them, with the part of the simulation that takes its place as a fix."""
+    """Report each of them, with the simulation's replacement as a fix."""
     uri = file.document.uri
     for placed in file.declarations:
         found = _ros(placed.declaration.tree)
@@ -40,14 +40,14 @@ def _simulate(root: tree.Implementation) -> str:
 
 
 def _ros(root: tree.ChunkTree | None) -> tuple[tree.Node, str, str, str] | None:
-    """Return what needs ROS in a declaration, its name, what follows in a simulation, and what may take its place."""
+    """Return the ROS part of a declaration, its name, the effect in a simulation, and a replacement."""
     match root:
         case tree.Implementation(source=tree.RosAction() as source):
             return source, "ROS action", f"clauses stay unknown; to simulate it, {_simulate(root)}", _CATALOG
         case tree.Provider(source=tree.RosTopic() | tree.Transforms() | tree.SimulatedStates() as source):
-            truth = "policies that observe by it stay unknown; write 'simulation ground truth update-rate: … Hz'"
+            truth = "policies that use its observations stay unknown; write 'simulation ground truth update-rate: … Hz'"
             return source, "ROS messages", truth, _GROUND_TRUTH
         case tree.Policy(rule=tree.TrinaryTopic() as rule):
-            return rule, "ROS topic", "the clause stays unknown where an execution uses this policy", ""
+            return rule, "ROS topic", "the clause stays unknown if an execution uses this policy", ""
         case _:
             return None

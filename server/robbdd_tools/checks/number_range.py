@@ -1,4 +1,4 @@
-"""``number-range``: a number that its quantity cannot have, such as a negative seed or an update rate of 0."""
+"""``number-range``: a number outside the range of its quantity, such as a negative seed or an update rate of 0."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ CODE = "number-range"
 
 @dataclass(frozen=True, slots=True)
 class _Quantity:
-    """What a number is of; ``above`` excludes the bound ``low`` itself, ``whole`` excludes fractions."""
+    """Range of a number; ``above`` excludes the bound ``low`` itself, ``whole`` excludes fractions."""
 
     words: str
     low: float = 0.0
@@ -53,7 +53,7 @@ _Measured = tuple[tree.Number | None, _Quantity]
 
 
 def number_range(site: Site) -> Iterator[Diagnostic]:
-    """Report each such number of a declaration, and the bounds of a distance that are the wrong way round."""
+    """Report each such number of a declaration, and the reversed bounds of a distance."""
     for number, quantity in _measured(site.placed.declaration):
         text = written_text(site, number)
         message = f"{quantity.words} cannot be {text}: write {quantity.wanted}"
@@ -65,7 +65,7 @@ def number_range(site: Site) -> Iterator[Diagnostic]:
 
 @kept_with_key
 def _measured(declaration: Declaration) -> tuple[tuple[tree.Number, _Quantity], ...]:
-    """Return the numbers of a declaration that their quantities cannot have."""
+    """Return the numbers of a declaration that are out of range."""
     if declaration.tree is None:
         return ()
     return tuple(
@@ -95,7 +95,7 @@ def _quantities(node: tree.Node) -> Iterator[_Measured]:
 
 
 def _fixes(site: Site, number: tree.Number, quantity: _Quantity) -> tuple[Fix, ...]:
-    """Return the fix that removes the sign, or writes 1 for the number of repetitions; others are not certain."""
+    """Return the fix that removes the sign, or writes 1 for the number of repetitions; other fixes are uncertain."""
     if number.value < 0 and quantity.allows(-number.value):
         positive = written_text(site, number).lstrip("-")
         return (change(site, f"Change to {positive}", number, positive),)

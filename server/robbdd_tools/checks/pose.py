@@ -1,6 +1,6 @@
-"""``pose``: a position that has not three numbers, or an orientation that is no rotation.
+"""``pose``: a position without exactly three numbers, or an invalid orientation.
 
-A warning: only what is placed by it cannot be run.
+A warning: only a run that places something by it fails.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ CODE = "pose"
 
 
 def pose(site: Site) -> Iterator[Diagnostic]:
-    """Report positions and orientations of poses that no run can place anything by."""
+    """Report invalid positions and orientations of poses."""
     if not isinstance(site.tree, tree.SceneInstance | tree.KinematicTree):
         return
     for node in walk(site.tree):
@@ -48,16 +48,16 @@ def _orientation(site: Site, written: tree.Vector | tree.EulerAngles | tree.Axes
         case _ if rotation_of(written) is not None:
             return
         case tree.Vector():
-            yield _told(site, written, "this is no rotation: a quaternion has 4 numbers, not all of them 0")
+            yield _told(site, written, "this is not a rotation: a quaternion has 4 numbers, not all of them 0")
         case tree.EulerAngles():
-            yield _told(site, written.angles, "this is no rotation: it has 3 angles")
+            yield _told(site, written.angles, "this is not a rotation: it has 3 angles")
         case tree.Axes():
-            text = "these axes are no rotation: they must be of length 1, at right angles and right-handed"
+            text = "these axes are not a rotation: they must be of length 1, at right angles and right-handed"
             yield _told(site, written, text)
 
 
 def _count(site: Site, sample: tree.Sample) -> int | None:
-    """Return how many numbers a sample has; ``None`` when its distribution is not known."""
+    """Return the number of values of a sample; ``None`` if its distribution is unknown."""
     found = site.follow(sample.distribution)
     declared = None if found is None else found.tree
     return drawn(declared.law) if isinstance(declared, tree.Distribution) else None

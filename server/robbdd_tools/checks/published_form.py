@@ -1,7 +1,7 @@
-"""``published-form``: a declaration in the form of the 2025 paper; the fix writes it in the current form.
+"""``published-form``: a declaration in the form of the 2025 paper; the fix rewrites it in the current form.
 
-The text is edited in pieces, so that comments stay where they are. What the published form leaves out and nothing
-tells, such as a template's task, is left to its author.
+The text is edited in pieces, so that comments stay in place. Data that the published form omits and that cannot be
+derived, such as a template's task, is left to the author.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _NAMED = (
     *(tree.Event, tree.Task, tree.ConstantSet, tree.BehaviourTree, tree.Template, tree.Story),
 )
 Change = tuple[Span, str]
-"""A span of a declaration's text (empty: put in) and what shall stand there."""
+"""A span of a declaration's text (empty: insertion) and its replacement."""
 
 
 def published_form(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
@@ -46,21 +46,21 @@ def published_form(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
         changes = [*_changes(placed.declaration, _namespace(index, placed)), *_through_scenes(placed)]
         if changes:
             edits = tuple(Edit(uri, span.shifted(placed.offset), text) for span, text in changes)
-            message = f"'{root.name.text}' is written in the published form: the fix writes it in the current one"
+            message = f"'{root.name.text}' is written in the published form: the fix rewrites it in the current one"
             place = root.name.span.shifted(placed.offset)
-            fix = Fix("Write it in the current form", edits)
+            fix = Fix("Rewrite it in the current form", edits)
             yield Diagnostic(uri, place, Severity.HINT, "published-form", message, fixes=(fix,))
 
 
 def _namespace(index: FileIndex, placed: PlacedDeclaration) -> str | None:
-    """Return the namespace that a declaration is in without saying so, else that of its file."""
+    """Return the implied namespace of a declaration, else that of its file."""
     symbol = placed.declaration.symbols[0]
     left_out = symbol.namespace == FILE_NAMESPACE
     return namespace_of(index, symbol) if left_out else only_namespace(index.names)
 
 
 def _through_scenes(placed: PlacedDeclaration) -> Iterator[Change]:
-    """Yield the changes of elements that are named by their scene (``lab_scene.cube``)."""
+    """Yield the changes of elements named by their scene (``lab_scene.cube``)."""
     for reference in placed.declaration.references:
         ref = reference.ref
         target = placed.targets.get(ref) if ref.role in ELEMENT_ROLES and "." in ref.path else None
@@ -99,7 +99,7 @@ def _in_scenarios(declaration: Declaration) -> tuple[Change, ...]:
 
 
 def _merged(changes: Iterable[Change]) -> Iterator[Change]:
-    """Join what is put in at one place, in the order given, also before a text that is replaced there."""
+    """Join insertions at one place in the given order, also before a replacement that starts there."""
     kept: list[Change] = []
     for span, text in sorted(changes, key=lambda change: change[0].start):
         if kept and kept[-1][0].start == kept[-1][0].end == span.start:
@@ -118,7 +118,7 @@ class _Rewriter:
     namespace: str
 
     def declaration(self, root: object) -> Iterator[Change]:
-        """Yield the changes of a declaration, of a story those outside of its scenarios."""
+        """Yield the changes of a declaration; for a story, those outside of its scenarios."""
         if isinstance(root, _NAMED) and root.namespace is None and self.namespace:
             yield _put(root.name.span.start, self.namespace)
         if isinstance(root, tree.Template):
@@ -220,7 +220,7 @@ def _during(duration: tree.During) -> str:
 
 
 def _phrase(action: tree.PhraseUse) -> str:
-    """Return an action in the words of the current form."""
+    """Return an action in the current form."""
     written = {name: f"<{value.path}>" for name, value in action.arguments if isinstance(value, tree.Ref)}
     phrase = load_catalog().behaviours[action.word].phrase
     return re.sub(r"<(\w+)>", lambda slot: written.get(slot[1], slot[0]), phrase)

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 CODE = "python-source"
 LEAST_ALIKE = 0.6
-"""Share of common letters from which a name is a suggestion."""
+"""Minimum similarity of a suggestion."""
 
 
 def python_source(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each such name at its token."""
+    """Report each such name."""
     own = uri_to_path(file.document.uri)
     if own is None or not own.parent.is_dir():
         return
@@ -56,7 +56,7 @@ def _sources(declaration: Declaration) -> tuple[tree.PythonAttribute, ...]:
 
 
 def _problem(source: tree.PythonAttribute, folder: Path) -> tuple[tree.Name, str, list[str]] | None:
-    """Return the name at fault, what is wrong with it and what may have been meant; ``None`` if it exists."""
+    """Return the wrong name, the message and suggestions; ``None`` if the name exists."""
     module, attribute = source.module.text, source.attribute.text
     spec = find_module(module, folder)
     if spec is None:

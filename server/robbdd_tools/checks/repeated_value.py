@@ -1,4 +1,4 @@
-"""``repeated-value``: a variation that gives one variable its values twice."""
+"""``repeated-value``: a variation with two columns or lines for one variable."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def row_width(site: Site) -> Iterator[Diagnostic]:
-    """Report each row of the wrong width; a short one may be completed as a row beside it, or from the scene."""
+    """Report each row of the wrong width; a short one may be completed from an adjacent row, or from the scene."""
     for scenario in scenarios(site):
         table = scenario.variant.variation
         for row in table.rows if isinstance(table, tree.Table) else ():
@@ -32,7 +32,7 @@ def _report(scenario: Scenario, table: tree.Table, row: tree.TableRow) -> Diagno
     if cells < columns:
         fix = "add a value for " + ", ".join(f"'{ref.path}'" for ref in table.header[cells:])
     else:
-        fix = "remove what is too much"
+        fix = "remove the surplus ones"
     message = f"this row has {_counted(cells, 'cell')}, but the table has {_counted(columns, 'column')}: {fix}"
     header = related_to(site, table.header[0], "the columns")
     return finding(site, row, Severity.ERROR, "row-width", message, (header,), tuple(_fixes(scenario, table, row)))
@@ -52,7 +52,7 @@ def _fixes(scenario: Scenario, table: tree.Table, row: tree.TableRow) -> Iterato
         nearest = min(complete, key=lambda other: (abs(other.span.start - row.span.start), other.span))
         missing = [cell_span(site, cell) for cell in nearest.cells[cells:]]
         text = "".join(f" {document.text[span.start : span.end]} |" for span in missing)
-        yield Fix("Complete the row as the one beside it", (Edit(site.uri, Span(end, end), text),))
+        yield Fix("Complete the row like the adjacent one", (Edit(site.uri, Span(end, end), text),))
     given = [scenario.cell_for(column.variable) for column in scenario.columns[cells:] if column.variable is not None]
     filled = [cell for cell in given if cell is not None]
     if len(filled) == columns - cells:

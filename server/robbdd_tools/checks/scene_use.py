@@ -1,4 +1,4 @@
-"""Which elements of a scene the scenarios that take place in it use."""
+"""The elements of a scene that its scenarios use."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _ELEMENTS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
 
 
 def used_elements(scene: Site) -> frozenset[Key] | None:
-    """Return what the loaded scenarios of a scene use, with the objects that carry the workspaces among it.
+    """Return the elements that the loaded scenarios of a scene use, with the objects that carry used workspaces.
 
-    ``None`` without a scenario: nothing is known of the scene's use then.
+    ``None`` without a scenario: the scene's use is then unknown.
     """
     found: set[Key] = set()
     is_used = False
@@ -43,7 +43,7 @@ def _scenarios(scene: Site) -> Iterator[Scenario]:
 
 
 def _named(scenario: Scenario) -> Iterator[Key]:
-    """Yield the elements that values and clauses name, one by one or by their sets."""
+    """Yield the elements in values and clauses, named individually or by their sets."""
     yield from _targets(scenario.site, scenario.variant)
     if scenario.template is not None and isinstance(scenario.template.tree, tree.Template):
         yield from _targets(scenario.template, scenario.template.tree)
@@ -65,7 +65,7 @@ def _elements(site: Site, definition: Definition) -> Iterator[Key]:
 
 
 def _carriers(scene: Site, used: set[Key]) -> set[Key]:
-    """Return the objects of the compositions of workspaces in use, at any depth."""
+    """Return the objects in the compositions of used workspaces, at any depth."""
     found: set[Key] = set()
     seen: set[tuple[str, int, bool]] = set()
     root = scene.tree

@@ -1,4 +1,4 @@
-"""``selection-size``: ``select N`` of more elements than the set has, or of none."""
+"""``selection-size``: ``select N`` with more elements than the set has, or with none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``setting``: ``has config`` names an unknown configuration, a value that it cannot be, or an element without it.
+"""``setting``: ``has config`` with an unknown configuration, an invalid value, or an element that lacks it.
 
 A warning: other programs that execute a model may know other configurations; ours refuses to run with it.
 """
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 
 CODE = "setting"
 _SHARED = frozenset({"position_range", "seed"})
-"""Configurations of agents and objects alike."""
+"""Configurations that both agents and objects have."""
 LEAST_ALIKE = 0.6
-"""Share of common letters from which a name is a suggestion."""
+"""Minimum similarity of a suggestion."""
 
 
 def setting(site: Site) -> Iterator[Diagnostic]:
-    """Report unknown names where they are written, and values in the variations that give them."""
+    """Report unknown names, and invalid values in the variations that contain them."""
     for clauses in clauses_of(site.placed.declaration):
         for use in _uses(clauses):
             if use.name.text not in SETTINGS:
@@ -68,7 +68,7 @@ def _unknown(site: Site, name: tree.Name) -> Diagnostic:
 
 
 def _misfits(scenario: Scenario) -> Iterator[Diagnostic]:
-    """Yield the values of a variation that the configurations which they are given to cannot have."""
+    """Yield the invalid configuration values of a variation."""
     given: dict[str, tuple[Site, tree.Name]] = {}
     for site, use in _known_uses(scenario):
         variable = site.target(use.value)
@@ -90,14 +90,14 @@ def _misfits(scenario: Scenario) -> Iterator[Diagnostic]:
 
 
 def _known_uses(scenario: Scenario) -> Iterator[tuple[Site, _Use]]:
-    """Yield the configurations of the catalog that the clauses of a scenario name, its own and its template's."""
+    """Yield the catalog configurations that the clauses of a scenario and its template name."""
     for site, clauses in ((scenario.site, scenario.clauses), (scenario.template, scenario.outer)):
         if site is not None and clauses is not None:
             yield from ((site, use) for use in _uses(clauses) if use.name.text in SETTINGS)
 
 
 def _wrong_targets(scenario: Scenario) -> Iterator[Diagnostic]:
-    """Yield the elements that a variation gives to a target and that do not have the configuration."""
+    """Yield the target elements of a variation that do not have the configuration."""
     targets: dict[str, list[tuple[Site, tree.Name]]] = {}
     for site, use in _known_uses(scenario):
         variable = site.target(use.target)
@@ -125,7 +125,7 @@ def _kind(element: Element) -> str:
 
 
 def _has(element: Element, name: str) -> bool:
-    """Tell whether an element may have a configuration; a model of a ``.scenex`` is known in a run only."""
+    """Return whether an element may have a configuration; models of a ``.scenex`` are known only in a run."""
     match element.kind:
         case "agent":
             return agent_has(name)
@@ -139,7 +139,7 @@ def _has(element: Element, name: str) -> bool:
 
 
 def _within_bounds(site: Site, node: tree.Node, setting: Setting) -> tuple[Fix, ...]:
-    """Return the fix that writes the nearest number which a configuration can have."""
+    """Return the fix that writes the nearest valid number."""
     if not isinstance(node, tree.Number) or setting.count > 1:
         return ()
     nearest = min(max(node.value, setting.low), setting.high)
@@ -148,7 +148,7 @@ def _within_bounds(site: Site, node: tree.Node, setting: Setting) -> tuple[Fix, 
 
 
 def _texts(site: Site, written: Written, is_set: bool) -> Iterator[tuple[tree.Node, str]]:
-    """Yield each value as the run reads it: the elements of a set variable are one value of several numbers."""
+    """Yield each value as the run reads it: the elements of a set variable form one value of several numbers."""
     if isinstance(written, tree.SetList):
         for values in written.sets:
             yield from _texts(site, values, is_set)

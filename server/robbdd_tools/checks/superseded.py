@@ -1,4 +1,4 @@
-"""Which findings of the shapes repeat what a rule has reported already."""
+"""Shape findings that repeat a rule's diagnostic."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ SUPERSEDED = {
     "selection-size": ("shacl-selection-size", "shacl-selection-length"),
     "type-conflict": ("shacl-object-value", "shacl-workspace-value", "shacl-agent-value", "shacl-element-value"),
 }
-"""Code of a rule → codes of the shapes that find the same mistake."""
+"""Code of a rule → codes of the shapes that report the same mistake."""
 
 
 def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Leave out the shapes' findings at a place that a rule for the same mistake names.
+    """Remove shape findings at places where a rule already reports the same mistake.
 
-    What no rule found stays, so that nothing is lost where the two see different things.
+    Findings that no rule reports stay, so nothing is lost where the two differ.
     """
     reported: dict[tuple[str, str], list[Span]] = {}
     for finding in fast:

@@ -1,4 +1,4 @@
-"""Edits of the table of a variation: columns and cells, with all that is written in them."""
+"""Edits of a variation's table: columns and cells with their contents."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _RULE = re.compile(rf"{_GAP}(\|(?:\s*-+\s*\|)+)")
 
 
 def cell_span(site: Site, cell: tree.Node) -> Span:
-    """Return the span of all that is written in a cell; that of a reference leaves its brackets out."""
+    """Return the span of a cell's contents; the span of a reference excludes its brackets."""
     span = site.span(cell)
     if not isinstance(cell, tree.Ref):
         return span
@@ -29,7 +29,7 @@ def cell_span(site: Site, cell: tree.Node) -> Span:
 
 
 def columns_added(site: Site, table: tree.Table, names: Sequence[str], cells: Sequence[str]) -> tuple[Edit, ...]:
-    """Return the edits that add last columns, each with one value; none where rows are of different widths."""
+    """Return the edits that append columns, each with one value; none if rows differ in width."""
     header = _header_end(site, table)
     if header is None or not _is_even(table):
         return ()
@@ -42,7 +42,7 @@ def columns_added(site: Site, table: tree.Table, names: Sequence[str], cells: Se
 
 
 def column_removed(site: Site, table: tree.Table, number: int) -> tuple[Edit, ...]:
-    """Return the edits that remove one of several columns; none where rows are of different widths."""
+    """Return the edits that remove one of several columns; none if rows differ in width."""
     header = _header_end(site, table)
     if header is None or not _is_even(table) or len(table.header) == 1:
         return ()
@@ -66,7 +66,7 @@ def _is_even(table: tree.Table) -> bool:
 
 
 def _header_end(site: Site, table: tree.Table) -> int | None:
-    """Return where the bar behind the last name ends; ``None`` where there is none."""
+    """Return the end of the bar after the last name; ``None`` if there is none."""
     match = _END.match(site.file.document.text, cell_span(site, table.header[-1]).end)
     return None if match is None else match.end()
 

@@ -1,4 +1,4 @@
-"""A scenario variant together with its template, as most rules about variants need it."""
+"""A scenario variant together with its template, as used by most rules about variants."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ VARIABLES = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """What a variation writes for one variable; ``variable`` is ``None`` for an unknown name."""
+    """The values of one variable in a variation; ``variable`` is ``None`` for an unknown name."""
 
     ref: tree.Ref
     variable: Definition | None
@@ -46,7 +46,7 @@ class Scenario:
         return None if self.template is None else clauses_of(self.template.placed.declaration)[0]
 
     def declared(self) -> dict[str, Definition]:
-        """Return the variables of the template by their keys, in the order of the text."""
+        """Return the variables of the template by their keys, in text order."""
         site = self.template
         root = None if site is None else site.tree
         if site is None or not isinstance(root, tree.Template):
@@ -56,17 +56,17 @@ class Scenario:
         return {variable_key(variable): variable for variable in found if variable is not None}
 
     def members(self, kinds: Kinds) -> list[Element]:
-        """Return the members of the scene of some kinds, sorted; none while the scene is not known."""
+        """Return the scene's members of some kinds, sorted; empty while the scene is unknown."""
         found = scene_members(self.site.follow(self.variant.scene)) or frozenset()
         return sorted((member for member in found if member.kind in kinds), key=lambda member: member.key)
 
     def fitting_for(self, variable: Definition) -> list[str]:
-        """Return the values that the scene has for a variable of the template, as its phrases take them."""
+        """Return the values in the scene that a template variable's phrases accept."""
         kinds = variable_type(self.site.snapshot, variable, from_values=False).kinds & ELEMENTS
         return [f"<{member.name}>" for member in self.members(kinds)]
 
     def cell_for(self, variable: Definition) -> str | None:
-        """Return a cell with the first value that the scene has for a variable, or with all for one of a set."""
+        """Return a cell with the first matching value of the scene, or with all of them for a set variable."""
         values = self.fitting_for(variable)
         if not values:
             return None
@@ -75,7 +75,7 @@ class Scenario:
 
 @lru_cache(maxsize=2)
 def scenarios(site: Site) -> tuple[Scenario, ...]:
-    """Return the variants of a story that have no syntax error; every rule asks for the same ones in turn."""
+    """Return the variants of a story without syntax errors; cached, because every rule needs them."""
     every = clauses_of(site.placed.declaration)
     variants = [(entry.node, entry) for entry in every if isinstance(entry.node, tree.Variant)]
     return tuple(_scenario(site, variant, clauses) for variant, clauses in variants if site.whole(variant))

@@ -1,4 +1,4 @@
-"""``type-conflict``: a variable that stands for an object here and for a workspace there."""
+"""``type-conflict``: a variable that is an object in one place and a workspace in another."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Placed = tuple[Site, Use]
 
 
 def type_conflict(site: Site) -> Iterator[Diagnostic]:
-    """Report phrases and values that take one variable for different kinds of things, at both places."""
+    """Report phrases and values that use one variable for different kinds, at both places."""
     for clauses in clauses_of(site.placed.declaration):
         yield from _quantified(site, clauses)
         if isinstance(clauses.node, tree.Template):
@@ -58,7 +58,7 @@ def _in_scenario(scenario: Scenario) -> Iterator[Diagnostic]:
 def _between_phrases(
     uses: list[Placed], own: Site, clauses: Clauses, others: Mapping[str, Kinds]
 ) -> Iterator[Diagnostic]:
-    """Report the uses of ``own`` that no kind fits which the uses before leave; ``others`` may stand there instead."""
+    """Report the uses of ``own`` whose kinds conflict with the earlier uses; ``others`` are alternative variables."""
     left: Kinds = ANYTHING
     seen: list[Placed] = []
     for site, use in uses:
@@ -80,7 +80,7 @@ def _between_phrases(
 
 
 def _other_place(other: Placed, own: Site, node: tree.Node, words: str) -> Iterator[Diagnostic]:
-    """Point from the phrase that tells the type to the place that contradicts it, where both are in one file."""
+    """Link the phrase that determines the type to the contradicting place, if both are in one file."""
     site, use = other
     if site.uri == own.uri:
         message = f"'{use.ref.path}' is {article(kind_words(use.kinds))} here, but {words}"
@@ -89,7 +89,7 @@ def _other_place(other: Placed, own: Site, node: tree.Node, words: str) -> Itera
 
 
 def _values(scenario: Scenario, column: Column, uses: list[Placed]) -> Iterator[Diagnostic]:
-    """Report each value that a phrase cannot take, once for each set that is named."""
+    """Report each value that a phrase does not accept, once for each named set."""
     values = list(chain.from_iterable(written_elements(scenario.site, written) for written in column.written))
     kinds = narrowed(use for _, use in uses)
     reported: set[tree.Node] = set()
@@ -112,7 +112,7 @@ def _values(scenario: Scenario, column: Column, uses: list[Placed]) -> Iterator[
 
 
 def _quantified(site: Site, clauses: Clauses) -> Iterator[Diagnostic]:
-    """Report phrases that the elements of a written set do not fit, through the variable that runs over it."""
+    """Report phrases that do not accept the elements of a literal set, through the variable that iterates over it."""
     for use in clauses.uses:
         if use.bound is None:
             continue

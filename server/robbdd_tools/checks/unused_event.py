@@ -1,4 +1,4 @@
-"""``unused-event``: an event that neither its file nor one that imports it refers to."""
+"""``unused-event``: an event without references in its file and its importers."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ if TYPE_CHECKING:
 
 
 def unused_event(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Hint at each event without a use."""
+    """Report each unused event as a hint."""
     for definition in unused_declarations(snapshot, file, SymbolKind.EVENT):
         yield unused(file, definition, "unused-event")

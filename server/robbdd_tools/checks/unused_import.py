@@ -1,4 +1,4 @@
-"""``unused-import``: an import of which nothing is used, neither from the file nor from what it imports."""
+"""``unused-import``: an import that is not used, neither the file nor its own imports."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Hint at imports without a use; a library, and a file that others import, hand their imports on."""
+    """Report unused imports as hints; libraries and imported files re-export their imports."""
     if not has_story(file):
         return
     used = used_names(file)
@@ -30,7 +30,7 @@ def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
 
 
 def _is_unused(snapshot: Snapshot, file: FileAnalysis, link: ImportLink, used: frozenset[str]) -> bool:
-    """Tell whether no name behind an import is used; with an error behind it that is not certain."""
+    """Return whether no name of an import is used; with an error in it, that is uncertain."""
     scope = snapshot.scope(link.uri)
     if scope.unread:
         return False

@@ -1,4 +1,4 @@
-"""``unused-set``: a constant set that neither its file nor one that imports it refers to."""
+"""``unused-set``: a constant set without references in its file and its importers."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ if TYPE_CHECKING:
 
 
 def unused_set(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Hint at each constant set without a use."""
+    """Report each unused constant set as a hint."""
     for definition in unused_declarations(snapshot, file, SymbolKind.CONSTANT_SET):
         yield unused(file, definition, "unused-set")

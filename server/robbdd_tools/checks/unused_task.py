@@ -1,4 +1,4 @@
-"""``unused-task``: a task that neither its file nor one that imports it refers to."""
+"""``unused-task``: a task without references in its file and its importers."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ if TYPE_CHECKING:
 
 
 def unused_task(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Hint at each task without a use."""
+    """Report each unused task as a hint."""
     for definition in unused_declarations(snapshot, file, SymbolKind.TASK):
         yield unused(file, definition, "unused-task")

@@ -1,4 +1,4 @@
-"""``unused-variable``: a variable that no clause speaks of; varying it only repeats scenarios."""
+"""``unused-variable``: a variable that no clause uses; varying it only repeats scenarios."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ CODE = "unused-variable"
 
 
 def unused_variable(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report variables of templates, a warning where scenarios give them values, and quantified ones."""
+    """Report unused template variables, as a warning if scenarios give them values, and quantified ones."""
     uri = file.document.uri
     candidates: list[tuple[tree.Template, tree.Variable, Span, Span]] = []
     for placed in file.declarations:
         facts, root = facts_of(placed.declaration), placed.declaration.tree
         for bound in facts.unused_bounds:
-            message = f"no clause speaks of '{bound.variable.text}': use it, or leave the quantifier out"
+            message = f"no clause uses '{bound.variable.text}': use it, or remove the quantifier"
             yield Diagnostic(uri, bound.variable.span.shifted(placed.offset), Severity.HINT, CODE, message)
         if isinstance(root, tree.Template):
             candidates += [
@@ -39,7 +39,7 @@ def unused_variable(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnost
     if candidates and not snapshot.importers(uri):
         for template, variable, span, extent in candidates:
             has_values = _path(template, variable) in assigned
-            message = f"no clause speaks of '{variable.name.text}': use it in a clause, or remove it"
+            message = f"no clause uses '{variable.name.text}': use it in a clause, or remove it"
             fixes: tuple[Fix, ...] = ()
             if not has_values:
                 fixes = (removal(file.document, f"Remove the variable '{variable.name.text}'", extent),)
@@ -52,7 +52,7 @@ def _path(template: tree.Template, variable: tree.Variable) -> str:
 
 
 def _used_by_stories(file: FileAnalysis) -> tuple[set[str], set[str]]:
-    """Return the variables in the clauses of variants, and all that variants name."""
+    """Return the variables in the clauses of variants, and all variables that variants name."""
     spoken_of: set[str] = set()
     named: set[str] = set()
     for placed in file.declarations:
