@@ -84,7 +84,7 @@ async def test_a_violated_clause_shows_its_moment_and_its_margin_over_time(pictu
     assert [name for name, _, _ in PICTURE.findall(await hover(pictured, "in-hand: holds"))] == ["margin over time"]
     assert "part-to-bin`: ✗ 0/1 passed" in await hover(pictured, "tidy-bench {")
     pictured.change(SOON[1], SOON[0])
-    assert "Last results, of the text before it was edited:" in await hover(pictured, "at-goal: holds")
+    assert "Last results, before the text was edited:" in await hover(pictured, "at-goal: holds")
 
 
 @pytest.mark.physics

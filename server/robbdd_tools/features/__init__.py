@@ -1,1 +1,1 @@
-"""What editors and the command line ask of a snapshot, one pure function per file."""
+"""Language features for editors and the command line, one pure function per file."""

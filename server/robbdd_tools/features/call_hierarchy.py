@@ -1,4 +1,4 @@
-"""Who uses whom: a user story its scenario variants, these their templates, a template its behaviours."""
+"""Call hierarchy: a user story calls its variants, these their templates, a template its behaviours."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _CALLABLE = (SymbolKind.STORY, SymbolKind.VARIANT, SymbolKind.TEMPLATE, SymbolKi
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """The other end of a use, and the places (absolute, in the document of the user) where it is written."""
+    """The other end of a use, and the places of the use (absolute, in the user's document)."""
 
     other: Definition
     spans: tuple[Span, ...]
@@ -34,7 +34,7 @@ def callable_at(snapshot: Snapshot, uri: str, offset: int) -> Definition | None:
 
 
 def calls_from(snapshot: Snapshot, definition: Definition) -> list[Call]:
-    """Return what a story, variant or template uses, in the order of the text."""
+    """Return the uses in a story, variant or template, in text order."""
     match definition.kind:
         case SymbolKind.STORY:
             return [Call(part, (part.span,)) for part in _parts(snapshot, definition, SymbolKind.VARIANT)]
@@ -47,7 +47,7 @@ def calls_from(snapshot: Snapshot, definition: Definition) -> list[Call]:
 
 
 def calls_to(snapshot: Snapshot, definition: Definition) -> list[Call]:
-    """Return what uses a variant, template or behaviour, file by file in the order of the text."""
+    """Return the users of a variant, template or behaviour, file by file in text order."""
     match definition.kind:
         case SymbolKind.BEHAVIOUR | SymbolKind.VARIANT:
             owner = _owner(snapshot, definition)

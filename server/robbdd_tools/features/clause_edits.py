@@ -1,4 +1,4 @@
-"""Changes of the text of clauses: some taken out of a conjunction, others added to one."""
+"""Edits of clauses: remove some from a conjunction, add others to one."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ if TYPE_CHECKING:
     from robbdd_tools.names.elements import Site
 
 Change = tuple[Span, str]
-"""A text that is written over a span (empty: put in)."""
+"""A span and its replacement text (empty span: insertion)."""
 _STEP = 4
 
 
 def operands(expression: tree.Expression) -> tuple[tree.Expression, ...]:
-    """Return the clauses of which all must hold."""
+    """Return the operands of a conjunction."""
     bare = tree.bare(expression)
     return bare.operands if isinstance(bare, tree.Conjunction) else (bare,)
 
 
 def removals(spans: Sequence[Span], gone: Sequence[bool]) -> Iterator[Span]:
-    """Yield what goes with some operands of a conjunction, not all: each with the ``and`` to one that stays."""
+    """Yield the spans that remove some operands of a conjunction, not all: each with the ``and`` to a remaining one."""
     first_kept = gone.index(False)
     for position, span in enumerate(spans):
         if gone[position] and position < first_kept:
@@ -33,9 +33,9 @@ def removals(spans: Sequence[Span], gone: Sequence[bool]) -> Iterator[Span]:
 
 
 def additions(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> Iterator[Change]:
-    """Yield the changes that add clauses to ``Given`` or ``Then`` of a template's body, behind those that stand there.
+    """Yield the changes that add clauses after those in ``Given`` or ``Then`` of a template's body.
 
-    Spans count from the beginning of the template's declaration, and the further lines of ``texts`` from column 0.
+    Spans count from the start of the template's declaration; the second and later lines of ``texts`` from column 0.
     """
     there = body.given if label == "Given" else body.then
     if there is None:
@@ -54,7 +54,7 @@ def additions(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> 
 
 
 def changed(text: str, span: Span, changes: Iterable[Change]) -> str:
-    """Return a piece of a text after changes, which count from where the text begins."""
+    """Return a span of a text after changes, which count from the start of the text."""
     piece = text[: span.end]
     for place, new in sorted(changes, key=lambda change: change[0], reverse=True):
         piece = piece[: place.start] + new + piece[place.end :]
@@ -62,7 +62,7 @@ def changed(text: str, span: Span, changes: Iterable[Change]) -> str:
 
 
 def column(site: Site, offset: int) -> int:
-    """Return the column of what stands at an offset of a declaration, or that of its line's content plus a step."""
+    """Return the column of an offset in a declaration, or that of its line's content plus one indentation step."""
     document = site.file.document
     place = document.position(site.placed.offset + offset)
     line = document.line_text(place.line)
@@ -71,13 +71,13 @@ def column(site: Site, offset: int) -> int:
 
 
 def unindented(text: str, by: int) -> str:
-    """Return a text whose lines but the first have lost an indentation."""
+    """Return a text with the indentation of all lines but the first reduced."""
     first, *rest = text.splitlines(keepends=True)
     return "".join((first, *(line[min(by, len(line) - len(line.lstrip(" "))) :] for line in rest)))
 
 
 def _new_part(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> Change:
-    """Return the change that adds a whole ``Given`` before, or ``Then`` behind the middle of a body."""
+    """Return the change that adds a whole ``Given`` before, or ``Then`` after, the middle of a body."""
     middle = body.when or body.for_all
     assert middle is not None
     outer = column(site, middle.span.start)

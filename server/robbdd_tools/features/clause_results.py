@@ -1,4 +1,4 @@
-"""Results of runs, aggregated over variations and put where clauses and rows of tables stand."""
+"""Results of runs, aggregated over variations and mapped to clauses and table rows."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ STALE, VACUOUS = "(stale)", "(vacuous)"
 _CHANGED = "The text has changed since this was judged: run it again."
 _BADNESS = ("violated", "undefined", "unknown", "holds")
 MOST_LINES = 20
-"""Variations that a tooltip lists."""
+"""Maximum number of variations in a tooltip."""
 MOST_LINES_OF_FAILURES = 5
-"""Variations that a diagnostic lists."""
+"""Maximum number of variations in a diagnostic."""
 
 
 @dataclass(frozen=True, slots=True)
 class ResultHint:
-    """What to show behind a clause or row at ``span`` (absolute); ``lines`` tell of variations, the worst first.
+    """The hint after a clause or row at ``span`` (absolute); ``lines`` describe variations, the worst first.
 
-    ``outcome`` is the worst one; ``stale`` tells that the text has changed since. ``failing`` are the verdicts on a
-    clause that did not hold, the worst first; ``worst`` is the worst of all. ``vacuous`` says why the clause could not
-    have failed, ``substitutions`` which catalog behaviours were executed in place of the model's.
+    ``outcome`` is the worst one; ``stale``: the text has changed since. ``failing`` are the verdicts on a clause that
+    did not hold, the worst first; ``worst`` is the worst of all. ``vacuous`` says why the clause could not have failed,
+    ``substitutions`` which catalog behaviours were executed instead of the model's.
     """
 
     span: Span
@@ -49,7 +49,7 @@ class ResultHint:
 
     @property
     def tooltip(self) -> str:
-        """Everything that is known, shortened where there are many variations."""
+        """The full text, shortened if there are many variations."""
         remarks = [_CHANGED] * self.stale + [f"It proves little: {self.vacuous}."] * bool(self.vacuous)
         remarks += self.substitutions
         return "\n".join((*remarks, *_shortened(self.lines, MOST_LINES)))
@@ -57,7 +57,7 @@ class ResultHint:
 
 @dataclass(frozen=True, slots=True)
 class PassRate:
-    """How many scenarios of a variant passed of those that were run; ``outcome`` is the worst one."""
+    """Number of passed scenarios of a variant, and of all that were run; ``outcome`` is the worst one."""
 
     passed: int
     run: int
@@ -66,22 +66,22 @@ class PassRate:
 
     @property
     def label(self) -> str:
-        """The rate as it is shown."""
+        """The rate as text."""
         return f"{SIGNS[self.outcome]} {self.passed}/{self.run} passed" + (f" {STALE}" if self.stale else "")
 
 
 def appearance(shown: ResultHint | PassRate) -> dict[str, Any]:
-    """Return what decides how a result is coloured, as clients get it beside its words."""
+    """Return the data by which clients colour a result."""
     return {"verdict": verdict_of(shown.outcome), "stale": shown.stale}
 
 
 def verdict_of(outcome: str) -> str:
-    """Return the verdict behind an outcome: what no step can judge is unknown."""
+    """Return the verdict of an outcome: a clause that no step can judge is unknown."""
     return "unknown" if outcome == "undefined" else outcome
 
 
 def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHint]:
-    """Return a hint for each clause of a file that has results."""
+    """Return a hint for each clause of a file with results."""
     hints: list[ResultHint] = []
     for clause in clauses_in(snapshot, uri) if findings.clauses else ():
         judged = findings.clauses.get(clause.iri, ())
@@ -93,7 +93,7 @@ def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[Resul
 
 
 def row_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHint]:
-    """Return a hint for each row of a table whose scenario was run: which clauses failed."""
+    """Return a hint for each table row whose scenario was run, with the failed clauses."""
     hints: list[ResultHint] = []
     for variant in variants_of(snapshot, uri) if findings.variants else ():
         scenarios = findings.variants.get(variant.iri, ())
@@ -107,7 +107,7 @@ def row_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHi
 
 
 def pass_rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> PassRate | None:
-    """Return the pass rate of a variant's last runs, ``None`` when it was never run."""
+    """Return the pass rate of a variant's last runs, ``None`` if it was never run."""
     known = findings.variants.get(variant.iri)
     if known is None:
         return None
@@ -116,14 +116,14 @@ def pass_rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) ->
 
 
 def execution_rate(snapshot: Snapshot, execution: PlacedExecution, findings: Findings) -> PassRate | None:
-    """Return the pass rate of the last runs of a variant by an execution, ``None`` when there was none."""
+    """Return the pass rate of a variant's last runs by an execution, ``None`` if there is none."""
     now = execution_digest(snapshot, execution)
     own = (one for one in findings.variants.get(execution.variant.iri, ()) if one.execution == execution.iri)
     return _rate((one, one.execution_digest == now) for one in own)
 
 
 def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
-    """Return the pass rate of scenarios, each with whether it was judged by the text as it is now."""
+    """Return the pass rate of scenarios, each with whether the current text was judged."""
     finished = [(one.outcome, current) for one, current in scenarios if one.finished]
     if not finished:
         return None
@@ -133,10 +133,10 @@ def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
 
 
 def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:
-    """Return a finding for each clause that did not hold in some variation; none where the text has changed since.
+    """Return a diagnostic for each clause that did not hold in some variation; none if the text has changed since.
 
-    It names the worst variations with the instants, and leads to the rows of their tables; a ``brief`` one names the
-    worst alone: it stands above a hover that tells of all.
+    It lists the worst variations with their instants, with links to their table rows; a ``brief`` one, shown above a
+    hover with the full list, names only the worst.
     """
     rows = _rows(snapshot, uri) if findings.clauses else {}
     found: list[Diagnostic] = []
@@ -144,7 +144,7 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
         if hint.vacuous and not hint.stale:
             message = f"This clause proved little in the last run: {hint.vacuous}."
             found.append(Diagnostic(uri, hint.span, Severity.HINT, "clause-vacuous", message))
-        # An error in users' code is reported where it is, not at every clause that it leaves without evidence.
+        # An error in users' code is reported at the code, not at every clause that is unknown because of it.
         failing = [judged for judged in hint.failing if not judged[1].fault]
         if failing and not hint.stale:
             lines_of_failures = list(map(_line, failing))
@@ -161,7 +161,7 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
 
 
 def _rows(snapshot: Snapshot, uri: str) -> dict[tuple[str, str], Span]:
-    """Return where the rows of a file stand, by variant and digest."""
+    """Return the table rows of a file, by variant and digest."""
     return {
         (variant.iri, digest(snapshot, uri, row)): row for variant in variants_of(snapshot, uri) for row in variant.rows
     }
@@ -211,7 +211,7 @@ def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -
 
 
 def substitutions(scenarios: Iterable[JudgedScenario]) -> tuple[str, ...]:
-    """Return in words, each once, which catalog behaviours were executed in place of the model's."""
+    """Return the distinct substitutions of model behaviours by catalog behaviours, in words."""
     found = (scenario.substitution for scenario in scenarios)
     return tuple(map(str, dict.fromkeys(one for one in found if one is not None)))
 

@@ -1,4 +1,4 @@
-"""Completion: what the grammar accepts at the cursor, with the names that may stand there."""
+"""Completion: keywords that the grammar accepts at the cursor, and names in scope."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 MOST_BROKEN_LINES = 50
-"""Lines that do not parse and are passed over on the way to a cursor."""
+"""Maximum number of unparsable lines skipped before a cursor."""
 MOST_TO_IMPORT = 300
-"""Names of files to import that are offered; loaded files and those beside go first."""
+"""Maximum number of proposed names that need an import; loaded files and files in the same folder come first."""
 _CONFIGURED = re.compile(r"\bhas\s+config\s+\Z")
 _EMITTED = re.compile(r"\bemits\s+\Z")
 _STARTS = frozenset({"import", "ns"})
@@ -46,9 +46,9 @@ _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet
 class Completion:
     """One proposal: ``kind`` is ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog``, ``setting`` or a symbol's.
 
-    ``text`` replaces ``span``, or with what stands behind the cursor ``whole``; that of a snippet has placeholders.
-    Of two proposals the one with the smaller ``rank`` fits better. ``edits`` go with it (an import). ``origin`` is
-    the document and the qualified name that a name stands for, or the URI of a file and nothing.
+    ``text`` replaces ``span`` or, including the text after the cursor, ``whole``; a snippet's text has placeholders.
+    The proposal with the smaller ``rank`` fits better. ``edits`` are additional (an import). ``origin`` is the document
+    and qualified name of a name, or the URI of a file and ``""``.
     """
 
     label: str
@@ -65,8 +65,8 @@ class Completion:
 def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | None = None) -> list[Completion]:
     """Return the proposals at a cursor, keywords first, each group in alphabetical order.
 
-    Variables that cannot stand in a slot of a phrase come last; values that their variable cannot take, or that are
-    not in the scene of their variant, not at all. Names of files that are not imported yet bring their import.
+    Variables of the wrong type for a slot come last; values of the wrong type for their variable, or outside of their
+    variant's scene, are left out. Names of files not yet imported come with the import.
     """
     analysis = snapshot.file(uri)
     if analysis is None:
@@ -99,11 +99,11 @@ def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | N
 
 
 def _expected(language: str, before: str) -> tuple[str, Expectation | None]:
-    """Return what may follow a text, with the text that it follows: lines that do not parse are left blank."""
+    """Return the expectation after a text, and the parsed text: unparsable lines are blanked."""
     for _ in range(MOST_BROKEN_LINES):
         parsed = parse_chunk(language, before)
         if isinstance(parsed, Parsed):
-            # Behind a whole declaration another one begins, of which some words may be typed already.
+            # After a whole declaration another one starts, whose first words may already be typed.
             return _expected(language, before[parsed.trailing :] if parsed.trailing is not None else "")
         if not before[parsed.offset :].strip():
             return before, parsed.expected
@@ -116,7 +116,7 @@ def _expected(language: str, before: str) -> tuple[str, Expectation | None]:
 
 
 def _phrases(language: str, before: str, expected: Expectation) -> list[str]:
-    """Return the accepted keywords, each continued by the keywords that must follow it."""
+    """Return the accepted keywords, each with the keywords that must follow it."""
     found: set[str] = set()
     for literal in expected.literals:
         if not literal[:1].isalpha():
@@ -135,7 +135,7 @@ def _follows(language: str, before: str, run: str) -> bool:
 
 @cache
 def _keyword_runs(language: str) -> dict[str, tuple[str, ...]]:
-    """Map each keyword to the runs of keywords in the grammar that begin with it (``is`` → ``is located at`` …)."""
+    """Map each keyword to the keyword sequences in the grammar that start with it (``is`` → ``is located at`` …)."""
     runs: dict[str, dict[str, None]] = {}
     for match in re.finditer(r"'[^\W\d]\w*'(?:\s+'[^\W\d]\w*')+", grammar_text(language)):
         words = re.findall(r"\w+", match[0])
@@ -145,7 +145,7 @@ def _keyword_runs(language: str) -> dict[str, tuple[str, ...]]:
 
 @dataclass(frozen=True, slots=True)
 class _Names:
-    """The names that may stand at a cursor."""
+    """Names to propose at a cursor."""
 
     snapshot: Snapshot
     file: FileAnalysis
@@ -161,7 +161,7 @@ class _Names:
                 yield Completion(name, "setting", detail, name, self.cursor.span, self.whole)
 
     def moments(self) -> Iterator[Completion]:
-        """Yield the events of the catalog's behaviours, which ``emits`` names."""
+        """Yield the events of the catalog's behaviours, for ``emits``."""
         if _EMITTED.search(self.cursor.before):
             emitting: dict[str, list[str]] = {}
             for behaviour in load_catalog().behaviours.values():
@@ -171,7 +171,7 @@ class _Names:
                 yield Completion(event, "event", f"of {', '.join(names)}", event, self.cursor.span, self.whole)
 
     def proposals(self, rules: Iterable[str], bracket: str) -> Iterator[Completion]:
-        """Yield the names that fit some rules: those in scope, then those of files to import."""
+        """Yield the names that match some rules: those in scope, then those of files to import."""
         uri = self.file.document.uri
         roles = sorted(rule.removesuffix("Path") for rule in rules if rule.endswith("Path"))
         wanted, members = ANYTHING, None
@@ -196,7 +196,7 @@ class _Names:
             yield self._written(name, definition), definition, int(name in misfits)
 
     def _written(self, name: str, definition: Definition) -> str:
-        """Return the shortest form of a name that begins with the qualifier which is typed already."""
+        """Return the shortest form of a name that starts with the typed qualifier."""
         qualifier, dot, _ = self.cursor.word.rpartition(".")
         path = definition.symbol.path
         if not dot or definition.uri != self.file.document.uri or not path.endswith(name):
@@ -223,7 +223,7 @@ class _Names:
 
 
 def _misfits(cursor: Cursor) -> frozenset[str]:
-    """Return the variables of the declaration at the cursor that other phrases take for something else."""
+    """Return the variables of the declaration at the cursor whose type in other phrases does not fit."""
     wanted = slot_wanted(cursor.before)
     if cursor.placed is None or wanted == ANYTHING:
         return frozenset()
@@ -233,7 +233,7 @@ def _misfits(cursor: Cursor) -> frozenset[str]:
 
 
 def _needs_closing(text: str, cursor: Cursor) -> bool:
-    """Tell whether a reference at the cursor still lacks its ``>``."""
+    """Return whether a reference at the cursor still lacks its ``>``."""
     return re.compile(r"[\w\-.]*\s*>").match(text, cursor.span.end) is None
 
 
@@ -243,7 +243,7 @@ def _word_end(text: str, offset: int) -> int:
 
 
 def _in_quotes(uri: str, file: FileAnalysis, offset: int) -> Iterator[Completion]:
-    """Propose what may stand inside quotes."""
+    """Yield proposals for the contents of quotes."""
     text = file.document.text
     rest = re.compile(r"[^\"'\n/]*").match(text, offset)
     for name, kind, typed, target in quoted(uri, text[text.rfind("\n", 0, offset) + 1 : offset]):

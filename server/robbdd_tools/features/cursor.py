@@ -1,4 +1,4 @@
-"""What stands at a cursor: the chunk, the enclosing declarations, the half-typed word."""
+"""Context of a cursor: the chunk, the enclosing declarations, the partly typed word."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _WORD = re.compile(r"[\w\-.]*\Z")
 _QUOTED = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?")
 _VARIANT = re.compile(r"(?<![\w\-.<])Scenario\s+(?!Template\b)([^\W\d][\w\-]*)\s*\{")
 _BLOCK = re.compile(r"(?<![\w\-.<])(?:kgraph\s*\([^()]*\)|body)\s*([^\W\d][\w\-]*)\s*\{")
-"""What has names inside a kinematic tree or a scene instance."""
+"""Start of a block with names inside a kinematic tree or a scene instance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cursor:
     """A place in a file.
 
-    ``before`` is the text of the chunk up to the word at the cursor, in a story without the scenarios before its own,
-    ``word`` the part of it that is typed already and ``span`` its absolute place; ``scopes`` the paths of the
-    enclosing declarations, innermost first; ``quoted`` the opened comment or string, if the cursor is inside one.
+    ``before`` is the text of the chunk up to the word at the cursor, in a story without the preceding scenarios;
+    ``word`` is the typed part of the word and ``span`` its absolute place; ``scopes`` are the paths of the enclosing
+    declarations, innermost first; ``quoted`` is the open comment or string, if the cursor is inside one.
     """
 
     placed: PlacedDeclaration | None
@@ -38,22 +38,22 @@ class Cursor:
 
 
 def cursor_at(analysis: FileAnalysis, offset: int) -> Cursor:
-    """Describe the place ``offset`` (absolute) of a file."""
+    """Return the context of an absolute offset in a file."""
     placed = next((entry for entry in reversed(analysis.declarations) if entry.offset <= offset), None)
     text = _before(analysis, placed, offset)
     match = _WORD.search(text, text.rfind("\n") + 1)
-    # A point behind a reference stands before a word of its own.
+    # A dot after a reference starts a new word.
     word = match[0].lstrip(".") if match else ""
     before = text[: len(text) - len(word)]
     return Cursor(placed, before, word, Span(offset - len(word), offset), _scopes(placed, before), _quoted(text))
 
 
 def _before(analysis: FileAnalysis, placed: PlacedDeclaration | None, offset: int) -> str:
-    """Return the text of a declaration up to the cursor, of a story without the scenarios before the one at it."""
+    """Return the text of a declaration up to the cursor, of a story without the scenarios before the current one."""
     if placed is None:
         return analysis.document.text[:offset]
     parts = placed.parts
-    # Behind its end a story still has its last scenario.
+    # The text after a story's end still belongs to its last scenario.
     within = parts if len(parts) == 1 else parts[:-1]
     start = within[bisect_right(within, offset, key=lambda part: part.offset) - 1].offset
     head = parts[0].declaration.text if start > placed.offset else ""
@@ -65,14 +65,14 @@ def _scopes(placed: PlacedDeclaration | None, before: str) -> tuple[str, ...]:
     if not symbols:
         return ()
     scopes = (symbols[0].path,)
-    # Variants follow one another, whatever their braces are like.
+    # A variant ends where the next starts, even if braces are missing.
     for name in (*_VARIANT.findall(before)[-1:], *_open_blocks(before)):
         scopes = (f"{scopes[0]}.{name}", *scopes)
     return scopes
 
 
 def _open_blocks(before: str) -> Iterator[str]:
-    """Yield the names of the blocks that a text ends in, outermost first."""
+    """Yield the names of the blocks open at the end of a text, outermost first."""
     blocks = list(_BLOCK.finditer(before))
     code = _QUOTED.sub(lambda match: " " * len(match[0]), before) if blocks else ""
     for block in blocks:
@@ -85,7 +85,7 @@ def _open_blocks(before: str) -> Iterator[str]:
 
 
 def _quoted(text: str) -> str | None:
-    """Return the comment or string that is still open at the end of ``text``."""
+    """Return the comment or string that is open at the end of ``text``."""
     piece = next((match[0] for match in _QUOTED.finditer(text) if match.end() == len(text)), "")
     if not piece:
         return None

@@ -1,4 +1,4 @@
-"""What is known of a name, in Markdown: shown by hover, and beside a completion when it is resolved."""
+"""Descriptions of names in Markdown, for hover and for resolved completions."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from robbdd_tools.names.variant_places import PlacedVariant
 
 _ENDS = {"sequence": "fails", "selector": "succeeds"}
-"""Kind of a behaviour tree's composite → what its parts must do for it to be over."""
+"""Kind of a behaviour tree's composite → the result of a child that ends it."""
 MOST_LISTED = 8
-"""Members, results or places that are listed one by one."""
+"""Maximum number of listed members, results or places."""
 _QUOTED = {
     SymbolKind.COMPOSITION,
     SymbolKind.DISTRIBUTION,
@@ -56,7 +56,7 @@ _QUOTED = {
     SymbolKind.POLICY,
     SymbolKind.EXECUTION,
 }
-"""What is best described by its own text."""
+"""Kinds described by their source text."""
 _COMPLETE = {
     SymbolKind.FLUENT,
     SymbolKind.BEHAVIOUR,
@@ -70,11 +70,11 @@ _COMPLETE = {
     SymbolKind.SENSOR,
     SymbolKind.EXECUTION,
 }
-"""What does its work without being used by anything."""
+"""Kinds that need no use."""
 
 
 def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NOTHING) -> str:
-    """Describe a name: kind, type, what its author wrote above it, IRI, contents, sentence, results, uses."""
+    """Describe a name: kind, type, comment above it, IRI, contents, sentence, results, uses."""
     site = site_of(snapshot, definition)
     parts = [_title(snapshot, definition), *_comment(site, definition)]
     if site is not None:
@@ -87,14 +87,14 @@ def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NO
 
 
 def describe_path(snapshot: Snapshot, uri: str, path: str) -> str | None:
-    """Describe a qualified name that a file of the project declares."""
+    """Describe a qualified name declared in a file of the project."""
     analysis = snapshot.file(uri)
     definition = None if analysis is None else analysis.definitions.get(path)
     return None if definition is None else describe(snapshot, definition)
 
 
 def describe_import(snapshot: Snapshot, uri: str) -> str:
-    """Describe a file that is imported: what it declares."""
+    """Describe an imported file by its declarations."""
     file = snapshot.file(uri)
     first = (
         [placed.declaration.symbols[0] for placed in file.declarations if placed.declaration.symbols] if file else []
@@ -104,7 +104,7 @@ def describe_import(snapshot: Snapshot, uri: str) -> str:
 
 
 def describe_words(words: str) -> str | None:
-    """Describe the words of the catalog whose phrases have some keywords in them."""
+    """Describe the catalog words whose phrases contain some keywords."""
     catalog = load_catalog()
     known = (*catalog.predicates.values(), *catalog.behaviours.values())
     found = [word_meaning(word) for word in known if f" {words} " in f" {word.phrase} "]
@@ -131,7 +131,7 @@ def _title(snapshot: Snapshot, definition: Definition) -> str:
 
 
 def _comment(site: Site | None, definition: Definition) -> Iterator[str]:
-    """Yield the comment that stands directly above a declaration."""
+    """Yield the comment directly above a declaration."""
     if site is None:
         return
     document = site.file.document
@@ -194,7 +194,7 @@ def _clause(site: Site, definition: Definition) -> Iterator[str]:
 
 
 def _tree_node(site: Site, definition: Definition) -> Iterator[str]:
-    """Yield what a node of a behaviour tree does, and the behaviours that are linked to it."""
+    """Yield the action of a behaviour tree's node, and its linked behaviours."""
     for node in walk(site.tree) if site.tree is not None else ():
         if isinstance(node, tree.TreeComposite) and site.span(node.name) == definition.span:
             parts = ", ".join(f"`{part.name.text}`" for part in node.nodes)
@@ -239,7 +239,7 @@ def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> 
 
 def result_words(hint: ResultHint) -> str:
     """Return the last results of a clause as a list in Markdown."""
-    age = "Last results, of the text before it was edited" if hint.stale else "Last results"
+    age = "Last results, before the text was edited" if hint.stale else "Last results"
     lines = [f"- {literal(line)}" for line in hint.lines[:MOST_LISTED]]
     vacuous = [f"- it proves little: {literal(hint.vacuous)}"] if hint.vacuous else []
     substituted = [f"- {literal(words)}" for words in hint.substitutions]
@@ -247,7 +247,7 @@ def result_words(hint: ResultHint) -> str:
 
 
 def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Iterator[str]:
-    """Yield how often a variant passed, and in which scenarios it did not."""
+    """Yield the pass rate of a variant, and the scenarios that did not pass."""
     rate = pass_rate(snapshot, variant, findings)
     if rate is None:
         return

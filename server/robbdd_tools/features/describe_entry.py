@@ -1,4 +1,4 @@
-"""What a proposal of completion means, in Markdown: of every kind of entry, loaded or not."""
+"""Descriptions of completion proposals in Markdown: every kind of entry, loaded or not."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _file(snapshot: Snapshot, uri: str) -> str:
 
 
 def _with(snapshot: Snapshot, uri: str) -> Snapshot:
-    """Return a snapshot that has a file: this one or, for a moment, one of that file alone."""
+    """Return a snapshot that contains a file: this one, or a temporary one of that file."""
     if uri in snapshot.sources:
         return snapshot
     project = Project()

@@ -1,4 +1,4 @@
-"""All findings about a file: the fast ones of every keystroke, and the slow ones of the shapes."""
+"""All diagnostics of a file: fast ones on every keystroke, and slow ones from the shapes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def fast_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-    """Return syntax, name and rule findings of one file; one finding at its start when it has no text."""
+    """Return syntax, name and rule diagnostics of one file; a single one at its start if it is unreadable."""
     unreadable = snapshot.unreadable(uri)
     if unreadable is not None:
         return [Diagnostic(uri, Span(0, 0), Severity.ERROR, unreadable.code, unreadable.reason)]
@@ -35,11 +35,11 @@ def shape_diagnostics(
     validation: Validation | None = None,
     is_superseded: Callable[[], bool] = lambda: False,
 ) -> list[Diagnostic]:
-    """Return the SHACL findings on the graph of a file merged with its imports, each in the file it belongs to.
+    """Return the SHACL diagnostics of the graph of a file merged with its imports, each in its own file.
 
-    What the fast rules report at the same place is left out. ``shapes`` come on top of the project's. A
-    ``validation`` that knows an earlier revision looks only at what has changed since, and raises ``Superseded`` when
-    it is no longer wanted.
+    Those that a fast rule reports at the same place are left out. ``shapes`` are added to the project's. A
+    ``validation`` that knows an earlier revision checks only the changes since, and raises ``Superseded`` when it is
+    outdated.
     """
     from robbdd_tools.graph.shapes.project_shapes import project_shapes
     from robbdd_tools.graph.shapes.validate import validate
@@ -58,7 +58,7 @@ def shape_diagnostics(
 
 
 def all_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-    """Return every finding about a file and about what it imports, in the order of files and places."""
+    """Return every diagnostic of a file and its imports, sorted by file and place."""
     found = dict.fromkeys(fast_diagnostics(snapshot, uri))
     if snapshot.file(uri) is not None:
         for analysis in snapshot.closure(uri)[1:]:

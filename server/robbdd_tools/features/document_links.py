@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DocumentLink:
-    """A path in a text (absolute span, without quotes) and the document that it leads to."""
+    """A path in a text (absolute span, without quotes) and the linked document."""
 
     span: Span
     target: str
 
 
 def document_links(snapshot: Snapshot, uri: str) -> list[DocumentLink]:
-    """Return the links of a file that lead somewhere, in the order of the text."""
+    """Return the links of a file with existing targets, in text order."""
     file = snapshot.file(uri)
     if file is None:
         return []
@@ -52,5 +52,5 @@ def _file(folder: Path, path: str) -> Path | None:
         found = folder / Path(path).expanduser()
         return found if found.is_file() else None
     except (OSError, RuntimeError, ValueError):
-        # A home folder that nobody has, a name that no file can have.
+        # The home folder of an unknown user, or an invalid file name.
         return None

@@ -1,4 +1,4 @@
-"""The executions of a ``.bddx``, read from its text, as a tree of tests shows them."""
+"""The executions of a ``.bddx``, read from its text, for test trees."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 _HOW = (".bddx", ".scenex", ".ktree")
-"""Endings of files that say how something is executed, not what is asked of it."""
+"""Extensions of files that define how to execute, not what to test."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedExecution:
-    """An execution as it is declared, its tree, the declaration around it, and the variant that it executes."""
+    """An execution: its definition, its tree, its declaration, and the executed variant."""
 
     definition: Definition
     iri: str
@@ -30,7 +30,7 @@ class PlacedExecution:
 
 
 def executions_of(snapshot: Snapshot, uri: str) -> Iterator[PlacedExecution]:
-    """Yield the executions of a file that have an IRI and a known variant, in the order of the text."""
+    """Yield the executions of a file that have an IRI and a known variant, in text order."""
     file = snapshot.file(uri)
     variants: dict[str, dict[str, PlacedVariant]] = {}
     for placed in file.declarations if file is not None else ():
@@ -49,7 +49,7 @@ def executions_of(snapshot: Snapshot, uri: str) -> Iterator[PlacedExecution]:
 
 
 def what_matters(execution: PlacedExecution) -> list[Site]:
-    """Return its declaration and those that it leads to in files of its kind, directly or over others, in order."""
+    """Return its declaration and those that it depends on in files of these kinds, directly or indirectly, in order."""
     site = execution.site
     found = {(site.uri, site.placed.offset): site}
     fresh = [site]

@@ -1,4 +1,4 @@
-"""Fixes for names that lead nowhere or to the wrong kind of thing, added to the findings of name resolution."""
+"""Fixes for unresolved names and names of the wrong kind, added to the diagnostics of name resolution."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ _SETS = (SymbolKind.OBJECT_SET, SymbolKind.WORKSPACE_SET, SymbolKind.AGENT_SET)
 
 
 def with_fixes(snapshot: Snapshot, file: FileAnalysis, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield the findings of name resolution with the fixes that the loaded files allow."""
+    """Yield the diagnostics of name resolution with the fixes that the loaded files allow."""
     for diagnostic in found:
         if diagnostic.code not in ("unknown-name", "wrong-kind"):
             yield diagnostic
             continue
         used = reference_at(file, diagnostic.span)
         fixes = () if used is None else _fixes(snapshot, file, *used, diagnostic.code)
-        # Another keyword is surer than another name, a like name surer than a new declaration.
+        # Another keyword is more likely than another name, a similar name more likely than a new declaration.
         every = (*fixes, *diagnostic.fixes) if diagnostic.code == "wrong-kind" else (*diagnostic.fixes, *fixes)
         yield replace(diagnostic, fixes=every)
 
@@ -57,7 +57,7 @@ def _fixes(
 
 
 def reference_at(file: FileAnalysis, span: Span) -> tuple[PlacedDeclaration, Reference] | None:
-    """Return the reference that stands at a place."""
+    """Return the reference at a span."""
     for placed in file.declarations:
         if placed.span.contains(span.start):
             for reference in placed.declaration.references:
@@ -67,7 +67,7 @@ def reference_at(file: FileAnalysis, span: Span) -> tuple[PlacedDeclaration, Ref
 
 
 def imports_of(file: FileAnalysis, reference: Reference, others: Iterable[Importable]) -> Iterator[Fix]:
-    """Yield an import of each file that declares a name as it is used."""
+    """Yield an import of each file that declares a name of the right kind."""
     kinds = ROLE_KINDS[reference.ref.role]
     for other in others:
         if any(kind in kinds for kind in other.names.get(reference.ref.path, ())):
@@ -77,7 +77,7 @@ def imports_of(file: FileAnalysis, reference: Reference, others: Iterable[Import
 def _declarations(
     snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, reference: Reference
 ) -> Iterator[Fix]:
-    """Yield the declaration of an event, task or variable that is missing."""
+    """Yield the declaration of a missing event, task or variable."""
     role, path = reference.ref.role, reference.ref.path
     namespace = placed.declaration.symbols[0].namespace if placed.declaration.symbols else None
     argument = "" if namespace == FILE_NAMESPACE else f"(ns={namespace}) "
@@ -94,7 +94,7 @@ def _declarations(
 def _template(
     snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, owner: str
 ) -> tuple[Site, tree.Template] | None:
-    """Return the template that a qualified variable belongs to; without a qualifier the one around it."""
+    """Return the template of a qualified variable; without a qualifier, the enclosing one."""
     for entry in file.declarations if owner else (placed,):
         root = entry.declaration.tree
         if isinstance(root, tree.Template) and owner in ("", root.name.text):
@@ -119,7 +119,7 @@ def _variable(site: Site, template: tree.Template, name: str, words: str) -> Ite
 def _other_role(
     snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, reference: Reference
 ) -> Iterator[Fix]:
-    """Yield the keyword that fits what a link names: ``ws set <places>`` instead of ``obj set <places>``."""
+    """Yield the keyword that matches a link's target: ``ws set <places>`` instead of ``obj set <places>``."""
     root = placed.declaration.tree
     nodes = walk(root) if root is not None else ()
     link = next((node for node in nodes if isinstance(node, tree.Link) and node.reference == reference.ref), None)

@@ -1,4 +1,4 @@
-"""Fixes of findings about other files: imports and models that are not there, imports in a circle."""
+"""Fixes of diagnostics about other files: missing imports and models, cyclic imports."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 LEAST_ALIKE = 0.6
-"""Share of common letters from which a file's name is a suggestion."""
+"""Minimum similarity of a suggested file name."""
 _EMPTY_MODELS: Mapping[str, str] = {
     "mjcf": '<mujoco model="{name}">\n  <worldbody/>\n</mujoco>\n',
     "urdf": '<robot name="{name}">\n  <link name="base"/>\n</robot>\n',
@@ -33,7 +33,7 @@ _EMPTY_MODELS: Mapping[str, str] = {
 
 
 def import_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield the paths that an import may mean and the file that it lacks, or its removal where nothing can be meant."""
+    """Yield similar paths for an import and the creation of the missing file, or its removal if nothing is similar."""
     link = _link(file, diagnostic.span)
     if link is None:
         return
@@ -52,7 +52,7 @@ def import_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic)
 
 
 def model_file_fixes(_: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield the files that a model may be in, and an empty model where it should be."""
+    """Yield similar paths for a model, and an empty model at the missing path."""
     uri, own = file.document.uri, uri_to_path(file.document.uri)
     model = _model(file, diagnostic.span)
     if model is None or own is None or not isinstance(model.source, tree.SystemPath):
@@ -68,12 +68,12 @@ def model_file_fixes(_: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) ->
 
 
 def cycle_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield the imports of a circle that nobody needs: this one, or those by which other files lead back here."""
+    """Yield the removal of needless imports in a cycle: this one, or those by which other files lead back here."""
     link = _link(file, diagnostic.span)
     if link is None:
         return
     if _is_needless(snapshot, file.document.uri, link.uri):
-        yield from import_removal(file, link, "Remove this import, which nothing needs")
+        yield from import_removal(file, link, "Remove this import, which is not needed")
     own = file.document.uri
     for other in snapshot.closure(link.uri):
         for back in other.imports:
@@ -84,7 +84,7 @@ def cycle_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) 
 
 
 def _is_needless(snapshot: Snapshot, importer: str, imported: str) -> bool:
-    """Tell whether all that is used in a file and in those that import it is reached without one import too."""
+    """Return whether a file and its importers still reach all that they use without an import."""
     edges = {
         uri: [link.uri for link in source.imports if (uri, link.uri) != (importer, imported)]
         for uri, source in snapshot.sources.items()
@@ -104,7 +104,7 @@ def _link(file: FileAnalysis, span: Span) -> ImportLink | None:
 
 
 def _model(file: FileAnalysis, span: Span) -> tree.Model | None:
-    """Return the model whose file's path stands at a place."""
+    """Return the model with its file's path at a span."""
     for placed in file.declarations:
         root = placed.declaration.tree
         nodes = walk(root) if root is not None and placed.span.contains(span.start) else ()
@@ -117,7 +117,7 @@ def _model(file: FileAnalysis, span: Span) -> tree.Model | None:
 
 
 def _alike(written: str, uri: str, files: Iterable[str]) -> Iterator[str]:
-    """Yield the paths, as one file writes them, of those files whose names are like what is written."""
+    """Yield the paths, relative to a file, of files with names similar to the written one."""
     paths = sorted(path for found in files if (path := import_path(uri, found)) is not None)
     stems = list(dict.fromkeys(map(_stem, paths)))
     for stem in get_close_matches(_stem(written), stems, n=MOST_OFFERED, cutoff=LEAST_ALIKE):
@@ -125,7 +125,7 @@ def _alike(written: str, uri: str, files: Iterable[str]) -> Iterator[str]:
 
 
 def _stem(path: str) -> str:
-    """Return the name of a file without its folder and ending."""
+    """Return the name of a file without folder and extension."""
     return _name(path).partition(".")[0]
 
 

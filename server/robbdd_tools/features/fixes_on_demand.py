@@ -1,4 +1,4 @@
-"""Fixes that are looked for only when somebody asks: they need the disk, or a look through all names and uses."""
+"""Fixes computed only on request: they need the disk, or a search of all names and uses."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Finder = Callable[["Snapshot", "FileAnalysis", Diagnostic], Iterator[Fix]]
 def fixes_on_demand(
     snapshot: Snapshot, uri: str, diagnostic: Diagnostic, elsewhere: Elsewhere | None = None
 ) -> tuple[Fix, ...]:
-    """Return the fixes of a finding that it does not bring with it; all files that import its own must be there."""
+    """Return the fixes of a diagnostic that it does not contain; all importers of its file must be loaded."""
     file, find = snapshot.file(uri), _FINDERS.get(diagnostic.code)
     if file is not None and diagnostic.code == "unknown-name":
         return tuple(_imports(snapshot, file, diagnostic, elsewhere))
@@ -46,7 +46,7 @@ def fixes_on_demand(
 def _imports(
     snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic, elsewhere: Elsewhere | None
 ) -> Iterator[Fix]:
-    """Yield imports of files that nobody has loaded yet and that declare an unknown name."""
+    """Yield imports of unloaded files that declare an unknown name."""
     used, uri = reference_at(file, diagnostic.span), file.document.uri
     if used is not None:
         yield from imports_of(file, used[1], beside(snapshot, uri))
@@ -54,7 +54,7 @@ def _imports(
 
 
 def _another_name(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield another name for what has the IRI of something else, wherever it is used."""
+    """Yield a new name for a declaration with a duplicate IRI, at all its uses."""
     span = diagnostic.span
     tables = (source.names.entries for source in snapshot.sources.values() if isinstance(source, FileIndex))
     name = free_name(file.document.text[span.start : span.end], (path for table in tables for path in table))
@@ -65,7 +65,7 @@ def _another_name(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic
 
 
 def _another_end(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield events that a duration may end with, those first that are declared behind the one it begins with."""
+    """Yield events that a duration may end with, first those declared after its start event."""
     site = _site(snapshot, file, diagnostic)
     for clauses in clauses_of(site.placed.declaration) if site is not None else ():
         for during in clauses.durations:
@@ -81,7 +81,7 @@ def _another_end(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic)
 
 
 def _visible(snapshot: Snapshot, file: FileAnalysis, role: str) -> list[str]:
-    """Return the names of a role in the order of the files and of their texts."""
+    """Return the names of a role in the order of files and text."""
     scope = snapshot.scope(file.document.uri)
     found = scope.visible(ROLE_KINDS[role], ())
     order = {index.document.uri: number for number, index in enumerate(scope.files)}
@@ -89,7 +89,7 @@ def _visible(snapshot: Snapshot, file: FileAnalysis, role: str) -> list[str]:
 
 
 def _another_set(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield the sets that a quantified variable may run over instead."""
+    """Yield other sets for a quantified variable."""
     site = _site(snapshot, file, diagnostic)
     for clauses in clauses_of(site.placed.declaration) if site is not None else ():
         for use in clauses.uses:
@@ -105,7 +105,7 @@ def _another_set(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic)
 
 
 def _has_only(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> bool:
-    """Tell whether a set has elements and these are of some kinds; a variable's type may still be open."""
+    """Return whether a set has elements and these are of some kinds; a variable's type may be unknown."""
     if definition.kind is SymbolKind.SET_VARIABLE:
         return bool(variable_type(snapshot, definition).kinds & kinds)
     elements = elements_of(site_of(snapshot, definition))
@@ -113,7 +113,7 @@ def _has_only(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> bool:
 
 
 def _without_values(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield the removal of a variable together with the values that the scenarios of its file give it."""
+    """Yield the removal of a variable together with its values in the scenarios of its file."""
     found = next((one for one in file.definitions.values() if one.span == diagnostic.span), None)
     if found is None or diagnostic.fixes or found.symbol.path.count(".") != 1:
         return
@@ -132,7 +132,7 @@ def _without_values(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnost
 
 
 def _column_removed(scenario: Scenario, number: int) -> tuple[Edit, ...]:
-    """Return the edits that remove a line or a column of a variation; none where it is the only one."""
+    """Return the edits that remove a line or a column of a variation; none if it is the only one."""
     variation = scenario.variant.variation
     if isinstance(variation, tree.Table):
         return column_removed(scenario.site, variation, number)

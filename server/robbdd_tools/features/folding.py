@@ -1,4 +1,4 @@
-"""Folding: brackets over several lines, runs of comments and runs of imports."""
+"""Folding: multi-line brackets, runs of comments and runs of imports."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Fold:
 
 
 def folds(snapshot: Snapshot, uri: str) -> list[Fold]:
-    """Return what can be folded in a file, in the order of the text."""
+    """Return the folds of a file, in text order."""
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
@@ -56,7 +56,7 @@ def _brackets(file: FileAnalysis) -> Iterator[Fold]:
 
 @dataclass(frozen=True, slots=True)
 class _Brackets:
-    """The lines of the brackets in a piece of text, counted from its first: pairs, and those without a partner."""
+    """The lines of the brackets in a text, counted from its first line: pairs, and unmatched ones."""
 
     pairs: tuple[tuple[int, int], ...]
     closed: tuple[int, ...]

@@ -1,4 +1,4 @@
-"""Layout of a part of a text, and of the lines that were just typed."""
+"""Formatting of a range, and of lines while typing."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ENDING = re.compile(r"\r\n|\r|\n")
 
 
 def format_range(document: Document, within: Span) -> list[Edit]:
-    """Return the edits that lay out the lines of a part of a text as the whole would be laid out."""
+    """Return the edits that format the lines of a range as in the whole formatted text."""
     first, last = document.position(within.start).line, document.position(within.end).line
     if last > first and document.position(within.end).column == 0:
         last -= 1
@@ -27,7 +27,7 @@ def format_range(document: Document, within: Span) -> list[Edit]:
 
 
 def format_on_type(document: Document, offset: int, typed: str) -> list[Edit]:
-    """Return the edits behind a typed character: ``}`` and ``|`` lay out their lines, a new line is indented."""
+    """Return the edits after a typed character: ``}`` and ``|`` format their lines, a new line is indented."""
     line = document.position(offset).line
     if typed != "\n":
         first = line
@@ -46,7 +46,7 @@ def format_on_type(document: Document, offset: int, typed: str) -> list[Edit]:
 
 
 def _changes(document: Document, first: int, last: int) -> Iterator[Edit]:
-    """Yield the differences to the whole text laid out that lie within some lines; lines keep their own endings."""
+    """Yield the differences to the formatted text within some lines; lines keep their own endings."""
     end = 0
     for line in laid_out(document.text):
         yield from _without(document, max(end, first), min(line.first, last + 1))
@@ -59,7 +59,7 @@ def _changes(document: Document, first: int, last: int) -> Iterator[Edit]:
 
 
 def _without(document: Document, first: int, end: int) -> Iterator[Edit]:
-    """Yield the edit that leaves out some lines."""
+    """Yield the edit that removes some lines."""
     span = Span(_start(document, first), _start(document, end))
     if span.start < span.end:
         yield Edit(document.uri, span, "")

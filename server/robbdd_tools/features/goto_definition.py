@@ -1,4 +1,4 @@
-"""Go to definition: from a reference or an import to the place that declares it."""
+"""Go to definition: from a reference or an import to its declaration."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def symbol_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definition] | None:
-    """Return the name under a cursor (absolute span) with its definition, where it is used or declared.
+    """Return the name under a cursor (absolute span) with its definition, whether used or declared there.
 
     Of a qualified name it is the part under the cursor.
     """
@@ -36,7 +36,7 @@ def symbol_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definiti
 
 
 def definition(snapshot: Snapshot, uri: str, offset: int) -> tuple[str, Span] | None:
-    """Return the document and absolute span that a cursor's name or import leads to."""
+    """Return the document and absolute span of the definition of a cursor's name or import."""
     analysis = snapshot.file(uri)
     if analysis is None:
         return None
@@ -48,7 +48,7 @@ def definition(snapshot: Snapshot, uri: str, offset: int) -> tuple[str, Span] | 
 
 
 def _in_broken_text(snapshot: Snapshot, analysis: FileAnalysis, offset: int) -> tuple[Span, Definition] | None:
-    """Look a name up by its text: in a broken declaration, or where what it is a part of leads nowhere."""
+    """Look a name up by its text: in a broken declaration, or if a part of it is unresolved."""
     cursor = cursor_at(analysis, offset)
     if cursor.quoted is not None or cursor.placed is None:
         return None

@@ -1,4 +1,4 @@
-"""The picture of a model's graph for reading beside its text, with the way from each node to its text and back."""
+"""The picture of a model's graph, with links between nodes and text."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 MOST_DRAWN = 600
-"""Nodes in one picture; more are neither readable nor moved about smoothly."""
+"""Maximum number of nodes in one picture; more are unreadable and slow."""
 
 
 @dataclass(frozen=True, slots=True)
 class GraphPicture:
-    """An SVG whose nodes carry ``data-iri``, and what it shows.
+    """An SVG whose nodes carry ``data-iri``, and its nodes' places.
 
-    ``places`` are the texts that belong to a node: its declaration, and every reference to it. ``total`` counts the
-    nodes of the whole graph; ``root`` is what the shown ones follow from when that is not all.
+    ``places`` are the source ranges of a node: its declaration, and every reference to it. ``total`` counts the nodes
+    of the whole graph; ``root`` is the node whose dependencies are drawn if that is not all.
     """
 
     svg: str
@@ -37,7 +37,8 @@ def graph_picture(
 ) -> GraphPicture:
     """Draw the graph of a file without errors.
 
-    Of a graph of more than ``most`` nodes the story around ``offset`` is drawn, else the one with the node ``before``.
+    Of a graph with more than ``most`` nodes, the story around ``offset`` is drawn, otherwise the one with the node
+    ``before``.
     """
     from robbdd_tools.graph.ask.excerpt import limited
     from robbdd_tools.graph.ask.structure import structure_of
@@ -69,7 +70,7 @@ def _places(snapshot: Snapshot, uri: str) -> Iterator[tuple[str, Location]]:
 
 
 def _around(places: Sequence[tuple[str, Location]], uri: str, offset: int | None) -> list[str]:
-    """Return the nodes whose text is around a place, innermost first."""
+    """Return the nodes whose text contains a place, innermost first."""
     if offset is None:
         return []
     found = [

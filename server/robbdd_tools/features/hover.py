@@ -1,4 +1,4 @@
-"""Hover: what stands under the cursor: a name, a phrase of the catalog, a time constraint, an import."""
+"""Hover on a name, a phrase of the catalog, a time constraint or an import."""
 
 from __future__ import annotations
 
@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 class Hover:
     """Markdown about the text in ``span`` (absolute).
 
-    ``judged`` is the result that it speaks of, if any: of a clause the worst one, of a scenario that of its worst
-    clause.
+    ``judged`` is the result shown, if any: of a clause the worst one, of a scenario that of its worst clause.
     """
 
     markdown: str
@@ -35,7 +34,7 @@ class Hover:
 
 
 def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHING) -> Hover | None:
-    """Describe the name or import under a cursor, else the phrase or time constraint around it.
+    """Describe the name or import under a cursor, otherwise the enclosing phrase or time constraint.
 
     ``findings`` are the last results of clauses.
     """

@@ -1,4 +1,4 @@
-"""From what is stated to what carries it out: a template to its variants, a clause to its policy or evaluator."""
+"""Go to implementation: from a template to its variants, from a clause to its policy or evaluator."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _FILE_START = Span(0, 0)
 
 
 def implementation(snapshot: Snapshot, uri: str, offset: int) -> list[Place]:
-    """Return the places that carry out what stands under a cursor; a word of the catalog leads to its Python file."""
+    """Return the implementations of the name under a cursor; a word of the catalog leads to its Python file."""
     found = symbol_at(snapshot, uri, offset)
     if found is None:
         return [place for phrase in _phrases_at(snapshot, uri, offset) for place in _python(phrase)]
@@ -59,7 +59,7 @@ def _declaring(
     kind: type[tree.Template | tree.SceneInstance | tree.Execution | tree.Policy | tree.TreeInstance],
     role: str,
 ) -> Iterator[Place]:
-    """Yield the declarations of a kind that refer to a definition in some role."""
+    """Yield the declarations of a kind that refer to a definition with some role."""
     for uri in (definition.uri, *snapshot.importers(definition.uri)):
         file = snapshot.file(uri)
         for placed in file.declarations if file is not None else ():
@@ -73,7 +73,7 @@ def _declaring(
 
 
 def _implementations(snapshot: Snapshot, behaviour: Definition) -> Iterator[Place]:
-    """Yield what executions give for the behaviour of the template that they run."""
+    """Yield the implementations of a behaviour in the executions of its template."""
     file = snapshot.file(behaviour.uri)
     template = None if file is None else file.definitions.get(behaviour.symbol.path.partition(".")[0])
     variants = list(variants_of(snapshot, template)) if template is not None else []
@@ -108,12 +108,12 @@ def _phrases_at(snapshot: Snapshot, uri: str, offset: int) -> Iterator[tree.Phra
 
 
 def _python(phrase: tree.PhraseUse) -> Iterator[Place]:
-    """Yield the file that a word of the catalog is written in: the loaded module that holds it."""
+    """Yield the source file of a catalog word: the loaded module that contains it."""
     load_catalog()
     word = word_of(phrase)
     for _, module in sorted(sys.modules.items()):
         path = getattr(module, "__file__", None)
-        # A package may hand on what its modules hold; the file of the word itself has the longer name.
+        # A package may re-export the contents of its modules; the word's own file has the longer name.
         if path and any(value is word for value in vars(module).values()) and not path.endswith("__init__.py"):
             yield path_to_uri(Path(path)), _FILE_START
             return

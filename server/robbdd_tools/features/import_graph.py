@@ -1,4 +1,4 @@
-"""Which model files on disk import which, found without parsing them."""
+"""Import graph of the model files on disk, found without parsing them."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from robbdd_tools.base.files import FileState, file_state, read_text
 from robbdd_tools.features.workspace_files import MOST_FILES
 from robbdd_tools.names.imports import import_uri, reached
 
-# Finds too much (in comments), never too little: what matters is read properly afterwards.
+# May match too much (in comments), never too little: candidates are parsed later.
 _IMPORT = re.compile(r"\bimport\s*([\"'])(.*?)\1")
 
 
 @dataclass(frozen=True, slots=True)
 class ImportGraph:
-    """Which files import a file directly, as their texts on disk say, by its URI."""
+    """The direct importers of each file on disk, by URI."""
 
     users: Mapping[str, frozenset[str]]
 
     @classmethod
     def of(cls, files: Iterable[str]) -> ImportGraph:
-        """Look at some files; what was read is kept until it changes on disk."""
+        """Read some files; results are cached until a file changes on disk."""
         users: dict[str, set[str]] = {}
         for uri in files:
             checkpoint()
@@ -33,12 +33,12 @@ class ImportGraph:
         return cls({uri: frozenset(found) for uri, found in users.items()})
 
     def importers(self, uri: str) -> frozenset[str]:
-        """Return the files that import a file, directly or not."""
+        """Return the files that import a file, directly or indirectly."""
         return reached(self.users, uri)
 
 
 def imported_on_disk(uris: Iterable[str]) -> frozenset[str]:
-    """Return all that some files on disk import, directly or not, and these files themselves."""
+    """Return the files that some files on disk import, directly or indirectly, and these files themselves."""
     found = set(uris)
     waiting = list(found)
     while waiting:
@@ -50,7 +50,7 @@ def imported_on_disk(uris: Iterable[str]) -> frozenset[str]:
 
 
 def imports_on_disk(uri: str) -> frozenset[str]:
-    """Return the URIs that the import lines of a file on disk mean; none of one that cannot be read."""
+    """Return the URIs of the import lines of a file on disk; empty if it cannot be read."""
     state = file_state(uri)
     return frozenset() if state is None else _imports_of(state)
 

@@ -1,6 +1,6 @@
-"""Canonical layout: indentation, spacing, aligned tables. Lines stay where their author broke them.
+"""Canonical layout: indentation, spacing, aligned tables. Line breaks stay.
 
-Works on tokens, not on trees, so that comments keep their place and broken text is laid out as far as it goes.
+It works on tokens, not on trees, so comments keep their place and broken text is formatted as far as possible.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ _NAMESPACE = re.compile(r"\(\s*ns\s*=\s*([^\W\d][\w\-]*)\s*\)")
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One line of tokens as it will be written, its comment apart; a row of a table has its cells apart too.
+    """One formatted line of tokens, with its comment and the cells of a table row separate.
 
-    It comes from the lines ``first`` up to ``end`` (without it) of the text.
+    It comes from the source lines ``first`` up to ``end`` (excluded).
     """
 
     text: str
@@ -46,7 +46,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class LaidOut:
-    """A line as it is written in canonical layout, for the lines ``first`` up to ``end`` (without it) of the text."""
+    """A line in canonical layout, for the source lines ``first`` up to ``end`` (excluded)."""
 
     text: str
     first: int
@@ -55,12 +55,12 @@ class LaidOut:
 
 @dataclass(slots=True)
 class _Levels:
-    """The open brackets; each knows whether a label stands above the lines inside it."""
+    """The open brackets, each with whether a label indents the lines inside it."""
 
     labelled: list[bool] = field(default_factory=lambda: [False])
 
     def indentation(self, text: str) -> str:
-        """Return what stands before a line: a closing bracket stands under the line that opened it."""
+        """Return the indentation of a line: a closing bracket aligns with the line that opened it."""
         closing = len(text) - len(text.lstrip("})"))
         inner = self.labelled[: max(1, len(self.labelled) - closing)]
         depth = len(inner) - 1 + sum(inner)
@@ -71,7 +71,7 @@ class _Levels:
         return INDENT * depth
 
     def pass_over(self, text: str) -> None:
-        """Take in the brackets and the label of a line."""
+        """Update the brackets and the label with a line."""
         label = _LABEL.match(text)
         if label:
             self.labelled[-1] = not text[label.end() :].strip()
@@ -83,12 +83,12 @@ class _Levels:
 
 
 def lay_out(text: str) -> str:
-    """Return a text in canonical layout; laying out twice changes nothing more."""
+    """Return a text in canonical layout; the operation is idempotent."""
     return "".join(f"{line.text}\n" for line in laid_out(text))
 
 
 def laid_out(text: str) -> Iterator[LaidOut]:
-    """Yield the lines of a text in canonical layout; of several blank lines the first stays, at the ends none."""
+    """Yield the lines of a text in canonical layout; blank lines are merged, and removed at both ends."""
     begun = False
     blank: LaidOut | None = None
     for line in _indented(text):
@@ -132,7 +132,7 @@ def _lines(text: str) -> Iterator[Line]:
         if pieces and gap:
             pieces.append(" ")
         if match["comment"] is not None and not gap and pieces[-1:] == [":"]:
-            # The end of an IRI, which a quote that is missing further up has put outside its string.
+            # The end of an IRI that a missing quote further up has put outside of its string.
             pieces.append(match["comment"].rstrip())
         elif match["comment"] is not None:
             comment = match["comment"].rstrip()
@@ -159,7 +159,7 @@ def _line(pieces: list[str], comment: str, first: int, end: int) -> Line:
 
 
 def _rows(lines: Iterator[Line]) -> Iterator[Line]:
-    """Put the lines of a broken table row together, unless a comment stands between them."""
+    """Join the lines of a broken table row, unless a comment is between them."""
     row: Line | None = None
     for line in lines:
         if row is not None and not row.comment and line.text.endswith("|") and not line.text.startswith("|"):

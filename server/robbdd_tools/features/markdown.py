@@ -1,4 +1,4 @@
-"""Text of users in Markdown: shown as it is written."""
+"""Render users' text literally in Markdown."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import textwrap
 
 _CODE_OR_TAG = re.compile(r"(?<!`)`[^`\n]+`(?!`)|<[\w!?/][^<>`\n]*>")
 _WEB_LINK = re.compile(r"<https?://[^\s<>`]*>")
-"""A link that shows where it leads, and that nothing follows by itself."""
+"""A link whose text is its address; clients do not follow it by themselves."""
 _MARKUP = re.compile(r"[\\`*\[\]<>&~|]|!(?=\[)|^\s*[#=+-](?=\s|[=-])", re.MULTILINE)
-"""What begins a link, a picture, HTML, an entity, emphasis, a table, a fence, a heading or a list."""
+"""Start of a link, a picture, HTML, an entity, emphasis, a table, a fence, a heading or a list."""
 MOST_LINES = 10
-"""Lines of a text that are shown."""
+"""Maximum number of lines shown."""
 
 
 def literal(text: str) -> str:
-    """Return a text that is shown as it is written, so that nothing in it loads a picture, is HTML or hides a link.
+    """Return Markdown that renders as the literal text: no pictures, no HTML, no hidden links.
 
-    Its ``<names>`` become code, of which clients show every sign; what its author wrote in backticks stays code, and
-    ``<https://…>`` a link.
+    ``<names>`` become code, so that clients show every character; text in backticks stays code, and ``<https://…>``
+    stays a link.
     """
     pieces: list[str] = []
     end = 0
@@ -30,7 +30,7 @@ def literal(text: str) -> str:
 
 
 def code(text: str) -> str:
-    """Return a text as code within a line, whatever backticks and line ends it has."""
+    """Return a text as inline code, whatever backticks and line ends it contains."""
     line = " ".join(text.splitlines())
     marks = "`" * _longer_than_runs(line, 1)
     space = " " if "`" in line else ""
@@ -42,12 +42,12 @@ def _escaped(text: str) -> str:
 
 
 def _longer_than_runs(text: str, least: int) -> int:
-    """Return a number of backticks that ends no code with this text in it."""
+    """Return a number of backticks greater than any run of them in the text."""
     return max((least, *(len(run) + 1 for run in re.findall("`+", text))))
 
 
 def code_block(text: str, language: str) -> str:
-    """Return the first lines of a text in a file of some kind (``bdd``, ``scenex`` …), without common indentation."""
+    """Return the first lines of a text as a code block of a language (``bdd``, ``scenex`` …), dedented."""
     first, *rest = text.rstrip().splitlines()
     lines = [first, *textwrap.dedent("\n".join(rest)).splitlines()] if rest else [first]
     shown = lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "…"]

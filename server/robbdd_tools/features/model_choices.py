@@ -1,4 +1,4 @@
-"""Fixes of ``no-model``: the entry of a ``.scenex`` that gives an element of a scene a model of the catalog."""
+"""Fixes of ``no-model``: a ``.scenex`` entry that gives an element of a scene a catalog model."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _WORDS = {"object": "obj", "agent": "agn"}
 
 
 def model_choices(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield for each model of the catalog the entry that simulates the reported elements as it."""
+    """Yield for each catalog model the entry that assigns it to the reported elements."""
     for placed in file.declarations:
         for gap in gaps_of(Site(snapshot, file, placed)):
             if gap.span == diagnostic.span:
@@ -48,7 +48,7 @@ def _choices(gap: Gap, kind: str) -> Iterator[Fix]:
 
 
 def _entries(gap: Gap, kind: str, model: str) -> Iterator[str]:
-    """Yield an entry for each element, one for all copies of a ``similar`` set."""
+    """Yield an entry for each element, or one for all members of a ``similar`` set."""
     references: dict[str, None] = {}
     for element in gap.elements:
         if element.kind == kind:
@@ -68,7 +68,7 @@ def _is_similar(snapshot: Snapshot, uri: str, name: str) -> bool:
 
 
 def _new_file(scene: Site, entries: tuple[str, ...]) -> NewFile | None:
-    """Return a ``.scenex`` of a scene beside its file; ``None`` where there is one or the scene has no namespace."""
+    """Return a new ``.scenex`` next to the scene's file; ``None`` if it exists or the scene has no namespace."""
     root = scene.tree
     symbol = scene.placed.declaration.symbols[0]
     if not isinstance(root, tree.Scene) or symbol.namespace in (None, FILE_NAMESPACE):
@@ -85,7 +85,7 @@ def _new_file(scene: Site, entries: tuple[str, ...]) -> NewFile | None:
 
 
 def _added(instance: Site, entries: tuple[str, ...]) -> Edit:
-    """Return the edit that adds entries below the last one of an executable scene."""
+    """Return the edit that appends entries to an executable scene."""
     root = instance.tree
     assert isinstance(root, tree.SceneInstance)
     document = instance.file.document

@@ -1,4 +1,4 @@
-"""The outline of a file."""
+"""Document outline of a file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A declared name: absolute spans of the name and of the whole thing, and the names declared inside it."""
+    """A declared name: absolute spans of the name and of its whole declaration, and the names declared inside."""
 
     name: str
     kind: str
@@ -24,7 +24,7 @@ class Item:
 
 
 def outline(snapshot: Snapshot, uri: str) -> list[Item]:
-    """Return the names that a file declares, nested as they are declared, in the order of the text."""
+    """Return the declared names of a file, nested like the declarations, in text order."""
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
@@ -36,7 +36,7 @@ def outline(snapshot: Snapshot, uri: str) -> list[Item]:
 
 def _item(definition: Definition, inner: dict[str, list[Definition]]) -> Item:
     parts = tuple(_item(part, inner) for part in inner.get(definition.symbol.path, []))
-    # Editors insist that a thing's extent holds its name and its parts.
+    # Editors require that an item's extent contains its name and its parts.
     spans = [definition.extent, definition.span, *(part.extent for part in parts)]
     extent = Span(min(span.start for span in spans), max(span.end for span in spans))
     return Item(definition.symbol.name, str(definition.kind), definition.span, extent, parts)

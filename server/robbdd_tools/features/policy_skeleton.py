@@ -1,4 +1,4 @@
-"""The fix of ``no-evaluator`` that writes an observation policy for a clause into a ``.bddx``."""
+"""Fix of ``no-evaluator``: write an observation policy for a clause into a ``.bddx``."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
 _VARIABLES = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
 MODULE = "policies"
-"""Module of the evaluator, beside the ``.bddx``; its function has the name of the clause."""
+"""Module of the evaluator, next to the ``.bddx``; its function is named after the clause."""
 MOST_WORDS = 4
-"""Words of a text that become the name of its clause."""
+"""Maximum number of words of a text that form the name of its clause."""
 
 
 def policy_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield the policy in the first loaded ``.bddx`` that imports the model, else in a new one beside it."""
+    """Yield the policy in the first loaded ``.bddx`` that imports the model, or in a new one next to it."""
     for found in unjudged(snapshot, file):
         if found.span == diagnostic.span:
             yield from _fix(Site(snapshot, file, found.placed), found)
@@ -79,7 +79,7 @@ def _owner(site: Site, found: Unjudged) -> str | None:
 
 
 def _observed(site: Site, found: Unjudged, owner: str) -> list[str]:
-    """Return the variables that a clause speaks of, else all of its template."""
+    """Return the variables that a clause uses, or all of its template if it uses none."""
     arguments: tuple[tree.TextArgument, ...] = ()
     if isinstance(found.clause, tree.Fluent) and isinstance(found.clause.predicate, tree.TextPredicate):
         arguments = found.clause.predicate.arguments
@@ -102,14 +102,14 @@ def _free_name(site: Site, owner: str, text: str) -> str:
 
 
 def _named(site: Site, clause: tree.TextClause, name: str) -> Edit:
-    """Return the edit that gives a clause the name by which a policy refers to it."""
+    """Return the edit that names a clause, for reference by a policy."""
     document = site.file.document
     words, time = (document.text[span.start : span.end] for span in (site.span(clause.text), site.span(clause.time)))
     return Edit(site.uri, site.span(clause), f"{name}: holds(pred({words}), {time})")
 
 
 def _namespace(file: FileAnalysis) -> str | None:
-    """Return the namespace of the executions of a file, by name."""
+    """Return the namespace name of a file's executions."""
     kinds = (tree.Execution, tree.Policy, tree.Implementation)
     for placed in file.declarations:
         symbols = placed.declaration.symbols
@@ -119,7 +119,7 @@ def _namespace(file: FileAnalysis) -> str | None:
 
 
 def _provider(file: FileAnalysis) -> str | None:
-    """Return the first provider of a file that a simulation has."""
+    """Return the first provider of a file that is available in simulation."""
     for placed in file.declarations:
         root = placed.declaration.tree
         if isinstance(root, tree.Provider) and isinstance(root.source, tree.GroundTruth):
@@ -128,7 +128,7 @@ def _provider(file: FileAnalysis) -> str | None:
 
 
 def _policy(path: str, name: str, namespace: str, observed: list[str], provider: str | None) -> str:
-    """Return the text of a policy that calls a function of the users' own, with what it observes."""
+    """Return the text of a policy that calls the user's function, with its observations."""
     own = f"(ns={namespace})"
     text = ""
     if provider is None:
@@ -144,7 +144,7 @@ def _policy(path: str, name: str, namespace: str, observed: list[str], provider:
 
 
 def _used(snapshot: Snapshot, file: FileAnalysis, owner: str, policy: str) -> Iterator[Edit]:
-    """Yield the edits by which the executions of a clause's variants use a policy."""
+    """Yield the edits that add a policy to the executions of a clause's variants."""
     text = file.document.text
     for placed in file.declarations:
         root = placed.declaration.tree
@@ -175,7 +175,7 @@ def _owners(site: Site, execution: tree.Execution) -> Iterator[str]:
 
 
 def _new_file(site: Site, policy: Callable[[str], str]) -> NewFile | None:
-    """Return a new ``.bddx`` beside a model; ``None`` where there is one or the clause has no namespace."""
+    """Return a new ``.bddx`` next to a model; ``None`` if it exists or the clause has no namespace."""
     symbols = site.placed.declaration.symbols
     namespace = symbols[0].namespace if symbols else None
     folder, _, own = site.uri.rpartition("/")

@@ -1,4 +1,4 @@
-"""What may stand inside quotes, half typed: the path of an import or of a model file, an entry of the catalog."""
+"""Completions inside quotes: the path of an import or of a model file, or an entry of the catalog."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ MODEL_ENDINGS: Mapping[str, frozenset[str]] = {
     "urdf": frozenset({".urdf", ".xml"}),
     "usd": frozenset({".usd", ".usda", ".usdc"}),
 }
-"""How the files of each kind of model end."""
+"""File extensions of each model format."""
 
 
 def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
-    """Yield what may stand in the quotes that a line ends in: name, kind, how much of it is typed already, file."""
+    """Yield the completions for the quotes that a line ends in: name, kind, length of the typed part, file."""
     if match := _ENTRY.search(line):
         yield from ((name, "catalog", match[1], "") for name in sorted(known_entries(language_of(uri))))
         return
@@ -39,7 +39,7 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
 
 
 def _entries(uri: str, folder: str, endings: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Yield the folders (ending in ``/``) and the files with some endings in a folder, given relative to a file."""
+    """Yield the folders (ending in ``/``) and the files with some extensions in a folder, relative to a file."""
     own, place = uri_to_path(uri), uri_to_path(urljoin(uri, quote(folder) or "./"))
     if own is None or place is None:
         return

@@ -1,6 +1,6 @@
-"""The clauses of a variant, or some of them, move into its template, or into a copy where others share that template.
+"""Refactoring: move clauses of a variant into its template, or into a copy of a template that others share.
 
-The scenarios stay as they are; in the graph the clauses belong to the template from then on.
+The scenarios stay the same; in the graph the clauses then belong to the template.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """The clauses that leave ``Given`` or ``Then``, and the absolute spans that go with them."""
+    """The clauses to remove from ``Given`` or ``Then``, and the absolute spans to remove with them."""
 
     label: str
     clauses: tuple[tree.Expression, ...]
@@ -37,7 +37,7 @@ class _Part:
 
 @dataclass(frozen=True, slots=True)
 class _Move:
-    """The clauses of a variant of the story ``site`` that are to leave it, and where its template stands."""
+    """The clauses to move out of a variant of the story ``site``, and the place of its template."""
 
     site: Site
     variant: tree.Variant
@@ -48,10 +48,10 @@ class _Move:
 
 
 def extracted_clauses(snapshot: Snapshot, uri: str, selected: Span) -> Fix | None:
-    """Return how the selected clauses of a variant, or all where only a cursor is given, move into a template.
+    """Return the fix that moves the selected clauses of a variant (all of them for an empty selection) into a template.
 
-    This is a copy of the variant's template where that has other variants or stands in another file. There is none
-    for a variant that executions name policies for: these speak of clauses and variables of the first template.
+    The target is a copy of the template if that has other variants or is in another file. ``None`` for a variant whose
+    executions name policies: these refer to clauses and variables of the original template.
     """
     move = _move(snapshot, uri, selected)
     if move is None:
@@ -85,7 +85,7 @@ def _of_scenario(site: Site, scenario: Scenario, selected: Span) -> _Move | None
 
 
 def _part(site: Site, label: str, variant: tree.Variant, selected: Span) -> _Part | None:
-    """Return what a selection takes of one part; ``None`` where that is nothing or a comment would get lost."""
+    """Return the selected clauses of one part; ``None`` if there are none or a comment would be lost."""
     own = variant.given if label == "Given" else variant.then
     if own is None:
         return None
@@ -105,7 +105,7 @@ def _part(site: Site, label: str, variant: tree.Variant, selected: Span) -> _Par
 
 
 def _label(site: Site, label: str, variant: tree.Variant, own: tree.Expression) -> int | None:
-    """Return where the label of a part begins, with the white space before it."""
+    """Return the start of a part's label, including the white space before it."""
     before = [variant.scene, *(variant.events if label == "Then" else ())]
     start = site.span(before[-1]).end
     found = re.compile(rf"[ \t]*\b{label}\s*:").search(site.file.document.text, start, site.span(own).start)
@@ -113,7 +113,7 @@ def _label(site: Site, label: str, variant: tree.Variant, own: tree.Expression) 
 
 
 def _with_line(text: str, span: Span) -> Span:
-    """Return a span with the end of its line where nothing else stands there."""
+    """Return a span extended to the end of its line if nothing else follows there."""
     line = text.find("\n", span.end)
     return Span(span.start, line + 1) if line >= 0 and not text[span.end : line].strip() else span
 
@@ -154,7 +154,7 @@ def _into_copy(move: _Move) -> Fix | None:
 
 
 def _leaving(move: _Move, template: str) -> Iterator[Edit]:
-    """Yield the edits that take the clauses out, and those of what names them elsewhere."""
+    """Yield the edits that remove the clauses, and those of references to them elsewhere."""
     site = move.site
     for part in move.parts:
         yield from (Edit(site.uri, span, "") for span in part.removed)
@@ -167,7 +167,7 @@ def _leaving(move: _Move, template: str) -> Iterator[Edit]:
 
 
 def _arriving(move: _Move, paths: Mapping[tree.Ref, str]) -> Iterator[Change]:
-    """Yield what is put into the text of the template, where some references are written with other paths."""
+    """Yield the insertions into the template, where some references get new paths."""
     text = move.site.placed.declaration.text
     for part in move.parts:
         texts: list[str] = []
@@ -179,9 +179,9 @@ def _arriving(move: _Move, paths: Mapping[tree.Ref, str]) -> Iterator[Change]:
 
 
 def _renamed(site: Site, owner: tree.Node, move: _Move, name: str) -> dict[tree.Ref, str] | None:
-    """Return the new paths of the references inside a node that lead to the template or into it.
+    """Return the new paths of references inside a node that lead to the template or into it.
 
-    ``None`` where one does so by another path than the template's name.
+    ``None`` if a reference uses another path than the template's name.
     """
     old, found = move.root.name.text, dict[tree.Ref, str]()
     for reference in site.placed.declaration.references:
@@ -198,7 +198,7 @@ def _renamed(site: Site, owner: tree.Node, move: _Move, name: str) -> dict[tree.
 
 
 def _leading_to(snapshot: Snapshot, definition: Definition) -> Iterator[tuple[str, Span]]:
-    """Yield the references that lead to a definition itself, with the whole of the path that is written."""
+    """Yield the references to a definition itself, with the span of their whole paths."""
     for uri in (definition.uri, *snapshot.importers(definition.uri)):
         file = snapshot.file(uri)
         for placed in file.declarations if file is not None else ():
@@ -208,14 +208,14 @@ def _leading_to(snapshot: Snapshot, definition: Definition) -> Iterator[tuple[st
 
 
 def _free_suffix(snapshot: Snapshot, names: Sequence[str]) -> str:
-    """Return the first of ``-2``, ``-3`` … that makes of all names new ones in the whole project."""
+    """Return the first suffix ``-2``, ``-3`` … that makes all names unused in the whole project."""
     indices = [source for source in snapshot.sources.values() if isinstance(source, FileIndex)]
     taken = {path.rpartition(".")[2] for index in indices for path in index.names.entries}
     return next(suffix for suffix in map("-{}".format, count(2)) if taken.isdisjoint(name + suffix for name in names))
 
 
 def _has_policies(move: _Move) -> bool:
-    """Tell whether an execution of the variant names policies."""
+    """Return whether an execution of the variant names policies."""
     snapshot, span = move.site.snapshot, move.site.span(move.variant.name)
     for uri in snapshot.importers(move.site.uri):
         file = snapshot.file(uri)

@@ -1,4 +1,4 @@
-"""Refactorings of whole declarations: to the current form, a scene to a file of its own."""
+"""Refactorings of whole declarations: rewrite them in the current form, move a scene to a new file."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 
 
 def modernised(snapshot: Snapshot, uri: str) -> Fix | None:
-    """Return the edits that write all of a file in the current form; its graph stays the same."""
+    """Return the edits that rewrite a whole file in the current form; its graph stays the same."""
     file = snapshot.file(uri)
     found = list(published_form(snapshot, file)) if file is not None else []
     edits = tuple(edit for diagnostic in found for fix in diagnostic.fixes for edit in fix.edits)
-    return Fix("Write the whole file in the current form", edits) if edits else None
+    return Fix("Rewrite the whole file in the current form", edits) if edits else None
 
 
 def split_scene(snapshot: Snapshot, uri: str, offset: int) -> Fix | None:
-    """Return how the scene at a cursor moves into a file of its own; every graph that has it stays the same.
+    """Return the fix that moves the scene at a cursor into a new file; every graph with it stays the same.
 
-    The new file imports the one that the scene came from; the files that use the scene import the new one.
+    The new file imports the old one; the files that use the scene import the new one.
     """
     file = snapshot.file(uri)
     placed = None if file is None else _declaration_at(file, offset)
@@ -56,7 +56,7 @@ def _declaration_at(file: FileAnalysis, offset: int) -> PlacedDeclaration | None
 
 
 def _with_line_end(file: FileAnalysis, placed: PlacedDeclaration) -> Span:
-    """Return a declaration's text with the blank space behind it, up to the next declaration or comment."""
+    """Return a declaration's span including white space after it, up to the next declaration or comment."""
     text = placed.declaration.text
     comment = re.search(r"\n[ \t]*//", text)
     end = placed.span.end if comment is None else placed.offset + comment.start() + 1

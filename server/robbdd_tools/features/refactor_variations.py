@@ -1,7 +1,7 @@
-"""Refactorings of what a variant varies: product and table, sets and their values, rows from the scene.
+"""Refactorings of variations: product and table, sets and their values, rows from the scene.
 
-All but the last leave the scenarios as they are; a table or a product made of the other is another node of the graph
-with the same bindings.
+All but the last keep the scenarios; converting between table and product makes a new node in the graph with the same
+bindings.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 MOST_ROWS = 500
-"""Rows that anybody would read; beyond them no table is offered."""
+"""Maximum number of rows for which a table is offered."""
 
 
 def variation_refactorings(snapshot: Snapshot, uri: str, span: Span) -> Iterator[Fix]:
-    """Yield the refactorings of the variations that a selection touches."""
+    """Yield the refactorings of the variations in a selection."""
     file = snapshot.file(uri)
     for site in story_sites(snapshot, file, span) if file is not None else ():
         if site.placed.declaration.faults:
@@ -40,7 +40,7 @@ def variation_refactorings(snapshot: Snapshot, uri: str, span: Span) -> Iterator
 
 
 def _as_table(scenario: Scenario) -> Iterator[Fix]:
-    """Write a product of values out, row by row, the last variable changing fastest."""
+    """Expand a product into table rows; the last variable varies fastest."""
     variation = scenario.variant.variation
     if not isinstance(variation, tree.Product) or not variation.assignments:
         return
@@ -53,7 +53,7 @@ def _as_table(scenario: Scenario) -> Iterator[Fix]:
 
 
 def _as_product(scenario: Scenario) -> Iterator[Fix]:
-    """Write a table as a product, where its rows are just the product of its columns, in that order."""
+    """Convert a table to a product, if its rows are exactly the product of its columns, in order."""
     variation = scenario.variant.variation
     if not isinstance(variation, tree.Table) or not variation.rows:
         return
@@ -72,7 +72,7 @@ def _as_product(scenario: Scenario) -> Iterator[Fix]:
 
 
 def _filled(scenario: Scenario) -> Iterator[Fix]:
-    """Add the rows that a table lacks of all that the scene has for its columns; this makes new scenarios."""
+    """Add all missing rows with scene elements to a table; this creates new scenarios."""
     site, variation = scenario.site, scenario.variant.variation
     is_known = scene_members(site.follow(scenario.variant.scene)) is not None
     if not isinstance(variation, tree.Table) or not is_known or _has_sets(variation):
@@ -92,7 +92,7 @@ def _filled(scenario: Scenario) -> Iterator[Fix]:
 
 
 def _inlined(scenario: Scenario, span: Span) -> Iterator[Fix]:
-    """Write the values of a constant set where the set is named; nothing else is said of the scenarios."""
+    """Replace a reference to a constant set by the set's values; the scenarios stay the same."""
     site = scenario.site
     for column in scenario.columns:
         for written in column.written:
@@ -108,7 +108,7 @@ def _inlined(scenario: Scenario, span: Span) -> Iterator[Fix]:
 
 
 def _choices(site: Site, written: object) -> list[str] | None:
-    """Return the values that a line of a product offers, as they are written; ``None`` where a row cannot say it."""
+    """Return the written values of a product's line; ``None`` if table cells cannot express them."""
     match written:
         case tree.ValueList():
             return [_text(site, value) for value in written.values]
@@ -123,7 +123,7 @@ def _choices(site: Site, written: object) -> list[str] | None:
 
 
 def _text(site: Site, node: tree.Node) -> str:
-    """Return a value as it is written; a name is written in full, so that it can stand in another declaration."""
+    """Return a value as written, with qualified names, for use in another declaration."""
     if isinstance(node, tree.Ref):
         element = element_of(site, node)
         return f"<{element.name if element is not None else node.path}>"
@@ -156,7 +156,7 @@ def _replaced(scenario: Scenario, title: str, text: str) -> Fix:
 
 
 def _headed(scenario: Scenario) -> bool:
-    """Tell whether ``variation:`` stands above; the published form has no such line, nor tables."""
+    """Return whether the variation has a ``variation:`` line; the published form has neither that nor tables."""
     start = scenario.site.span(scenario.variant.variation).start
     return scenario.site.file.document.text[:start].rstrip().endswith(":")
 

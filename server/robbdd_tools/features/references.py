@@ -1,4 +1,4 @@
-"""References: everywhere a name is used, in every file of the project that can see it."""
+"""References: all uses of a name, in every file of the project that can access it."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ Place = tuple[str, Span]
 
 @dataclass(frozen=True, slots=True)
 class Highlight:
-    """A place of a name; it ``writes`` where the name is declared or a variation gives values to the variable."""
+    """A place of a name; it ``writes`` where the name is declared or a variation assigns values to the variable."""
 
     span: Span
     writes: bool
 
 
 def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool) -> list[Place]:
-    """Return the places that use the name under a cursor, in the order of files and places."""
+    """Return the uses of the name under a cursor, sorted by file and place."""
     found = symbol_at(snapshot, uri, offset)
     if found is None:
         return []
@@ -45,7 +45,7 @@ def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool
 
 
 def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
-    """Return the places of the name under a cursor within its own document, in their order."""
+    """Return the places of the name under a cursor in its own document, in text order."""
     found = symbol_at(snapshot, uri, offset)
     file = snapshot.file(uri)
     if found is None or file is None:
@@ -60,7 +60,7 @@ def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
 
 
 def _written(file: FileAnalysis) -> set[Span]:
-    """Return where the variations of a file name the variables that they give values to."""
+    """Return the spans where the variations of a file name the variables that they assign."""
     return {
         Span(ref.span.end - len(ref.path.rpartition(".")[2]), ref.span.end).shifted(placed.offset)
         for placed in file.parts()
@@ -71,7 +71,7 @@ def _written(file: FileAnalysis) -> set[Span]:
 
 
 def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Place]:
-    """Yield every place that uses a name, alone or as a part of a qualified name (a set before its element)."""
+    """Yield every use of a name, alone or as a part of a qualified name (a set before its element)."""
     for uri in sorted({definition.uri, *snapshot.importers(definition.uri)}):
         file = snapshot.file(uri)
         if file is not None:
@@ -83,7 +83,7 @@ def _uses_in(snapshot: Snapshot, file: FileAnalysis, definition: Definition) -> 
     for placed in file.parts():
         checkpoint()
         for reference in placed.declaration.references:
-            # Reading the written name is cheap; only what may mean the definition is followed.
+            # Comparing text is cheap; only candidates are resolved.
             if name in reference.ref.path and reference.ref in placed.targets:
                 parts = parts_of(snapshot, file.document.uri, placed, reference)
                 yield from (span for span, meant in parts if _same(meant, definition))

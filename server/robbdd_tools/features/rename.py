@@ -1,4 +1,4 @@
-"""Rename: a declared name and all that refers to it or to its parts, in all files."""
+"""Rename: a declared name and all references to it or to its parts, in all files."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _NAME = re.compile(r"[^\W\d][\w\-]*")
 
 
 class RenameRefused(Exception):
-    """The name cannot be changed, or not to this; the message says why."""
+    """The name cannot be changed, or not to this one; the message gives the reason."""
 
 
 def prepare_rename(snapshot: Snapshot, uri: str, offset: int) -> Span | None:
-    """Return the part of the text under a cursor that a rename would replace; ``None`` where there is none."""
+    """Return the span that a rename at a cursor would replace; ``None`` if there is no name."""
     found = symbol_at(snapshot, uri, offset)
     return found[0] if found is not None and _is_written(snapshot, found[1]) else None
 
 
 def rename(snapshot: Snapshot, uri: str, offset: int, name: str) -> list[Edit]:
-    """Return the edits that give the name under a cursor another one; raises ``RenameRefused``."""
+    """Return the edits that rename the name under a cursor; raises ``RenameRefused``."""
     found = symbol_at(snapshot, uri, offset)
     if found is None:
         raise RenameRefused("there is no name here")
@@ -38,9 +38,9 @@ def rename(snapshot: Snapshot, uri: str, offset: int, name: str) -> list[Edit]:
             f"'{definition.symbol.name}' is numbered by its set: rename the set's base name in the text"
         )
     if _NAME.fullmatch(name) is None:
-        raise RenameRefused(f"'{name}' is no name: use a letter or _, then letters, digits, _ and -")
+        raise RenameRefused(f"'{name}' is not a valid name: use a letter or _, then letters, digits, _ and -")
     _refuse_clash(snapshot, definition, name)
-    # Where text is broken, the cursor may be at a place that the references do not tell of.
+    # In broken text, the cursor may be on a name without a reference.
     places = {(uri, found[0]), *name_places(snapshot, definition)}
     return [Edit(place, span, name) for place, span in sorted(places)]
 
@@ -51,7 +51,7 @@ def name_places(snapshot: Snapshot, definition: Definition) -> list[tuple[str, S
 
 
 def linked_places(snapshot: Snapshot, uri: str, offset: int) -> list[Span]:
-    """Return the places of the name under a cursor that can be typed over together: those of one document only."""
+    """Return the places of the name under a cursor for linked editing, in its own document only."""
     found = symbol_at(snapshot, uri, offset)
     if found is None or not _is_written(snapshot, found[1]):
         return []
@@ -69,7 +69,7 @@ def _refuse_clash(snapshot: Snapshot, definition: Definition, name: str) -> None
 
 
 def _is_written(snapshot: Snapshot, definition: Definition) -> bool:
-    """Tell whether a name stands in the text as it is: a similar set numbers its elements."""
+    """Return whether a name is written in the text: names in a similar set are generated."""
     analysis = snapshot.file(definition.uri)
     span = definition.span
     return analysis is not None and analysis.document.text[span.start : span.end] == definition.symbol.name

@@ -1,4 +1,4 @@
-"""Files that are about to be moved: what their imports, and the imports of them, must say then."""
+"""File renames: edits of the imports in moved files, and of the imports of them."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from robbdd_tools.names.index import FileIndex, ImportPath, imports_of
 
 @dataclass(frozen=True, slots=True)
 class ImportLines:
-    """A text and the imports in it."""
+    """A text and its imports."""
 
     document: Document
     imports: tuple[ImportPath, ...]
 
 
 def concerned(files: Iterable[str], moves: Mapping[str, str]) -> Iterator[ImportLines]:
-    """Yield those of some model files, as they are on disk, that move or import directly what moves."""
+    """Yield the model files, as on disk, that move or directly import a moved file."""
     for uri in files:
         imported = imports_on_disk(uri)
         path = uri_to_path(uri)
@@ -35,7 +35,7 @@ def concerned(files: Iterable[str], moves: Mapping[str, str]) -> Iterator[Import
 
 
 def import_edits(files: Iterable[FileIndex | ImportLines], moves: Mapping[str, str]) -> list[Edit]:
-    """Return the edits of the imports of some files that make them hold after moves.
+    """Return the edits of imports that keep them valid after moves.
 
     ``moves`` map the URIs of files or folders to their new ones; edits are for the texts at their old places.
     """
@@ -48,7 +48,7 @@ def _of_file(file: FileIndex | ImportLines, moves: Mapping[str, str]) -> Iterato
     here = moved(own, moves)
     for link in file.imports:
         there = moved(link.uri, moves)
-        # A file of a package (`name:path`) is found wherever its importer lies.
+        # Imports of package files (`name:path`) do not depend on the importer's place.
         if (here, there) == (own, link.uri) or ":" in link.text:
             continue
         path = import_path(here, there)
@@ -57,7 +57,7 @@ def _of_file(file: FileIndex | ImportLines, moves: Mapping[str, str]) -> Iterato
 
 
 def moved(uri: str, moves: Mapping[str, str]) -> str:
-    """Return where a file will be."""
+    """Return the URI of a file after the moves."""
     for old, new in moves.items():
         if uri == old:
             return new

@@ -1,4 +1,4 @@
-"""What runs have found, scenario by scenario, with digests of the text that they judged."""
+"""Results of runs by scenario, with digests of the judged text."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class Judgement:
     """One verdict on a clause.
 
     ``outcome`` is ``holds``, ``violated``, ``unknown`` or ``undefined`` (no step can judge it); ``margin`` and ``said``
-    are words, the latter with instant and reason; of several the one of the smallest ``rank`` is the worst. ``digest``
-    is that of the clause's text at the time; ``line`` that of its step in the feature. ``vacuous`` says why the clause
-    could not have failed in the whole run, nothing where it could. ``fault`` is the ``id`` of the error in users' code
-    that it is unknown for.
+    are texts, the latter with instant and reason; of several verdicts, the one with the smallest ``rank`` is the worst.
+    ``digest`` is that of the clause's text when judged; ``line`` is that of its step in the feature. ``vacuous`` says
+    why the clause could not have failed in the whole run, empty if it could. ``fault`` is the ``id`` of the error in
+    users' code that made it unknown.
     """
 
     name: str
@@ -51,14 +51,13 @@ class Judgement:
 
 @dataclass(slots=True)
 class JudgedScenario:
-    """A scenario that was run: number ``variation`` of a variant, its values in words, its clauses by IRI.
+    """An executed scenario: number ``variation`` of a variant, its values in words, its clauses by IRI.
 
-    ``digest`` is that of the text of the variant and its template, ``row`` that of its row in a table (empty without).
-    ``run`` is the number of the stored run that has it as scenario number ``index``; 0 where none is known.
-    ``execution`` is the IRI of the ``.bddx`` execution that it was run by and ``execution_digest`` that of its text,
-    both empty for a scenario that was run as it is. ``faults`` are the errors that users' code had in it.
-    ``repetition`` counts the executions of the scenario in the run (from 1); ``seed`` is the one that the user gave the
-    run, ``None`` without one. ``substitution`` is the catalog behaviour that was executed in place of the model's.
+    ``digest`` is that of the text of the variant and its template, ``row`` that of its table row (empty without).
+    ``run`` is the number of the stored run in which it is scenario number ``index``; 0 if unknown. ``execution`` is the
+    IRI of its ``.bddx`` execution and ``execution_digest`` that of its text, both empty without one. ``faults`` are the
+    errors in users' code. ``repetition`` counts the executions of the scenario in the run (from 1); ``seed`` is the
+    user's seed of the run, or ``None``. ``substitution`` is the catalog behaviour executed instead of the model's.
     """
 
     model: str
@@ -87,13 +86,13 @@ class JudgedScenario:
         return "holds" if self.finished and outcomes == {"holds"} else "unknown"
 
     def judge(self, iri: str, judgement: Judgement) -> None:
-        """Take a verdict; a clause that is repeated within the scenario is as good as its worst one."""
+        """Add a verdict; a clause repeated within the scenario keeps its worst one."""
         known = self.clauses.get(iri)
         if known is None or judgement.rank < known.rank:
             self.clauses[iri] = judgement
 
     def mark_vacuous(self, reasons: Mapping[str, str]) -> None:
-        """Take why clauses (by IRI) could not have failed in the run."""
+        """Add the reasons why clauses (by IRI) could not have failed in the run."""
         for iri in self.clauses.keys() & reasons.keys():
             self.clauses[iri] = replace(self.clauses[iri], vacuous=reasons[iri])
 
@@ -103,7 +102,7 @@ Judged = tuple[JudgedScenario, Judgement]
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """Results as they are at one moment: verdicts by clause, scenarios by variant."""
+    """Results at one moment: verdicts by clause, scenarios by variant."""
 
     clauses: Mapping[str, tuple[Judged, ...]]
     variants: Mapping[str, tuple[JudgedScenario, ...]]
@@ -113,34 +112,34 @@ NOTHING = Findings({}, {})
 
 
 class Results:
-    """The newest result of every scenario; a scenario that is run again replaces what was known of it."""
+    """The latest result of every scenario; a new result replaces the previous one."""
 
     def __init__(self, scenarios: Iterable[JudgedScenario] = ()) -> None:
         self._scenarios: dict[tuple[str, int], list[JudgedScenario]] = {}
         self.add(scenarios)
 
     def __iter__(self) -> Iterator[JudgedScenario]:
-        """Go through all scenarios."""
+        """Iterate over all scenarios."""
         return (scenario for several in self._scenarios.values() for scenario in several)
 
     def add(self, scenarios: Iterable[JudgedScenario]) -> None:
-        """Add scenarios beside those that are there; one may be executed several times."""
+        """Add scenarios without replacing others; one may be executed several times."""
         for scenario in scenarios:
             self._scenarios.setdefault((scenario.variant, scenario.variation), []).append(scenario)
 
     def drop(self, variant: str, variation: int, execution: str = "", repetition: int | None = None) -> None:
         """Remove the results of a scenario that is executed again.
 
-        Results of executions other than ``execution`` stay, and with a ``repetition`` those of the other repetitions.
+        Results of executions other than ``execution`` stay; with a ``repetition``, those of other repetitions stay too.
         """
         known = self._scenarios.pop((variant, variation), [])
         self.add(one for one in known if not _is_replaced(one, execution, repetition))
 
     def merge(self, scenarios: Iterable[JudgedScenario], newest: int, *, some_repetitions: bool = False) -> None:
-        """Take the results of one stored run, except of scenarios with results of the same or a later run.
+        """Add the results of one stored run, except for scenarios with results of the same or a later run.
 
-        ``newest`` is the number of the newest run in its store, ``some_repetitions`` says that it executed only some
-        repetitions: the others keep their results.
+        ``newest`` is the number of the latest run in its store; ``some_repetitions``: it executed only some
+        repetitions, and the others keep their results.
         """
         groups: dict[tuple[str, int, str, int | None], list[JudgedScenario]] = {}
         for one in scenarios:
@@ -154,17 +153,17 @@ class Results:
                 self.add(group)
 
     def discard(self, scenario: JudgedScenario) -> None:
-        """Forget one result."""
+        """Remove one result."""
         known = self._scenarios.pop((scenario.variant, scenario.variation), [])
         self.add(one for one in known if one is not scenario)
 
     def drop_others(self, variant: str, kept: Collection[int]) -> None:
-        """Forget the scenarios of a variant that it does not have any more."""
+        """Remove the scenarios that a variant no longer has."""
         for key in [key for key in self._scenarios if key[0] == variant and key[1] not in kept]:
             del self._scenarios[key]
 
     def drop_deleted(self, model: str, variants: Collection[str], executions: Collection[str] = ()) -> None:
-        """Forget what is known of variants and executions that a model does not have any more."""
+        """Remove the results of variants and executions that a model no longer has."""
         gone = {entry.variant for entry in self if entry.model == model} - set(variants)
         for key in [key for key in self._scenarios if key[0] in gone]:
             del self._scenarios[key]
@@ -173,7 +172,7 @@ class Results:
             self.discard(entry)
 
     def findings(self) -> Findings:
-        """Return what is known now."""
+        """Return the current results."""
         clauses: dict[str, list[Judged]] = {}
         variants: dict[str, list[JudgedScenario]] = {}
         for scenario in self:
@@ -187,16 +186,16 @@ class Results:
 
 
 def _is_replaced(known: JudgedScenario, execution: str, repetition: int | None) -> bool:
-    """Whether a new result by an execution, of one repetition or (``None``) of all, replaces a known one."""
+    """Whether a new result of an execution, of one repetition or (``None``) of all, replaces a known one."""
     by_other = execution != "" and known.execution not in ("", execution)
     return not by_other and repetition in (None, known.repetition)
 
 
 @dataclass(frozen=True, slots=True)
 class Digests:
-    """What the text says that a run is about: of clauses and variants by IRI, of rows by variant and number.
+    """Digests of the text that runs judge: of clauses and variants by IRI, of rows by variant and number.
 
-    ``executions`` are those that the file itself declares, by IRI.
+    ``executions`` are those declared in the file itself, by IRI.
     """
 
     clauses: Mapping[str, str]
@@ -206,7 +205,7 @@ class Digests:
 
 
 def digests_of(snapshot: Snapshot, uri: str) -> Digests:
-    """Return the digests of a file and what it imports."""
+    """Return the digests of a file and its imports."""
     clauses: dict[str, str] = {}
     variants: dict[str, str] = {}
     rows: dict[tuple[str, int], str] = {}
@@ -222,7 +221,7 @@ def digests_of(snapshot: Snapshot, uri: str) -> Digests:
 
 
 def digest(snapshot: Snapshot, uri: str, span: Span) -> str:
-    """Return the digest of a part of a file; comments and layout do not count."""
+    """Return the digest of a span; comments and layout are ignored."""
     file = snapshot.file(uri)
     return "" if file is None else _digest(file.document.text[span.start : span.end])
 
@@ -234,13 +233,13 @@ def variant_digest(snapshot: Snapshot, variant: PlacedVariant) -> str:
 
 
 def execution_digest(snapshot: Snapshot, execution: PlacedExecution) -> str:
-    """Return the digest of an execution, of all that says how it is done, and of its variant."""
+    """Return the digest of an execution, of its dependencies, and of its variant."""
     own = (digest(snapshot, site.uri, site.placed.span) for site in what_matters(execution))
     return " ".join((*own, variant_digest(snapshot, execution.variant)))
 
 
 _digests: dict[bytes, str] = {}
-"""Digests by the hash of the whole text: the texts themselves would fill the memory, one more with each edit."""
+"""Digests by hash of the text; keeping the texts themselves would grow memory with each edit."""
 
 
 def _digest(text: str) -> str:

@@ -1,4 +1,4 @@
-"""How many scenarios each variant stands for, to be shown behind its name."""
+"""Inlay hints with the number of scenarios of each variant."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioHint:
-    """What to show behind a variant's name, which is at ``span`` (absolute)."""
+    """The hint after a variant's name, which is at ``span`` (absolute)."""
 
     span: Span
     label: str
 
 
 def scenario_hints(snapshot: Snapshot, uri: str, within: Span) -> list[ScenarioHint]:
-    """Return a hint for each variant in a part of a file whose sets are known."""
+    """Return a hint for each variant in a span of a file if its sets are known."""
     file = snapshot.file(uri)
     hints: list[ScenarioHint] = []
     for site in story_sites(snapshot, file, within) if file is not None else ():

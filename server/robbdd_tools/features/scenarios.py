@@ -1,4 +1,4 @@
-"""How many scenarios a variant stands for, read from its text."""
+"""Number of scenarios of a variant, computed from its text."""
 
 from __future__ import annotations
 

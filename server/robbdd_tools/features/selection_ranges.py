@@ -1,4 +1,4 @@
-"""Growing selections: word, node of the tree around it, and so on up to the whole text."""
+"""Selection ranges: word, enclosing node, and so on up to the whole text."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(
 
 
 def selections(snapshot: Snapshot, uri: str, offset: int) -> list[Span]:
-    """Return ever larger spans around a cursor, the smallest first; brackets tell them where the text is broken."""
+    """Return growing spans around a cursor, smallest first; in broken text they follow the brackets."""
     file = snapshot.file(uri)
     if file is None:
         return []
@@ -35,7 +35,7 @@ def selections(snapshot: Snapshot, uri: str, offset: int) -> list[Span]:
 
 
 def _brackets(text: str) -> list[Span]:
-    """Return each bracketed part, with and without its brackets."""
+    """Return the spans of bracketed parts, each with and without its brackets."""
     opened: list[int] = []
     found: list[Span] = []
     for match in _BRACKETS.finditer(text):

@@ -1,7 +1,7 @@
-"""What each word of a text is, in the language's own concepts: what editors colour by meaning.
+"""Semantic tokens: the concept of each word, for colouring by meaning.
 
-Words are known by tokens of the text, names by the trees and by what they lead to. So broken text keeps the colours
-of all that is still understood.
+Keywords are found by tokens of the text, names by the trees and their definitions. So broken text keeps the colours of
+the parts that can still be analysed.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 COMMENT, STRING, NUMBER, KEYWORD = "comment", "string", "number", "keyword"
 KEPT_COMMENTS = 200
 NAME = "name"
-"""A name that is used; only what it leads to tells its concept, so that no token carries this one."""
+"""A used name; only its definition determines its concept, so no final token has this one."""
 PREDICATE, ACTION, TIME, ARGUMENT, CODE = "predicate", "action", "time constraint", "argument", "python"
 _WORDS = re.compile(
     r"(?P<comment>//[^\n]*)"
@@ -47,7 +47,7 @@ _WORD = re.compile(r"[^\W\d][\w\-]*")
 
 @dataclass(frozen=True, slots=True, order=True)
 class Token:
-    """A piece of one line (absolute span): ``concept`` is a constant of this module or the kind of a symbol."""
+    """A part of one line (absolute span): ``concept`` is a constant of this module or the kind of a symbol."""
 
     span: Span
     concept: str
@@ -56,14 +56,14 @@ class Token:
 
 @dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
 class Coloured:
-    """The tokens of a piece of text, in order and apart; spans count from its start."""
+    """The tokens of a text, in order and disjoint; spans count from its start."""
 
     tokens: tuple[Token, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """The colours of a declaration, with the ``paths`` that they depend on beside what its references lead to.
+    """The colours of a declaration, with the ``paths`` that they depend on besides the targets of references.
 
     ``tables`` are those of the files in which the paths were looked up.
     """
@@ -74,7 +74,7 @@ class _Known:
 
 
 def semantic_tokens(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[Token]:
-    """Return the tokens of a file, or those that touch a part of it, in order and apart."""
+    """Return the tokens of a file, or those that touch a span, in order and disjoint."""
     return [
         Token(token.span.shifted(offset), token.concept, token.is_declaration)
         for offset, piece in coloured(snapshot, uri, within)
@@ -84,9 +84,9 @@ def semantic_tokens(snapshot: Snapshot, uri: str, within: Span | None = None) ->
 
 
 def coloured(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[tuple[int, Coloured]]:
-    """Return the tokens of a file, or of its pieces that touch a part of it, piece by piece behind each one's offset.
+    """Return the tokens of a file, or of its pieces that touch a span, as pairs of offset and tokens.
 
-    A piece that an edit leaves as it was stays the same object.
+    A piece that an edit did not change stays the same object.
     """
     analysis = snapshot.file(uri)
     if analysis is None:
@@ -108,7 +108,7 @@ def coloured(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[t
 def _of_declaration(
     snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, tables: tuple[NameTable, ...]
 ) -> Coloured:
-    """Return the colours of a declaration, those that it had where nothing that they depend on has changed."""
+    """Return the colours of a declaration, from the cache unless a dependency changed."""
     known = _known.get(placed.targets.resolution)
     if known is not None and known.tables is tables:
         return known.coloured
@@ -133,7 +133,7 @@ def _changed(before: tuple[NameTable, ...], after: tuple[NameTable, ...]) -> fro
 
 @dataclass(slots=True)
 class _Names:
-    """Tells what the names in a declaration are; ``paths`` are those that it looked up on the way."""
+    """Determines the concepts of names in a declaration; ``paths`` are those that it looked up."""
 
     snapshot: Snapshot
     file: FileAnalysis
@@ -156,7 +156,7 @@ class _Names:
                 yield from self._reference(reference)
 
     def _reference(self, reference: Reference) -> Iterator[Token]:
-        """Yield a token for each segment of a qualified name, as far as it leads somewhere."""
+        """Yield a token for each resolved segment of a qualified name."""
         ref = reference.ref
         target = self.placed.targets.get(ref)
         if target is None:
@@ -176,7 +176,7 @@ class _Names:
         yield Token(Span(start, start + len(last)), target.kind)
 
     def _unread(self, span: Span) -> Iterator[Token]:
-        """Yield the tokens of a name in angle brackets that the parser did not get to."""
+        """Yield the tokens of a name in angle brackets that was not parsed."""
         start = span.start
         segments = self.placed.declaration.text[span.start : span.end].split(".")
         for number, segment in enumerate(segments):
@@ -195,7 +195,7 @@ _own_tokens: WeakKeyDictionary[Declaration, tuple[Token, ...]] = WeakKeyDictiona
 
 
 def _own(language: str, declaration: Declaration) -> tuple[Token, ...]:
-    """Return a declaration's own tokens, kept as long as the declaration; spans count from its start."""
+    """Return the tokens that depend on the declaration alone, cached with it; spans count from its start."""
     found = _own_tokens.get(declaration)
     if found is None:
         found = _own_tokens[declaration] = _read_tokens(language, declaration)
@@ -230,7 +230,7 @@ def _read_tokens(language: str, declaration: Declaration) -> tuple[Token, ...]:
 
 
 def _concepts(declaration: Declaration) -> Iterator[tuple[int, Token]]:
-    """Yield what the tree says of words, by where they start; what comes later wins."""
+    """Yield the concepts of words according to the tree, by start offset; later ones win."""
     nodes: list[tree.Node] = []
     for node in walk(declaration.tree) if declaration.tree is not None else ():
         checkpoint()
@@ -254,7 +254,7 @@ def _concepts(declaration: Declaration) -> Iterator[tuple[int, Token]]:
 
 
 def _names(node: tree.Node) -> Iterator[tuple[tree.Name, str]]:
-    """Yield the names in a node that neither declare nor refer to anything of the model."""
+    """Yield the names in a node that are neither declarations nor references in the model."""
     match node:
         case tree.PhraseUse():
             yield from ((value, ARGUMENT) for _, value in node.arguments if isinstance(value, tree.Name))
@@ -279,13 +279,13 @@ def _keywords(language: str) -> frozenset[str]:
 
 @lru_cache(maxsize=KEPT_COMMENTS)
 def _between(text: str) -> Coloured:
-    """Return the comments between two declarations."""
+    """Return the tokens of the comments between two declarations."""
     found = re.finditer(r"//[^\n]*", text)
     return Coloured(tuple(Token(Span(match.start(), match.end()), COMMENT) for match in found))
 
 
 def _lines(text: str, token: Token) -> Iterator[Token]:
-    """Cut a token at the ends of its lines: few clients take one that spans several."""
+    """Split a token at line ends: few clients accept multi-line tokens."""
     if "\n" not in text[token.span.start : token.span.end]:
         yield token
         return

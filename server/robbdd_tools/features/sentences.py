@@ -1,4 +1,4 @@
-"""Clauses and phrases in words: the sentence of the Gherkin that a clause becomes, its variables in ``<…>``."""
+"""Clauses and phrases in words: the Gherkin sentence of a clause, with its variables in ``<…>``."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def clause_sentence(clause: tree.Fluent | tree.BehaviourUse) -> str:
-    """Return the sentence of a clause or behaviour before its variables have values."""
+    """Return the sentence of a clause or behaviour with variables instead of values."""
     if isinstance(clause, tree.BehaviourUse):
         return _phrase_sentence(clause.action)
     predicate = clause.predicate
@@ -22,7 +22,7 @@ def clause_sentence(clause: tree.Fluent | tree.BehaviourUse) -> str:
 
 
 def time_words(time: tree.TimeConstraint) -> str:
-    """Return a time constraint as it is written."""
+    """Return a time constraint as written."""
     if isinstance(time, tree.During):
         return f"from {time.start.path} until {time.end.path}"
     word = "before" if isinstance(time, tree.Before) else "after"
@@ -31,7 +31,7 @@ def time_words(time: tree.TimeConstraint) -> str:
 
 
 def time_meaning(time: tree.TimeConstraint) -> str:
-    """Say at which samples of a trace a clause with this time constraint is judged."""
+    """Describe at which samples of a trace a clause with this time constraint is judged."""
     if isinstance(time, tree.During):
         return f"Judged from `{time.start.path}` until `{time.end.path}`, both included: it must hold throughout."
     side = "at or before" if isinstance(time, tree.Before) else "at or after"
@@ -43,19 +43,19 @@ def time_meaning(time: tree.TimeConstraint) -> str:
 
 
 def emission_meaning(emission: tree.Emission) -> str:
-    """Say what a behaviour emits as an event of the model."""
+    """Describe what a behaviour emits as an event of the model."""
     moment = emission.moment.text
     return f"When the behaviour emits its own event `{moment}`, the event `{emission.event.path}` of the model occurs."
 
 
 def word_of(use: tree.PhraseUse) -> Predicate | Behaviour:
-    """Return the catalog's word behind a phrase."""
+    """Return the catalog word of a phrase."""
     catalog = load_catalog()
     return catalog.predicates.get(use.word) or catalog.behaviours[use.word]
 
 
 def word_meaning(word: Predicate | Behaviour) -> str:
-    """Describe a word of the catalog: its phrase, what it means, how its margin is measured."""
+    """Describe a catalog word: its phrase, its meaning, the unit of its margin."""
     lines = [f"`{word.phrase}`", word.doc]
     unit = getattr(word, "unit", None)
     if unit is not None:

@@ -1,4 +1,4 @@
-"""Whole declarations to fill in, made from the grammar: what a declaration must have, a placeholder for each word."""
+"""Snippets of whole declarations, generated from the grammar: the required parts, with placeholders."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ _CHOSEN: Mapping[str, str] = {
     "VectorOrNumber": "Number",
     "Variable": "PlainVariable",
 }
-"""The alternative to show where the grammar's first one is not the usual one."""
+"""The alternative to show if the grammar's first one is not the most common."""
 _SHOWN = frozenset({"namespace", "duration", "task", "role", "given", "then", "root"})
-"""The parts that may be left out but are shown."""
+"""Optional parts that are shown."""
 _LABELS = frozenset({"Given", "When", "Then", "Scenarios", "variation"})
 _SAMPLES: Mapping[str, str] = {
     "NameText": "name",
@@ -64,7 +64,7 @@ class Snippet:
 
     @property
     def plain(self) -> str:
-        """The body with what the placeholders say, for clients without snippets."""
+        """The body with the text of its placeholders, for clients without snippet support."""
         return re.sub(r"\$\{\d+(?::([^}]*)|\|([^,|]*)[^}]*)\}", lambda match: match[1] or match[2] or "", self.body)
 
 
@@ -79,7 +79,7 @@ def declaration_snippets(language: str) -> tuple[Snippet, ...]:
 
 @cache
 def keyword_form(language: str, words: str) -> str | None:
-    """Return what is written with some keywords: from them to the end of what they begin, else all around them."""
+    """Return the form that some keywords start, up to its end, or else the whole form around them."""
     rules = read_grammar(grammar_text(language))
     wanted = words.split()
     every = [parts for rule in rules.values() for parts in _sequences(rule)]
@@ -97,7 +97,7 @@ def keyword_form(language: str, words: str) -> str | None:
 
 
 def _sequences(part: Expression) -> Iterator[tuple[Expression, ...]]:
-    """Yield the runs of parts in a rule, outer ones first."""
+    """Yield the sequences of parts in a rule, outer ones first."""
     match part:
         case Sequence():
             yield part.parts
@@ -118,7 +118,7 @@ def _sequences(part: Expression) -> Iterator[tuple[Expression, ...]]:
 
 
 def _up_to_label(parts: tuple[Expression, ...], words: int) -> tuple[Expression, ...]:
-    """Return the first parts, up to the next ones with a label of their own, or to a bracket opened before them."""
+    """Return the first parts, up to the next part with a label, or to a bracket opened before them."""
     depth = 0
     for number, part in enumerate(parts):
         if part in (Literal("{"), Literal("(")):
@@ -143,7 +143,7 @@ def _has_literal(part: Expression, text: str) -> bool:
 
 
 class _Writer:
-    """Writes one declaration with marks for its placeholders, which the layout takes for names."""
+    """Writes one declaration with markers for its placeholders, which the layout treats as names."""
 
     def __init__(self, rules: Mapping[str, Expression]) -> None:
         self._rules = rules
@@ -156,7 +156,7 @@ class _Writer:
         return Snippet(" ".join(keywords), _MARK.sub(lambda match: self._placeholders[int(match[1])], laid_out))
 
     def form(self, parts: tuple[Expression, ...]) -> str:
-        """Return parts of a rule with what the placeholders say."""
+        """Return parts of a rule with the text of the placeholders."""
         words = list(dropwhile(lambda word: word == _BREAK, self._words(Sequence(parts), depth=1)))
         laid_out = lay_out(_broken_into_lines(words)).rstrip("\n")
         body = _MARK.sub(lambda match: self._placeholders[int(match[1])], laid_out)
@@ -233,7 +233,7 @@ def _in_words(role: str) -> str:
 
 
 def _begins_line(parts: tuple[Expression, ...]) -> bool:
-    """Tell whether a labelled part (``base name:``), or a line of a story, begins with some parts of a rule."""
+    """Return whether parts of a rule start with a labelled part (``base name:``), or a line of a story."""
     first = parts[0].part if isinstance(parts[0], Optional) else parts[0]
     if isinstance(first, Sequence):
         return _begins_line(first.parts)
@@ -248,7 +248,7 @@ def _is_word(parts: tuple[Expression, ...]) -> bool:
 
 
 def _broken_into_lines(words: list[str]) -> str:
-    """Join words, with line breaks below each opening brace and each section's label and above each closing brace."""
+    """Join words, with line breaks after each opening brace and section label and before each closing brace."""
     text = ""
     for number, word in enumerate(words):
         before = words[number - 1] if number else ""

@@ -1,4 +1,4 @@
-"""The user stories of a file with their scenario variants, read from its text, as a tree of tests shows them."""
+"""The user stories of a file with their variants, read from its text, for test trees."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 _PATTERNS = {".bdd": re.compile(r"\bUser\s+Story\b"), ".bddx": re.compile(r"\bScenario\s+Exec\b")}
-"""What can be run, by the ending of the file that it stands in."""
+"""Pattern of runnable declarations, by file extension."""
 
 
 @dataclass(frozen=True, slots=True)
 class ListedVariant:
     """A variant; ``count`` is the number of its scenarios (``None`` while unknown).
 
-    ``variation`` is the absolute span of what lists its values: the whole table, or the first line of a product.
+    ``variation`` is the absolute span of its values: the whole table, or the first line of a product.
     """
 
     placed: PlacedVariant
@@ -38,7 +38,7 @@ class ListedVariant:
 
 @dataclass(frozen=True, slots=True)
 class ListedStory:
-    """A story and what it wants, with its variants in the order of the text."""
+    """A story with its role, feature and benefit, and its variants in text order."""
 
     definition: Definition
     iri: str
@@ -47,7 +47,7 @@ class ListedStory:
 
 
 def stories_in(snapshot: Snapshot, uri: str) -> list[ListedStory]:
-    """Return the stories of a file that have an IRI, in the order of the text."""
+    """Return the stories of a file that have an IRI, in text order."""
     file = snapshot.file(uri)
     variants = list(variants_of(snapshot, uri))
     found: list[ListedStory] = []

@@ -1,4 +1,4 @@
-"""The types of variables, to be shown behind the places where they are declared."""
+"""Inlay hints with the types of variables at their declarations."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class TypeHint:
-    """What to show behind a declared variable, whose name is at ``span`` (absolute)."""
+    """The hint after a declared variable, whose name is at ``span`` (absolute)."""
 
     span: Span
     type: VariableType
 
     @property
     def label(self) -> str:
-        """The type as it would be written behind the name."""
+        """The type as text."""
         return f": {self.type}"
 
 
 def type_hints(snapshot: Snapshot, uri: str, within: Span) -> list[TypeHint]:
-    """Return a hint for each variable declared in a part of a file whose type is known."""
+    """Return a hint for each variable with a known type that is declared in a span of a file."""
     file = snapshot.file(uri)
     hints: list[TypeHint] = []
     if file is None:
@@ -47,7 +47,7 @@ def type_hints(snapshot: Snapshot, uri: str, within: Span) -> list[TypeHint]:
 
 
 def _declared(placed: PlacedDeclaration) -> Iterator[tuple[str, Span]]:
-    """Yield the qualified names of the variables that a declaration introduces, with their absolute spans."""
+    """Yield the qualified names of the variables declared in a declaration, with their absolute spans."""
     root = placed.declaration.tree
     if isinstance(root, tree.Template):
         for variable in root.variables:

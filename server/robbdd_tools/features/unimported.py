@@ -1,4 +1,4 @@
-"""Model files that a file could import and does not: loaded ones, those beside it, those elsewhere in the workspace."""
+"""Model files that a file could import: loaded ones, those in its folder, those elsewhere in the workspace."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import SymbolKind
 
 Kinds = Mapping[str, "tuple[SymbolKind, ...]"]
-"""Qualified name → what it is declared as."""
+"""Qualified name → kinds of its declarations."""
 MOST_NEIGHBOURS = 200
-"""Model files beside one another that are searched for a name."""
+"""Maximum number of model files in one folder that are searched for a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +33,13 @@ class Importable:
 
 
 class Elsewhere:
-    """The names of the workspace's files that nobody has loaded, as they were when these were last looked at."""
+    """The names in the workspace's unloaded files, at the time of the last ``look``."""
 
     def __init__(self) -> None:
         self._known: dict[str, tuple[FileState, Kinds]] = {}
 
     def look(self, uris: Iterable[str]) -> None:
-        """Take in just these files; only those that have changed are read."""
+        """Use exactly these files; only changed ones are read."""
         found = dict.fromkeys(uris)
         for uri in found:
             checkpoint()
@@ -52,20 +52,20 @@ class Elsewhere:
             del self._known[gone]
 
     def importable(self, snapshot: Snapshot, uri: str) -> list[Importable]:
-        """Return the files that a file may import, neither loaded nor beside it, in the order of the paths to write."""
+        """Return the files that a file may import, neither loaded nor in its folder, sorted by import path."""
         passed_over = {*snapshot.sources, *_beside(uri)}
         return _importable(uri, ((name, found) for name, (_, found) in self._known.items() if name not in passed_over))
 
 
 def loaded(snapshot: Snapshot, uri: str) -> list[Importable]:
-    """Return the files of the project that a file may still import, in the order of the paths to write."""
+    """Return the files of the project that a file does not import yet but may, sorted by import path."""
     reached = {file.document.uri for file in snapshot.scope(uri).files}
     indices = (source for source in snapshot.sources.values() if isinstance(source, FileIndex))
     return _importable(uri, ((i.document.uri, i.names.kinds) for i in indices if i.document.uri not in reached))
 
 
 def beside(snapshot: Snapshot, uri: str) -> list[Importable]:
-    """Return the files in the folder of a file that it may import and that nobody has loaded yet."""
+    """Return the unloaded files in a file's folder that it may import."""
     unread = (file_on_disk(name) for name in _beside(uri) if name not in snapshot.sources)
     return _importable(uri, ((index.document.uri, index.names.kinds) for index in unread if index is not None))
 
@@ -92,7 +92,7 @@ def _beside(uri: str) -> list[str]:
 
 
 def file_on_disk(uri: str) -> FileIndex | None:
-    """Return what a file on disk says, kept until it changes there; ``None`` when it cannot be read."""
+    """Return the index of a file on disk, cached until it changes; ``None`` if it cannot be read."""
     state = file_state(uri)
     return None if state is None else _index_of(state)
 

@@ -1,4 +1,4 @@
-"""Errors that users' code had in the last runs, at the places in the models that lead to that code."""
+"""Errors of users' code in the last runs, mapped to the places in models that refer to that code."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ CODE = "user-code-error"
 
 @dataclass(frozen=True, slots=True)
 class UserError:
-    """One cause, with the scenarios that it left without evidence."""
+    """One cause, with the scenarios that are unknown because of it."""
 
     fault: Fault
     scenarios: tuple[JudgedScenario, ...]
 
     @property
     def words(self) -> str:
-        """What failed, how and where, in one line."""
+        """Summary of the error in one line."""
         place = self.fault.place
         where = "" if place is None else f" ({Path(place.file).name}:{place.line})"
         return f"{self.fault.code} failed: {self.fault.summary}{where}"
 
 
 def user_errors(snapshot: Snapshot, scenarios: Iterable[JudgedScenario]) -> list[UserError]:
-    """Return the causes that the text and the code as they are now still have, each once.
+    """Return the distinct errors that still apply to the current text and code.
 
-    A scenario whose text, or whose code's file, has changed since it was executed has none.
+    Errors of a scenario are dropped if its text or the code's file has changed since its execution.
     """
     broken = [scenario for scenario in scenarios if scenario.faults]
     found: dict[str, tuple[Fault, list[JudgedScenario]]] = {}
@@ -61,10 +61,10 @@ def user_errors(snapshot: Snapshot, scenarios: Iterable[JudgedScenario]) -> list
 
 
 def errors_in(snapshot: Snapshot, uri: str, errors: Sequence[UserError]) -> Iterator[tuple[Span, UserError, str]]:
-    """Yield the errors that belong into a model file: where, which, and what is to be said there.
+    """Yield the errors to show in a model file: span, error, message.
 
-    An error is at the name of each scenario that it spoils, and in a ``.bddx`` at the ``bhv:`` or the declaration that
-    names the code.
+    An error is shown at the name of each scenario without evidence, and in a ``.bddx`` at the ``bhv:`` or the
+    declaration that names the code.
     """
     for variant in variants_of(snapshot, uri) if errors else ():
         for error in errors:
@@ -81,7 +81,7 @@ def errors_in(snapshot: Snapshot, uri: str, errors: Sequence[UserError]) -> Iter
 def _origins(
     snapshot: Snapshot, uri: str, error: UserError, executions: Mapping[str, PlacedExecution]
 ) -> Iterator[Span]:
-    """Yield where a file names the code: at ``bhv:`` of the executions, else where the name is declared."""
+    """Yield the places where a file names the code: ``bhv:`` of the executions, otherwise the name's declaration."""
     origin = error.fault.origin
     named = False
     for iri in dict.fromkeys(scenario.execution for scenario in error.scenarios):
@@ -96,7 +96,7 @@ def _origins(
 
 
 def _is_unchanged(fault: Fault, known: dict[str, str]) -> bool:
-    """Tell whether the file where a fault arose is as it was; ``known`` keeps digests of files."""
+    """Return whether the file of a fault is unchanged; ``known`` caches digests of files."""
     place = fault.place
     if place is None:
         return True

@@ -1,4 +1,4 @@
-"""Which kinds of things fit at a cursor, read from half-typed text: a cell, a line of values, a slot of a phrase."""
+"""The kinds that fit at a cursor, read from partly typed text: a cell, a line of values, a slot of a phrase."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _MEMBER_KINDS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
 
 
 def values_wanted(snapshot: Snapshot, uri: str, before: str) -> Kinds:
-    """Return what the variable takes whose value is being written behind a text."""
+    """Return the kinds of the variable whose value is being typed at the end of a text."""
     path = _variable_of_line(before) or _variable_of_cell(before)
     for file, declared in snapshot.scope(uri).find(path) if path else ():
         if declared.symbol.kind in ROLE_KINDS["Variable"]:
@@ -45,7 +45,7 @@ def values_wanted(snapshot: Snapshot, uri: str, before: str) -> Kinds:
 
 
 def scene_wanted(snapshot: Snapshot, uri: str, before: str) -> frozenset[Element] | None:
-    """Return the members of the scene of the variant that a text ends in; ``None`` where they are not known."""
+    """Return the members of the scene of the variant that a text ends in; ``None`` if unknown."""
     variant = before[before.rfind("Scenario") :]
     match = _SCENE.search(variant)
     scope = snapshot.scope(uri)
@@ -56,7 +56,7 @@ def scene_wanted(snapshot: Snapshot, uri: str, before: str) -> frozenset[Element
 
 
 def fits(snapshot: Snapshot, definition: Definition, wanted: Kinds, members: frozenset[Element] | None = None) -> bool:
-    """Tell whether a value or a set of values may be given where some kinds are wanted.
+    """Return whether a value or a set of values fits some kinds.
 
     With the ``members`` of a scene, an element of a kind that the scene has must be one of them.
     """
@@ -74,17 +74,17 @@ def fits(snapshot: Snapshot, definition: Definition, wanted: Kinds, members: fro
 
 
 def may_be(kind: SymbolKind, wanted: Kinds) -> bool:
-    """Tell whether a name of some kind, or a set of such, may be given where some kinds are wanted."""
+    """Return whether a name of some kind, or a set of that kind, fits some kinds."""
     return _ELEMENT_KINDS.get(kind) is None or _ELEMENT_KINDS[kind] in wanted
 
 
 def slot_wanted(before: str) -> Kinds:
-    """Return what the slot takes that a text ends in; anything where no phrase has begun."""
+    """Return the kinds of the slot that a text ends in; any kind if no phrase has started."""
     return next((kinds for pattern, kinds in _beginnings() if pattern.search(before)), ANYTHING)
 
 
 def kinds_in_text(text: str) -> dict[str, Kinds]:
-    """Return what the whole phrases in a text take its variables for; the text need not parse."""
+    """Return the kinds of variables according to the complete phrases in a text, which need not parse."""
     found: dict[str, Kinds] = {}
     for pattern, slots in _phrases():
         for match in pattern.finditer(text):
@@ -99,7 +99,7 @@ def _variable_of_line(before: str) -> str | None:
 
 
 def _variable_of_cell(before: str) -> str | None:
-    """Return the variable of the column in which a table is being written."""
+    """Return the variable of the table column at the end of a text."""
     table = before[before.rfind("variation") :]
     rule = _RULE.search(table)
     if rule is None:
@@ -112,7 +112,7 @@ def _variable_of_cell(before: str) -> str | None:
 
 @cache
 def _beginnings() -> tuple[tuple[re.Pattern[str], Kinds], ...]:
-    """The beginnings of all phrases up to a slot, the longest first, with what the slot takes."""
+    """Return the beginnings of all phrases up to a slot, longest first, with the slot's kinds."""
     found: list[tuple[str, Kinds]] = []
     for word, pieces in _words():
         for index, (pattern, slot) in enumerate(pieces):
@@ -132,7 +132,7 @@ def _phrases() -> tuple[tuple[re.Pattern[str], tuple[Kinds, ...]], ...]:
 
 
 def _words() -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """Yield each word of the catalog with the patterns of its pieces; a slot's name stands beside its pattern."""
+    """Yield each catalog word with the patterns of its pieces, each with its slot's name, if any."""
     catalog = load_catalog()
     for word in (*catalog.predicates.values(), *catalog.behaviours.values()):
         pieces: list[tuple[str, str]] = []

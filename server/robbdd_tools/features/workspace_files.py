@@ -12,14 +12,14 @@ from robbdd_tools.base.limits import SCANNED_DEPTH, SCANNED_ENTRIES
 from robbdd_tools.names.index import language_of
 
 MOST_FILES = 5_000
-"""Model files of a workspace that are looked at."""
+"""Maximum number of model files per workspace."""
 MOST_FOLDERS = 200
-"""Folders that are looked into around a file that is in no folder of the workspace."""
+"""Maximum number of folders searched around a file outside of the workspace's folders."""
 _PASSED_OVER = frozenset({"node_modules", "__pycache__", "build", "dist"})
 
 
 def model_files(folders: Iterable[str]) -> list[str]:
-    """Return the URIs of the model files below some folders in alphabetical order; hidden folders are passed over."""
+    """Return the URIs of the model files below some folders in alphabetical order; hidden folders are skipped."""
     found: dict[str, None] = {}
     for folder in folders:
         path = uri_to_path(folder)
@@ -31,12 +31,12 @@ def model_files(folders: Iterable[str]) -> list[str]:
 
 
 def model_files_near(uri: str) -> list[str]:
-    """Return the model files in a file's own folder and those below, as far as ``MOST_FOLDERS`` go, sorted."""
+    """Return the model files in a file's folder and below, in up to ``MOST_FOLDERS`` folders, sorted."""
     return files_near(uri, language_of)
 
 
 def files_near(uri: str, wanted: Callable[[str], object]) -> list[str]:
-    """Return the files whose names are wanted in a file's folder and those below, see ``model_files_near``."""
+    """Return the files with wanted names in a file's folder and below, see ``model_files_near``."""
     path = uri_to_path(uri)
     return sorted(_below(path.parent, wanted, MOST_FOLDERS)) if path is not None else []
 

@@ -1,4 +1,4 @@
-"""The names that all model files of the workspace declare, open or not, by a search word."""
+"""Search the names declared in all model files of the workspace, open or not."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Named:
 
 
 def workspace_symbols(snapshot: Snapshot, folders: Iterable[str], query: str, most: int = 200) -> list[Named]:
-    """Return the names that have the query's letters in order, of the project's files and those below folders."""
+    """Return the names that contain the query's letters in order, in the project's files and those below folders."""
     found: list[Named] = []
     for uri in sorted({*model_files(folders), *snapshot.sources}):
         checkpoint()
@@ -55,7 +55,7 @@ def _fitting(snapshot: Snapshot, uri: str, letters: str) -> Iterator[Named]:
 
 
 def _paths(uri: str) -> tuple[str, ...]:
-    """Return the names of a file on disk; they are kept for many more files than what ``file_on_disk`` says."""
+    """Return the names in a file on disk; cached for many more files than ``file_on_disk``."""
     state = file_state(uri)
     return () if state is None else _paths_of(state)
 
