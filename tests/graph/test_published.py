@@ -119,8 +119,11 @@ def test_files_may_import_each_other(tmp_path: Path) -> None:
     ("imported", "words"),
     [
         ("none.ttl", "there is no file 'none.ttl'"),
-        ("https://example.org/none.ttl", "'https://example.org/none.ttl' is not fetched: put the file beside this one"),
-        ("notes.txt", "'notes.txt' is no graph"),
+        (
+            "https://example.org/none.ttl",
+            "'https://example.org/none.ttl' is not fetched: put the file next to this one",
+        ),
+        ("notes.txt", "'notes.txt' is not a graph"),
         ("broken.ttl", "'broken.ttl' cannot be read"),
     ],
 )
@@ -156,7 +159,7 @@ def test_an_unknown_namespace_with_terms_of_the_vocabulary_is_reported_with_the_
     (found,) = read_graph_file(document).faults
     assert (found.code, found.severity) == ("unknown-namespace", Severity.WARNING)
     assert found.message == (
-        "the namespace <https://my.url/bdd#> is unknown, so that nothing is made of its terms "
+        "the namespace <https://my.url/bdd#> is unknown, so its terms are ignored "
         f"('FluentClause', 'IsHeldPredicate', 'ref-agent'); did you mean <{BDD}>?"
     )
     assert document.text[found.span.start : found.span.end] == "https://my.url/bdd#"

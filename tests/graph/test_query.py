@@ -66,11 +66,11 @@ def test_ask_and_construct_are_answered_as_rows() -> None:
     ("query", "offset", "words"),
     [
         ("SELECT ?x WHERE { ?x a nope:Thing }", 23, "the prefix 'nope' is not declared; there are"),
-        ("SELEKT ?x", 0, "cannot be read from here on"),
+        ("SELEKT ?x", 0, "cannot be parsed from here on"),
         ("SELECT ?x { SERVICE <https://example.org/> { ?x ?y ?z } }", 12, "SERVICE and FROM are not followed"),
         ("SELECT ?x FROM <https://example.org/> { ?x ?y ?z }", 10, "SERVICE and FROM are not followed"),
-        ("INSERT DATA { t:a t:b t:c }", 0, "cannot be read from here on"),
-        ("", 0, "cannot be read from here on"),
+        ("INSERT DATA { t:a t:b t:c }", 0, "cannot be parsed from here on"),
+        ("", 0, "cannot be parsed from here on"),
     ],
 )
 def test_a_bad_query_is_refused_at_its_place(query: str, offset: int, words: str) -> None:

@@ -184,10 +184,12 @@ def test_a_context_on_the_network_is_refused_with_what_to_do() -> None:
 
 @pytest.mark.parametrize(("form", "text"), [("ttl", "a b"), ("json-ld", "{"), ("nt", "<a> <b>"), ("xml", "<a")])
 def test_a_text_that_is_no_graph_is_refused_with_a_sentence(form: str, text: str) -> None:
-    with pytest.raises(UnreadableGraph, match=f"no graph in the format {form}"):
+    with pytest.raises(UnreadableGraph, match=f"not a graph in the format {form}"):
         parse(text, form)
 
 
 def test_an_unknown_format_names_the_known_ones() -> None:
-    with pytest.raises(ValueError, match="'n3' is no graph format; there are ttl, json-ld, json-ld-expanded, nt, xml"):
+    with pytest.raises(
+        ValueError, match="'n3' is not a graph format; there are ttl, json-ld, json-ld-expanded, nt, xml"
+    ):
         serialize(Graph(), "n3")

@@ -127,8 +127,8 @@ def test_a_shape_that_would_ask_a_server_is_refused(project: Path, asks: str) ->
     [
         ('[tool.robbdd]\nshapes = "shapes/*.ttl"\n', "'shapes' is a list of file patterns, such as"),
         ('[tool.robbdd]\nshapes = ["rules/*.ttl"]\n', "no file matches the shapes 'rules/*.ttl'"),
-        ('[tool.robbdd]\nshapes = ["/abs/*.ttl"]\n', "'/abs/*.ttl' is no file pattern"),
-        ("[tool.robbdd]\nshapes = [\n", "no TOML: "),
+        ('[tool.robbdd]\nshapes = ["/abs/*.ttl"]\n', "'/abs/*.ttl' is not a file pattern"),
+        ("[tool.robbdd]\nshapes = [\n", "not valid TOML: "),
     ],
 )
 def test_a_wrong_configuration_is_reported_at_its_place(project: Path, text: str, message: str) -> None:

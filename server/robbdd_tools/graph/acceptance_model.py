@@ -1,6 +1,6 @@
-"""Acceptance criteria as plain data, read from a graph: what Gherkin and runs are made from.
+"""Acceptance criteria as plain data, read from a graph; input of Gherkin generation and runs.
 
-Nothing here knows RDF or source text; a model that was never written in RobBDD looks the same.
+Independent of RDF and source text; a model that was never written in RobBDD has the same form.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from robbdd_tools.monitor.time import TimeConstraint
 
 
 class Iri(str):
-    """An IRI, as opposed to a string that a user wrote."""
+    """An IRI, as opposed to a user's string."""
 
     __slots__ = ()
 
@@ -24,7 +24,7 @@ Value = Iri | str | int | float
 """An element, a string or a number."""
 
 Cell = Value | tuple[Value, ...]
-"""What one variable gets in one scenario: a value, or a set of values in written order."""
+"""Value of one variable in one scenario: a value, or a set of values in written order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +84,8 @@ class EventClause:
 class BehaviourClause:
     """The behaviour in ``When``: ``behaviour`` is the catalog name, ``start``/``end`` the events of its duration.
 
-    ``node`` is that of a behaviour tree which executes it, if there is one. ``emits`` are the behaviour's own events
-    (``pick-end``) that the model gives another event for, in written order.
+    ``node`` is the behaviour tree node that executes it, if any. ``emits`` maps the behaviour's own events
+    (``pick-end``) to events of the model, in written order.
     """
 
     iri: Iri
@@ -122,7 +122,7 @@ Clause = Fluent | TextFluent | TextClause | Junction | EventClause | BehaviourCl
 
 
 def every_clause(clauses: Iterable[Clause]) -> Iterator[Clause]:
-    """Yield clauses at any depth, each before its parts."""
+    """Yield clauses at any depth, parents before their parts."""
     for clause in clauses:
         yield clause
         match clause:
@@ -139,7 +139,7 @@ def behaviour_clauses(clauses: Iterable[Clause]) -> Iterator[BehaviourClause]:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Sets chosen from a set: ``kind`` is ``combinations`` or ``permutations``."""
+    """A selection of sets from a set: ``kind`` is ``combinations`` or ``permutations``."""
 
     kind: str
     source: tuple[Value, ...]
@@ -148,7 +148,7 @@ class Selection:
 
     @property
     def rule(self) -> SelectionRule:
-        """The rule that counts and lists the sets."""
+        """The rule that counts and enumerates the sets."""
         return SelectionRule(self.kind, self.length, self.repeated)
 
 
@@ -235,11 +235,11 @@ class BehaviourTree:
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """How a scenario variant is executed.
+    """An execution of a scenario variant.
 
-    ``implementation`` executes its behaviours in ``scene``, ``policies`` judge clauses of it in place of the
-    predicates. ``repeat`` is how often, ``seed`` decides everything random (``None``: the run's), ``timeout`` is in
-    seconds of simulated time.
+    ``implementation`` executes its behaviours in ``scene``, ``policies`` judge its clauses instead of the predicates.
+    ``repeat`` is the number of repetitions, ``seed`` determines all randomness (``None``: the run's seed), ``timeout``
+    is in seconds of simulated time.
     """
 
     iri: Iri
@@ -254,10 +254,10 @@ class Execution:
 
 @dataclass(frozen=True, slots=True)
 class AcceptanceModel:
-    """Everything a graph says about acceptance criteria.
+    """All acceptance criteria of a graph.
 
-    ``kinds`` tells of every element its kind (``object``, ``workspace``, ``agent``); ``sets`` holds the constant
-    sets; ``prefixes`` maps prefix to namespace for writing CURIEs; ``executions`` are in written order.
+    ``kinds`` maps each element to its kind (``object``, ``workspace``, ``agent``); ``sets`` holds the constant sets;
+    ``prefixes`` maps prefix to namespace for writing CURIEs; ``executions`` are in written order.
     """
 
     stories: tuple[Story, ...]
@@ -268,7 +268,7 @@ class AcceptanceModel:
     trees: tuple[BehaviourTree, ...] = ()
 
     def curie(self, iri: str) -> str:
-        """Shorten an IRI by the longest matching namespace; one that none matches is returned as it is."""
+        """Shorten an IRI by the longest matching namespace; without a match it is returned unchanged."""
         best = max(
             ((namespace, prefix) for prefix, namespace in self.prefixes.items() if iri.startswith(namespace)),
             key=lambda pair: len(pair[0]),

@@ -1,4 +1,4 @@
-"""Acceptance criteria of a file, with the places where what is executed is written."""
+"""Acceptance criteria of a file, with the source positions of executed parts."""
 
 from __future__ import annotations
 

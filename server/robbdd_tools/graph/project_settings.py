@@ -1,4 +1,5 @@
-"""A project's settings: ``robbdd.toml``, or ``[tool.robbdd]`` in ``pyproject.toml``, nearest above a model."""
+"""A project's settings: ``robbdd.toml``, or ``[tool.robbdd]`` in ``pyproject.toml``, in the nearest folder above a
+model."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ _LINE_COLUMN = re.compile(r"\(at line (\d+), column (\d+)\)")
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A list of words that a file states under a key at ``offset``; ``faults`` are why it cannot be used."""
+    """A list of strings in a file under a key at ``offset``; ``faults`` are why it cannot be used."""
 
     file: Path
     offset: int = 0
@@ -28,14 +29,14 @@ class Setting:
     faults: tuple[Diagnostic, ...] = ()
 
     def fault(self, message: str) -> Diagnostic:
-        """Return a finding about this setting, at its key."""
+        """Return a diagnostic at the key of this setting."""
         return config_fault(self.file, self.offset, message)
 
 
 def nearest_setting(uri: str, key: str, form: str) -> Setting | None:
-    """Return what the nearest configuration above a model that has a key says there; ``None`` without any.
+    """Return the setting in the nearest configuration above a model that has the key; ``None`` without any.
 
-    ``form`` tells what is expected, for whoever wrote something else.
+    ``form`` describes the expected value, for error messages.
     """
     path = uri_to_path(uri)
     for folder in path.parents if path is not None else ():
@@ -48,13 +49,13 @@ def nearest_setting(uri: str, key: str, form: str) -> Setting | None:
 
 
 def user_setting(key: str, form: str) -> Setting | None:
-    """Return what the user's own configuration says under a key; see ``nearest_setting``."""
+    """Return the setting in the user's own configuration; see ``nearest_setting``."""
     file = user_file()
     return _setting(file, key, form) if os.path.lexists(file) else None
 
 
 def config_fault(file: Path, offset: int, message: str) -> Diagnostic:
-    """Return a finding about a place of a configuration."""
+    """Return a diagnostic at a place of a configuration."""
     return Diagnostic(path_to_uri(file), Span(offset, offset), Severity.ERROR, "config", message)
 
 
@@ -67,7 +68,7 @@ def _setting(file: Path, key: str, form: str) -> Setting | None:
     except tomllib.TOMLDecodeError as error:
         if file.name == "pyproject.toml" and "tool.robbdd" not in text:
             return None
-        return Setting(file, faults=(config_fault(file, _toml_offset(text, str(error)), f"no TOML: {error}"),))
+        return Setting(file, faults=(config_fault(file, _toml_offset(text, str(error)), f"not valid TOML: {error}"),))
     if file.name == "pyproject.toml":
         table = json_object(json_object(table.get("tool")).get("robbdd"))
     if key not in table:

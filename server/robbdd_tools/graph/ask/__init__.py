@@ -1,1 +1,1 @@
-"""Questions to a graph: SPARQL, its structure, its picture."""
+"""Query a graph: SPARQL, its structure, its picture."""

@@ -1,4 +1,4 @@
-"""The part of a structure that can still be looked at: all of it, or what the story around one node leads to."""
+"""Excerpt of a structure that is small enough to read: all of it, or the story around one node."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from robbdd_tools.graph.ask.structure import Node, Structure
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What is left of a structure, and the node that everything in it follows from (none: all is there)."""
+    """An excerpt, and the node that all others are reached from (``None``: the excerpt is complete)."""
 
     structure: Structure
     root: Node | None
 
 
 def limited(structure: Structure, most: int, wanted: Iterable[str]) -> Part:
-    """Return a structure of ``most`` nodes at most.
+    """Return a structure of at most ``most`` nodes.
 
-    Of a larger one that is the story that leads to the first node of ``wanted`` (IRIs) that there is, else the first
-    story; of a story that is too large itself its variant, then its template, then the first ``most`` nodes of that.
+    A larger one is reduced to the story that leads to the first existing node of ``wanted`` (IRIs), or else to the
+    first story; a story that is too large, to its variant, then its template, then the first ``most`` nodes of that.
     """
     nodes = {node.iri: node for node in structure.nodes()}
     if len(nodes) <= most:
@@ -41,7 +41,7 @@ def limited(structure: Structure, most: int, wanted: Iterable[str]) -> Part:
 
 
 def _reached(root: str, targets: Mapping[str, list[str]]) -> list[str]:
-    """Return what the links lead to from a node, itself first, in the order of the text."""
+    """Return the nodes reachable from a node, itself first, in text order."""
     found: dict[str, None] = {}
     waiting = [root]
     while waiting:

@@ -1,6 +1,6 @@
-"""SPARQL over a graph: all prefixes are declared, nothing is fetched, rows come in a fixed order.
+"""SPARQL on a graph: all prefixes are declared, nothing is fetched, rows come in a fixed order.
 
-rdflib reads the query and says where it is wrong; Oxigraph, where the extra ``fast-queries`` is installed, answers it.
+rdflib parses the query and reports its errors; Oxigraph evaluates it if the extra ``fast-queries`` is installed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ FOLDER = "queries"
 
 
 class BadQuery(Exception):
-    """A query cannot be answered; ``offset`` is the place in its text where it goes wrong."""
+    """A query cannot be answered; ``offset`` is the position of the error in its text."""
 
     def __init__(self, message: str, offset: int = 0) -> None:
         super().__init__(message)
@@ -46,8 +46,8 @@ class Term:
 class Rows:
     """The answer to SELECT: one term or ``None`` per column; to ASK: one cell of the column ``answer``.
 
-    CONSTRUCT and DESCRIBE answer with the triples of ``graph``: subject, predicate, object. ``prefixes`` maps prefixes
-    to namespaces, for whoever shows names. ``remarks`` say why a query may have fewer rows than expected.
+    CONSTRUCT and DESCRIBE return the triples of ``graph``: subject, predicate, object. ``prefixes`` maps prefixes to
+    namespaces, for display. ``remarks`` say why a query may have fewer rows than expected.
     """
 
     columns: tuple[str, ...]
@@ -73,7 +73,7 @@ def run_query(graph: Graph, text: str) -> Rows:
             return Rows(("answer",), ((truth,),), known, tuple(remarks))
         is_select = result.type == "SELECT"
         rows = cast("list[tuple[Node | None, ...]]", list(result if is_select else result.graph))
-    except Exception as error:  # evaluation raises whatever a function of the query runs into
+    except Exception as error:  # Evaluation raises any exception of the query's functions.
         raise BadQuery(f"the query cannot be answered: {error}") from error
     terms = [tuple(map(_term, row)) for row in rows]
     if not any(part.name == "OrderBy" for part in operators(query.algebra)):
@@ -83,7 +83,7 @@ def run_query(graph: Graph, text: str) -> Rows:
 
 
 def _made(triples: Any, prefixes: dict[str, str]) -> Graph:
-    """Return what CONSTRUCT or DESCRIBE made as a graph with the prefixes of the query."""
+    """Return the result of CONSTRUCT or DESCRIBE as a graph with the prefixes of the query."""
     from rdflib import Graph
 
     found = Graph(bind_namespaces="none")
@@ -94,20 +94,20 @@ def _made(triples: Any, prefixes: dict[str, str]) -> Graph:
 
 
 def ready_queries() -> dict[str, str]:
-    """Return the names of the queries that come with us and what each tells."""
+    """Return the names and descriptions of the built-in queries."""
     paths = sorted(data_folder("metamodels", FOLDER).glob("*.rq"))
     return {path.stem: load_text(path).partition("\n")[0].lstrip("# ") for path in paths}
 
 
 def ready_query(name: str) -> str | None:
-    """Return the text of a query that comes with us, ``None`` when there is none of this name."""
+    """Return the text of a built-in query, ``None`` if there is none of this name."""
     if name not in ready_queries():
         return None
     return load_text(data_file("metamodels", f"{FOLDER}/{name}.rq"))
 
 
 def _fast_copy(graph: Graph) -> Graph:
-    """Return a copy that Oxigraph answers for; the graph itself where that is not installed."""
+    """Return a copy in Oxigraph; the graph itself if that is not installed."""
     from rdflib import Graph
 
     if find_spec("oxrdflib") is None:
@@ -124,8 +124,8 @@ def _prepared(text: str, prefixes: dict[str, str]) -> Any:
     try:
         query = cast(Any, prepareQuery(text, initNs=prefixes))
     except ParseBaseException as error:
-        raise BadQuery("the query cannot be read from here on", error.loc) from error
-    except Exception as error:  # rdflib raises a bare Exception for an unknown prefix
+        raise BadQuery("the query cannot be parsed from here on", error.loc) from error
+    except Exception as error:  # rdflib raises a bare Exception for an unknown prefix.
         unknown = re.search(r"Unknown namespace prefix : (\S*)", str(error))
         found = re.search(rf"(?<![\w.\-]){re.escape(unknown[1])}:", text) if unknown else None
         message = (
@@ -136,7 +136,7 @@ def _prepared(text: str, prefixes: dict[str, str]) -> Any:
         part.name == "ServiceGraphPattern" for part in operators(query.algebra)
     ):
         word = re.search(r"\b(SERVICE|FROM)\b", text, re.IGNORECASE)
-        raise BadQuery("a query asks this model only: SERVICE and FROM are not followed", word.start() if word else 0)
+        raise BadQuery("a query reads only this model: SERVICE and FROM are not followed", word.start() if word else 0)
     return query
 
 
@@ -150,7 +150,7 @@ def _term(node: Node | None) -> Term | None:
 
 
 def _lexical(value: object, text: str) -> str:
-    """Return how a number is written, whichever engine computed it: 1.50 as 1.5; other text as it is."""
+    """Return the canonical form of a number, whichever engine computed it: 1.50 as 1.5; other text unchanged."""
     if isinstance(value, Decimal) and value.is_finite():
         return format(value.normalize() if value else Decimal(0), "f")
     return repr(value) if isinstance(value, float) else text

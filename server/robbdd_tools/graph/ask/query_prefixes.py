@@ -1,4 +1,4 @@
-"""What the prefixes of a query stand for where a model's own have the names of the vocabulary's (``bdd``, ``env``)."""
+"""Meaning of a query's prefixes if a model's own prefix has a name of the vocabulary (``bdd``, ``env``)."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _MORE_PREFIXES = {
 
 
 def query_prefixes(graph: Graph, text: str) -> tuple[dict[str, str], list[str]]:
-    """Return the prefixes of a query, and a remark on each that may stand for something else than expected.
+    """Return the prefixes of a query, and a remark on each that may have an unexpected meaning.
 
-    A model's own prefix counts, unless all terms that the query writes with it are the vocabulary's.
+    A model's own prefix wins, unless all terms that the query writes with it belong to the vocabulary.
     """
     own = user_prefixes(graph)
     taken: dict[str, str] = {}
@@ -48,7 +48,7 @@ def query_prefixes(graph: Graph, text: str) -> tuple[dict[str, str], list[str]]:
 
 
 def _uses(graph: Graph, text: str, prefix: str, namespace: str) -> bool:
-    """Tell whether a query that does not declare a prefix writes a term of a namespace with it."""
+    """Return whether a query uses a term of a namespace with a prefix that it does not declare."""
     from rdflib import URIRef
 
     if re.search(rf"\bPREFIX\s+{re.escape(prefix)}\s*:", text, re.IGNORECASE):

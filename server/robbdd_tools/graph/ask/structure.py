@@ -21,16 +21,16 @@ JOINED = {
     "bdd:ForAll": "for all",
     "bdd:ThereExists": "there is",
 }
-"""Class of a clause that holds others → what it is called in a picture."""
+"""Class of a nested clause → its label in a picture."""
 
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """Something to draw.
+    """A node to draw.
 
     ``concept`` is ``story``, ``variant``, ``template``, ``given``, ``when``, ``then``, ``event`` or ``node`` (of a
     behaviour tree); ``depth`` counts the groups and quantifiers around a clause, or the composites above a node;
-    ``location`` is where it is written.
+    ``location`` is its source range.
     """
 
     iri: str
@@ -43,7 +43,7 @@ class Node:
 
 @dataclass(slots=True)
 class Structure:
-    """Nodes in the order in which they are drawn, by layer, and the links between them (from, to, what it means)."""
+    """Nodes in drawing order, by layer, and the links between them (from, to, meaning)."""
 
     stories: list[Node] = field(default_factory=list[Node])
     variants: list[Node] = field(default_factory=list[Node])
@@ -59,7 +59,7 @@ class Structure:
 
 
 def structure_of(built: BuiltGraph) -> Structure:
-    """Return the structure of a graph; what nothing uses comes last."""
+    """Return the structure of a graph; unused nodes come last."""
     return _Reader(built, Records(built.graph)).read()
 
 

@@ -1,10 +1,10 @@
-"""Draws the structure of a graph: one column each for stories, variants, templates, clauses and events.
+"""Draw the structure of a graph: one column each for stories, variants, templates, clauses and events.
 
-The nodes of behaviour trees stand below the events, each below what it is a part of.
+The nodes of behaviour trees are below the events, each below its parent.
 
-Every link leads from a column to one further right, so that a layout is only a matter of heights: clauses are stacked
-in written order, and everything else stands beside the middle of what it leads to. A library for layered layout would
-have nothing left to decide.
+Every link leads from a column to one further right, so layout only chooses heights: clauses are stacked in written
+order, and every other node is centred on the nodes that it links to. A library for layered layout would have nothing
+left to decide.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ COLOURS = {
     "event": "#f6f2c4",
     "node": "#e3e3e3",
 }
-"""Fill of each concept; tints of colours that people with any colour vision tell apart, each with its own shape."""
+"""Fill of each concept: tints distinguishable with any colour vision; each concept also has its own shape."""
 STROKES = {
     "story": "#0060a0",
     "variant": "#a06a00",
@@ -50,7 +50,7 @@ COLUMNS = (("story", 210), ("variant", 180), ("template", 190), ("clause", 300),
 """Columns from the left with their widths, px."""
 SPACE, MARGIN, LINE, PADDING, GAP, INDENT = 70, 24, 16, 8, 12, 18
 LETTER = 6.4
-"""Mean width of a letter at 12 px, px: what text is wrapped by, since no font is asked."""
+"""Mean width of a letter at 12 px, px; text is wrapped by it because no font metrics are available."""
 STYLE = (
     "text{font:12px 'DejaVu Sans',Verdana,Arial,sans-serif;fill:#1b1b1b}"
     ".name{font-weight:bold}.role{font-size:10px;letter-spacing:.04em}"
@@ -77,7 +77,7 @@ class _Box:
 
 
 def draw(structure: Structure, source: Callable[[Location], str]) -> str:
-    """Return an SVG; ``source`` writes a place for the reader (``model.bdd:3:7``), which each node carries."""
+    """Return an SVG; ``source`` formats a location (``model.bdd:3:7``), which each node carries."""
     boxes = _laid_out(structure)
     right = MARGIN * 2 + sum(width for _, width in COLUMNS) + SPACE * (len(COLUMNS) - 1)
     bottom = max((box.bottom for box in boxes.values()), default=MARGIN) + 70
@@ -105,7 +105,7 @@ def draw(structure: Structure, source: Callable[[Location], str]) -> str:
 
 
 def _laid_out(structure: Structure) -> dict[str, _Box]:
-    """Place clauses first, then what leads to them, then the events beside the clauses that name them."""
+    """Place clauses first, then the nodes that link to them, then events next to the clauses that name them."""
     boxes: dict[str, _Box] = {}
     lefts = _lefts()
     owners = {end: start for start, end, _ in structure.links}
@@ -135,7 +135,7 @@ def _laid_out(structure: Structure) -> dict[str, _Box]:
 
 
 def _owner(clause: str, owners: Mapping[str, str], clauses: set[str]) -> str:
-    """Return the template or variant that a clause belongs to, through the groups around it."""
+    """Return the template or variant of a clause, through the groups around it."""
     owner = owners.get(clause, "")
     while owner in clauses:
         owner = owners[owner]
@@ -148,7 +148,7 @@ def _stack(
     boxes: dict[str, _Box],
     lefts: Mapping[str, tuple[float, float]],
 ) -> None:
-    """Place the nodes of a layer, each beside the middle of those it is linked with, as far as there is room."""
+    """Place the nodes of a layer, each centred on its linked nodes, as far as there is room."""
     wanted: list[tuple[float, int, _Box]] = []
     for number, node in enumerate(nodes):
         middles = [boxes[other].middle for other in beside.get(node.iri, ()) if other in boxes]
@@ -237,7 +237,7 @@ def _polygon(points: Iterable[tuple[float, float]], paint: str) -> str:
 
 
 def _link(start: _Box, end: _Box, kind: str) -> str:
-    """Draw a curve from one box to the next column, or down along the left side of a group to what is in it."""
+    """Draw a curve from one box to the next column, or down along the left side of a group to its members."""
     style = "link duration" if kind == "duration" else "link"
     if end.x < start.x + start.width:
         x = start.x + 5

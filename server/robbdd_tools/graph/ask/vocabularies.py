@@ -1,4 +1,4 @@
-"""Terms of queries: those of the paper's metamodel that our graphs state otherwise, and those that no triple has."""
+"""Terms in queries: those of the paper's metamodel that our graphs express differently, and unused ones."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
 LEAST_ALIKE = 0.6
-"""Share of common letters from which a term is a suggestion."""
+"""Minimum similarity of a suggestion."""
 MOST_KNOWN = 5000
-"""Terms that a suggestion is chosen from; more would take seconds."""
+"""Maximum number of terms searched for a suggestion; more would take seconds."""
 Pattern = tuple[Any, Any, Any]
 
 
@@ -42,10 +42,10 @@ def operators(algebra: Any) -> Iterator[Any]:
 
 
 def with_paper_terms(graph: Graph, asked: list[Pattern]) -> Graph:
-    """Return a graph with the triples of the 2025 paper's metamodel, if a query asks for its ``bdd:holds-at``.
+    """Return a graph with the triples of the 2025 paper's metamodel, if a query uses its ``bdd:holds-at``.
 
-    In the paper, a clause has a time constraint (``bdd:holds-at``) and a template has clauses (``bdd:has-clause``).
-    Our graphs, like the published tools, state the time constraint on the clause itself and the clauses as a list.
+    In the paper, a clause has a time constraint (``bdd:holds-at``) and a template has clauses (``bdd:has-clause``). Our
+    graphs, like the published tools, have the time constraint on the clause itself and the clauses as a list.
     """
     from rdflib import RDF, URIRef
 
@@ -65,7 +65,7 @@ def with_paper_terms(graph: Graph, asked: list[Pattern]) -> Graph:
 
 
 def _with_operands(graph: Graph, clauses: Node) -> Iterator[Node]:
-    """Yield the clauses of a list with those inside its groups (``not``, ``or`` …)."""
+    """Yield the clauses of a list and those inside its groups (``not``, ``or`` …)."""
     from rdflib import URIRef
 
     for clause in graph.items(clauses):
@@ -75,7 +75,7 @@ def _with_operands(graph: Graph, clauses: Node) -> Iterator[Node]:
 
 
 def unknown_terms(graph: Graph, asked: list[Pattern], prefixes: Mapping[str, str], text: str) -> list[str]:
-    """Return a remark on each term of a query's patterns that occurs in no triple, with the nearest that does."""
+    """Return a remark on each term of a query's patterns that no triple contains, with the nearest one that does."""
     predicates = set(graph.predicates())
     others: set[Node] = {*graph.subjects(), *graph.objects()}
     remarks: dict[str, None] = {}
@@ -111,7 +111,7 @@ def _place(name: str, iri: str, text: str) -> int:
 
 
 def shortened(iri: str, prefixes: Mapping[str, str]) -> str:
-    """Return an IRI with the longest prefix that fits, in full without any."""
+    """Return an IRI with the longest matching prefix, or in full."""
     fitting = [(ns, prefix) for prefix, ns in prefixes.items() if iri.startswith(ns) and len(iri) > len(ns)]
     if not fitting:
         return iri

@@ -1,1 +1,1 @@
-"""RDF itself: vocabulary, prefixes, contexts, lists, records, reading and writing of its formats."""
+"""RDF basics: vocabulary, prefixes, contexts, lists, records, parsing and serialising."""

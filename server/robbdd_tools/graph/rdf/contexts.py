@@ -1,6 +1,6 @@
-"""JSON-LD contexts by name: one beside the model, ours, or one that the user once allowed to be fetched.
+"""JSON-LD contexts by name: one next to the model, ours, or a cached one that the user allowed to fetch.
 
-The contexts of the published metamodels are known by their addresses: they are ours with the terms of older versions.
+The contexts of the published metamodels are known by their addresses: ours, plus the terms of older versions.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from robbdd_tools.graph.rdf.vocabulary import METAMODELS
 Json = dict[str, Any]
 CONTEXT_FILE = "context.jsonld"
 CONTEXT_IRI = f"https://robbdd.org/metamodels/{CONTEXT_FILE}"
-"""Under this name, or as ``context.jsonld`` beside a model, our context is known without any network."""
+"""Name of our context, which is available without network; so is ``context.jsonld`` next to a model."""
 _PUBLISHED = frozenset(
     {
         *("agent", "bdd", "behaviour", "behaviour-tree", "environment", "event", "execution-context"),
         *("observation", "python", "task", "time"),
     }
 )
-"""Names of the published files whose terms our context has."""
+"""Names of the published files whose terms our context includes."""
 _OLDER = {
     "holds": "bdd:holds",
     "holds-at": "bdd:holds-at",
@@ -46,33 +46,33 @@ _OLDER = {
     "ref-event": "time:ref-event",
     "of-constraint": "time:of-constraint",
 }
-"""Terms of older published metamodels, which are kept so that no triple is lost."""
+"""Terms of older published metamodels, kept so that no triple is lost."""
 TIMEOUT = 20.0
-"""Seconds that a server may take to answer."""
+"""Maximum time for a server's answer, s."""
 _WANTED = "application/ld+json, application/json;q=0.9"
 
 
 class UnknownContext(Exception):
-    """A JSON-LD document names a context that cannot be had; the message says what to do."""
+    """A JSON-LD document names a context that is not available; the message gives the fix."""
 
 
 @dataclass(frozen=True, slots=True)
 class ContextLoader:
-    """Loads contexts for pyld. Only ``hosts``, named by the user, are ever asked, and each of their contexts once.
+    """Loads contexts for pyld. Only the user's ``hosts`` are contacted, once per context.
 
-    A file in ``folder``, that of the model, takes the place of a web address that ends with its path.
+    A file in ``folder``, that of the model, replaces a web address that ends with its path.
     """
 
     hosts: frozenset[str] = frozenset()
     folder: Path | None = None
 
     def beside(self, document: str) -> ContextLoader:
-        """Return a loader that looks into the folder of a document, given by its URI."""
+        """Return a loader that searches the folder of a document, given by its URI."""
         path = uri_to_path(document) if document else None
         return self if path is None else replace(self, folder=path.parent)
 
     def __call__(self, url: str, _options: Mapping[str, Any]) -> Json:
-        """Return what pyld expects of a document loader; raises ``UnknownContext``."""
+        """Return a document in the form that pyld requires of a loader; raises ``UnknownContext``."""
         return {
             "contentType": "application/ld+json",
             "contextUrl": None,
@@ -81,7 +81,7 @@ class ContextLoader:
         }
 
     def document(self, url: str) -> Any:
-        """Return the JSON document behind a URL; raises ``UnknownContext``."""
+        """Return the JSON document at a URL; raises ``UnknownContext``."""
         path = uri_to_path(url)
         if url in (CONTEXT_IRI, CONTEXT_FILE) or (path and path.name == CONTEXT_FILE and not path.is_file()):
             return {"@context": bundled_context()}
@@ -118,7 +118,7 @@ class ContextLoader:
     def _check(self, url: str) -> None:
         host = urlsplit(url).hostname or ""
         if urlsplit(url).scheme not in ("http", "https"):
-            raise UnknownContext(f"the context '{url}' is no web address: a server redirected to it")
+            raise UnknownContext(f"the context '{url}' is not a web address: a server redirected to it")
         if host not in self.hosts:
             raise UnknownContext(
                 f"the context '{url}' is not fetched: allow it once with '--allow-host {host}', "
@@ -128,7 +128,7 @@ class ContextLoader:
 
 
 class _Redirects(urllib.request.HTTPRedirectHandler):
-    """Follows a redirection only to a host that is allowed too."""
+    """Follows redirections only to allowed hosts."""
 
     def __init__(self, check: Callable[[str], None]) -> None:
         self._check_host = check
@@ -139,7 +139,7 @@ class _Redirects(urllib.request.HTTPRedirectHandler):
 
 
 def _read(answer: Any, url: str) -> bytes:
-    """Return what a server sends, up to one byte more than is allowed; raises ``UnknownContext`` for a slow one."""
+    """Read a server's answer, up to one byte more than the limit; raises ``UnknownContext`` for a slow server."""
     most, data, deadline = MODEL_SIZE.value() + 1, bytearray(), monotonic() + TIMEOUT
     while len(data) < most and (part := answer.read1(min(65536, most - len(data)))):
         data += part
@@ -156,7 +156,7 @@ def bundled_context() -> Json:
 
 
 def is_published(url: str) -> bool:
-    """Tell whether an address is that of a context of the published metamodels, in any of their layouts."""
+    """Return whether an address is that of a context of the published metamodels, in any of their layouts."""
     if not url.startswith(METAMODELS):
         return False
     path = PurePosixPath(urlsplit(url).path)
@@ -165,7 +165,7 @@ def is_published(url: str) -> bool:
 
 @cache
 def published_context() -> Json:
-    """Return the context that stands for all published ones: values are named by strings, as published."""
+    """Return the context that replaces all published ones: values are named by strings, as published."""
     named = {"@type": "@id", "@container": "@list"}
     values = {"elements": {"@id": "bdd:elements", "@type": "@id"}}
     values |= {term: {"@id": f"bdd:{term}", **named} for term in ("of-sets", "rows")}
@@ -174,14 +174,14 @@ def published_context() -> Json:
 
 
 def file_for(url: str, folder: Path) -> Path | None:
-    """Return the file in a folder that a web address ends with, by the longest path that fits."""
+    """Return the file in a folder that matches the end of a web address by the longest path."""
     parts = PurePosixPath(urlsplit(url).path).parts[1:]
     candidates = (folder.joinpath(*parts[start:]) for start in range(len(parts)) if ".." not in parts)
     return next((path for path in candidates if path.is_file()), None)
 
 
 def cache_folder() -> Path:
-    """Return where fetched contexts are kept: ``ROBBDD_CACHE``, else the user's cache folder."""
+    """Return the folder of fetched contexts: ``ROBBDD_CACHE``, else the user's cache folder."""
     own = os.environ.get("ROBBDD_CACHE")
     if own:
         return Path(own) / "contexts"
@@ -200,7 +200,7 @@ def _json(url: str, text: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise UnknownContext(f"the context '{url}' is no JSON: {error}") from error
+        raise UnknownContext(f"the context '{url}' is not JSON: {error}") from error
 
 
 def _place(url: str) -> Path:
@@ -212,7 +212,7 @@ def _hash(text: str) -> str:
 
 
 def _cached(url: str) -> str | None:
-    """Return a kept copy whose text is still the one that was fetched."""
+    """Return the cached copy if its text is still the fetched one."""
     try:
         entry = cast(Json, json.loads(load_text(_place(url))))
         text = str(entry["text"])

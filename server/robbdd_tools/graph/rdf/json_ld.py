@@ -1,4 +1,4 @@
-"""A graph as expanded JSON-LD and the context that makes it readable."""
+"""A graph as expanded JSON-LD, and the context that makes it readable."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def context_for(prefixes: Mapping[str, str]) -> Json:
-    """Return our context with all prefixes of a graph; a prefix of the same name replaces a term of it."""
+    """Return our context with all prefixes of a graph; a prefix replaces a term with the same name."""
     names = {namespace: prefix for prefix, namespace in prefixes.items()}
     renamed = {name: names[namespace] for name, namespace in PREFIXES.items()}
     terms = {

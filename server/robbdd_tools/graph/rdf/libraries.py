@@ -1,4 +1,4 @@
-"""The only place where the loosely typed graph libraries are called; everything beyond it is fully typed."""
+"""The only module that calls the loosely typed graph libraries; all other modules are fully typed."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 
 
 def compact(expanded: list[Json], context: Json) -> Json:
-    """Compact expanded JSON-LD with a context; raises ``UnknownContext`` when the context names another by URL."""
+    """Compact expanded JSON-LD with a context; raises ``UnknownContext`` if the context refers to another by URL."""
     jsonld = _jsonld()
     options = {"documentLoader": ContextLoader(), "graph": True, "compactArrays": True}
     return cast(Json, jsonld.compact(expanded, {"@context": context}, options))
 
 
 def frame(expanded: list[Json], context: Json, kind: str) -> list[Json]:
-    """Return the nodes of a class (a CURIE of the context), each with all that it leads to inside it, once."""
+    """Return the nodes of a class (a CURIE of the context), each with all nodes reachable from it embedded once."""
     jsonld = _jsonld()
     options = {"documentLoader": ContextLoader(), "omitGraph": False, "omitDefault": True}
     framed = jsonld.frame(expanded, {"@context": context, "@type": kind, "@embed": "@once"}, options)
@@ -46,22 +46,22 @@ def triples(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[J
 
 
 class UnusableShapes(Exception):
-    """pyshacl cannot make sense of some shapes; ``message`` is the reason that it gives."""
+    """pyshacl rejects some shapes; ``message`` is its reason."""
 
 
 def shacl_report(graph: Graph, shapes: Graph) -> Graph:
-    """Return the SHACL validation report of a graph, without inference; the graph is left as it is.
+    """Return the SHACL validation report of a graph, without inference; the graph stays unchanged.
 
     Raises ``UnusableShapes``.
     """
     import pyshacl
 
     _keep_sparql_off_the_network()
-    # It prints what it raises as well.
+    # It also logs what it raises.
     logging.getLogger("pyshacl-validate").disabled = True
     try:
         outcome = cast(Any, pyshacl).validate(graph, shacl_graph=shapes, inference="none", inplace=True)
-    except Exception as error:  # shapes may hold anything, and pyshacl raises whatever it runs into
+    except Exception as error:  # Shapes may contain anything, and pyshacl raises any exception.
         raise UnusableShapes(str(getattr(error, "message", "") or error)) from error
     if not hasattr(outcome[1], "triples"):
         raise UnusableShapes(str(outcome[2]).strip() or repr(outcome[1]))
@@ -69,12 +69,12 @@ def shacl_report(graph: Graph, shapes: Graph) -> Graph:
 
 
 def _keep_sparql_off_the_network() -> None:
-    """Let no SPARQL of shapes ask a server, however it writes ``SERVICE`` or ``FROM``."""
+    """Prevent SPARQL in shapes from contacting a server, however it writes ``SERVICE`` or ``FROM``."""
     from rdflib.plugins import sparql
 
     def refuse_service(_context: object, part: Any) -> Any:
         if part.name == "ServiceGraphPattern":
-            raise UnusableShapes("the SPARQL of a shape asks this model only: SERVICE is not followed")
+            raise UnusableShapes("the SPARQL of a shape reads only this model: SERVICE is not followed")
         raise NotImplementedError
 
     loose: Any = sparql

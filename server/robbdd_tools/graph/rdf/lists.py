@@ -1,4 +1,4 @@
-"""RDF lists of a graph as Python lists, read once and without recursion along their length."""
+"""RDF lists of a graph as Python lists, read once, without recursion."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class Lists:
-    """The well-formed lists of a graph: blank cells with one first and one rest each, nothing else said of them."""
+    """The well-formed lists of a graph: blank cells with exactly one first and one rest, and no other property."""
 
     def __init__(self, graph: Graph) -> None:
         from rdflib import BNode
@@ -33,11 +33,11 @@ class Lists:
                 self._read(head)
 
     def items(self, head: Node) -> tuple[Node, ...] | None:
-        """Return the items of a list by its head; ``None`` for what is no list."""
+        """Return the items of a list by its head; ``None`` for other nodes."""
         return () if head == self._nil else self._lists.get(head)
 
     def is_cell(self, node: Node) -> bool:
-        """Tell whether a node is only a link of a well-formed list."""
+        """Return whether a node is only a cell of a well-formed list."""
         return node in self._cells
 
     def _is_used_once(self, graph: Graph, head: Node) -> bool:

@@ -1,4 +1,4 @@
-"""Prefixes of a graph: the user's names first, the vocabulary's where they are still free."""
+"""Prefixes of a graph: the user's names first, then the vocabulary's unless taken."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def prefix_for(name: str, taken: Collection[str]) -> str:
-    """Return a prefix that every format allows, ``name`` itself if it can be, with a number if it is taken."""
+    """Return a prefix valid in every format: ``name`` itself if possible, with a number if it is taken."""
     legal = name if name[:1].isalpha() and all(_is_legal(sign) for sign in name) else "ns"
     candidates = (legal if number == 1 else f"{legal}-{number}" for number in range(1, len(taken) + 2))
     return next(candidate for candidate in candidates if candidate not in taken)
@@ -30,7 +30,7 @@ def bind_prefixes(graph: Graph, user: Mapping[str, str]) -> dict[str, str]:
 
 
 def user_prefixes(graph: Graph) -> dict[str, str]:
-    """Return the prefixes that a graph states or, where it states none, those it was read with."""
+    """Return the prefixes stated in a graph or, if there are none, those it was read with."""
     from rdflib import URIRef
 
     stated = {str(name): str(namespace) for namespace, name in graph.subject_objects(URIRef(expand("rbw:prefix")))}
@@ -41,9 +41,9 @@ def user_prefixes(graph: Graph) -> dict[str, str]:
 
 
 def reading_prefixes(graph: Graph) -> dict[str, str]:
-    """Return the graph's prefixes, with invented ones for namespaces that have none: names are then short everywhere.
+    """Return the graph's prefixes, with generated ones for other namespaces, so that all names are short.
 
-    What a model's elements are called by itself decides which catalog model simulates them.
+    The local names of elements determine which catalog models simulate them.
     """
     from rdflib import URIRef
 

@@ -1,4 +1,4 @@
-"""A graph as records that plain Python can read: properties by CURIE, lists as tuples, literals as values."""
+"""Records for reading a graph in plain Python: properties by CURIE, lists as tuples, literals as values."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 class Incomplete(Exception):
-    """A piece of the graph lacks what its meaning depends on; whoever needs the piece does without."""
+    """A part of the graph lacks something essential and is left out."""
 
 
 class Records:
-    """Read access to a graph. Where a property has several values they come in alphabetical order."""
+    """Read access to a graph. Several values of a property come in alphabetical order."""
 
     def __init__(self, graph: Graph) -> None:
         from rdflib import Literal
@@ -45,7 +45,7 @@ class Records:
         return frozenset(str(kind) for kind in self._values.get(node, {}).get(self._type, ()))
 
     def is_a(self, node: str, term: str) -> bool:
-        """Tell whether a node has a class."""
+        """Return whether a node has a class."""
         return expand(term) in self.types(node)
 
     def instances(self, term: str) -> tuple[Iri, ...]:
@@ -57,11 +57,11 @@ class Records:
         return tuple(Iri(node) for node in self._values if self.all(node, term))
 
     def is_blank(self, node: Node) -> bool:
-        """Tell whether nothing is said of a node, which is no empty list either."""
+        """Return whether the graph says nothing of a node, and it is not an empty list."""
         return str(node) not in self._values and str(node) != self._nil
 
     def one(self, node: str, term: str) -> Iri:
-        """Return the only IRI that a property has; raises ``Incomplete`` when there is none or a choice."""
+        """Return the only IRI of a property; raises ``Incomplete`` unless there is exactly one."""
         values = self.all(node, term)
         if len(values) != 1 or isinstance(values[0], self._literal):
             raise Incomplete(f"{node} has {len(values)} values of {term}")
@@ -74,12 +74,12 @@ class Records:
         return None if first is None else self.value(first)
 
     def text(self, node: str, term: str) -> str:
-        """Return a property as text, empty when it is missing."""
+        """Return a property as text, empty if it is missing."""
         value = self.literal(node, term)
         return "" if value is None else str(value)
 
     def list_of(self, node: str, term: str) -> tuple[Node, ...]:
-        """Return a property's list; raises ``Incomplete`` when it is missing or no list."""
+        """Return a property's list; raises ``Incomplete`` if it is missing or not a list."""
         values = self.all(node, term)
         items = self.items(values[0]) if len(values) == 1 else None
         if items is None:
@@ -87,7 +87,7 @@ class Records:
         return items
 
     def items(self, head: Node) -> tuple[Node, ...] | None:
-        """Return the items of an RDF list by its head, ``None`` for what is no list."""
+        """Return the items of an RDF list by its head, ``None`` for other nodes."""
         items: list[Node] = []
         seen: set[str] = set()
         cell = str(head)
@@ -102,7 +102,7 @@ class Records:
         return tuple(items)
 
     def ordered(self, node: str, term: str, list_term: str) -> tuple[Node, ...]:
-        """Return the values of a property in the order of the list that goes with it, others behind."""
+        """Return a property's values in list order; values missing from the list come last."""
         values = self.all(node, term)
         listed = self.all(node, list_term)
         items = (self.items(listed[0]) if listed else None) or ()
@@ -112,11 +112,11 @@ class Records:
         return first + tuple(value for value in values if value in known)
 
     def iris(self, nodes: Iterable[Node]) -> tuple[Iri, ...]:
-        """Return those nodes that are no literals."""
+        """Return the nodes that are IRIs."""
         return tuple(Iri(node) for node in nodes if not isinstance(node, self._literal))
 
     def value(self, node: Node) -> Value:
-        """Return a node as a plain value; a literal of another datatype than a number's is its text."""
+        """Return a node as a plain value; a literal with a datatype other than a number's is text."""
         if not isinstance(node, self._literal):
             return Iri(node)
         value: object = node.value
@@ -127,7 +127,7 @@ class Records:
 
 
 def items_of(records: Records, node: str, term: str) -> tuple[Node, ...]:
-    """Return the items of a list property, none where there is no list."""
+    """Return the items of a list property, empty if there is no list."""
     heads = records.all(node, term)
     return (records.items(heads[0]) if len(heads) == 1 else None) or ()
 

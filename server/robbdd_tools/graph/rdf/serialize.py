@@ -1,4 +1,4 @@
-"""Graphs to text and back: Turtle, JSON-LD, N-Triples, RDF/XML. One graph gives one text, byte for byte."""
+"""Serialise and parse graphs: Turtle, JSON-LD, N-Triples, RDF/XML. Equal graphs give equal bytes."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
 FORMATS = {"ttl": "turtle", "json-ld": "json-ld", "json-ld-expanded": "json-ld", "nt": "nt", "xml": "xml"}
-"""Our name of a format → rdflib's."""
+"""Our name of a format → rdflib's name."""
 _SURROGATE = re.compile("[\ud800-\udfff]")
 _NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""What XML 1.0 has no way to write."""
+"""Characters that XML 1.0 cannot represent."""
 
 
 class UnreadableGraph(Exception):
-    """A text is not a graph in the format it is said to be in; ``offset`` is where it breaks off, 0 if unknown."""
+    """A text is not a graph in the given format; ``offset`` is the position of the error, 0 if unknown."""
 
     def __init__(self, message: str, offset: int = 0) -> None:
         super().__init__(message)
@@ -37,14 +37,14 @@ class UnreadableGraph(Exception):
 
 
 class UnwritableGraph(Exception):
-    """A text of the graph cannot be said in a format; the message names the character and the formats that can."""
+    """A format cannot represent a text of the graph; the message names the character and the formats that can."""
 
 
 def serialize(graph: Graph, format: str) -> str:
-    """Return a graph as text (a key of ``FORMATS``, else ``ValueError``) with all its prefixes.
+    """Return a graph as text in a format (a key of ``FORMATS``, else ``ValueError``) with all its prefixes.
 
-    Equal graphs give equal texts: blank nodes are numbered anew and everything is written in order. Raises
-    ``UnwritableGraph`` for characters that the format cannot say.
+    Equal graphs give equal texts: blank nodes are renumbered and everything is sorted. Raises ``UnwritableGraph`` for
+    characters that the format cannot represent.
     """
     _check_format(format)
     if not format.startswith("json"):
@@ -58,7 +58,7 @@ def serialize(graph: Graph, format: str) -> str:
     if format == "json-ld-expanded":
         return printable_json(expanded(ordered), indent=2) + "\n"
     if format == "nt":
-        # Not by splitlines, which takes control characters within a text for line ends.
+        # Not splitlines, which also splits at control characters within a text.
         lines = ordered.serialize(format="nt").rstrip("\n").split("\n")
         return printable_terms("".join(sorted(f"{line}\n" for line in lines if line)))
     text = printable_terms(_turtle(ordered)) if format == "ttl" else ordered.serialize(format=FORMATS[format])
@@ -78,8 +78,8 @@ def _check_characters(graph: Graph, refused: re.Pattern[str], format: str) -> No
 def _turtle(graph: Graph) -> str:
     """Return a graph as Turtle.
 
-    With every digit of its numbers, of which rdflib writes six; lists that lead back into themselves, which rdflib
-    would follow for ever, are written cell by cell.
+    Numbers keep all their digits, of which rdflib writes six; cyclic lists, which rdflib would follow for ever, are
+    written cell by cell.
     """
     from io import BytesIO
 
@@ -106,9 +106,9 @@ def _turtle(graph: Graph) -> str:
 
 
 def _by_story(nodes: list[Json], context: Json) -> list[Json]:
-    """Return each story with all that belongs to it inside, then the nodes that belong to none.
+    """Return each story with all nodes that belong to it embedded, then the other nodes.
 
-    A graph with blank nodes beside its lists is left flat: what their labels join must not come apart.
+    A graph with blank nodes outside of lists stays flat, because embedding would separate nodes with the same label.
     """
     compacted: list[Json] = compact(nodes, context).get("@graph", [])
     stories = [node for node in nodes if expand("bdd:UserStory") in node.get("@type", ())]
@@ -120,7 +120,7 @@ def _by_story(nodes: list[Json], context: Json) -> list[Json]:
 
 
 def _once(value: Any, described: set[str]) -> Any:
-    """Replace what was described before by its name: a list that is written twice would be two lists."""
+    """Replace repeated descriptions by references: a list written twice would become two lists."""
     if isinstance(value, list):
         return [_once(item, described) for item in cast("list[Any]", value)]
     fields = json_object(value)
@@ -132,10 +132,10 @@ def _once(value: Any, described: set[str]) -> Any:
 
 
 def parse(text: str, format: str, base: str = "", loader: ContextLoader | None = None) -> Graph:
-    """Return the graph that a text says; raises ``UnreadableGraph``, and ``ValueError`` for an unknown format.
+    """Parse a text as a graph; raises ``UnreadableGraph``, and ``ValueError`` for an unknown format.
 
-    Relative names are resolved against ``base``. Contexts that JSON-LD names by URL come from ``loader``, by default
-    one that fetches nothing.
+    Relative names are resolved against ``base``. ``loader`` provides the contexts that JSON-LD names by URL; the
+    default fetches nothing.
     """
     from rdflib import Graph
 
@@ -153,9 +153,9 @@ def parse(text: str, format: str, base: str = "", loader: ContextLoader | None =
             graph.parse(data=text, format=FORMATS[format], publicID=base or None)
     except UnknownContext as error:
         raise UnreadableGraph(str(error)) from error
-    except Exception as error:  # every rdflib parser has exceptions of its own
+    except Exception as error:  # Every rdflib parser has its own exceptions.
         reason, offset = _fault(error)
-        raise UnreadableGraph(f"this is no graph in the format {format}: {reason}", offset) from error
+        raise UnreadableGraph(f"this is not a graph in the format {format}: {reason}", offset) from error
     return graph
 
 
@@ -179,7 +179,7 @@ def context_prefixes(document: Any, base: str, loader: ContextLoader) -> Iterato
 
 
 def _fault(error: Exception) -> tuple[str, int]:
-    """Return why and where a parser gave up; each has its own way of telling."""
+    """Return reason and position of a parser's error; each parser reports them differently."""
     if isinstance(error, json.JSONDecodeError):
         return error.msg, error.pos
     why, offset = getattr(error, "_why", None), getattr(error, "_i", None)
@@ -190,7 +190,7 @@ def _fault(error: Exception) -> tuple[str, int]:
 
 def _check_format(format: str) -> None:
     if format not in FORMATS:
-        raise ValueError(f"'{format}' is no graph format; there are {', '.join(FORMATS)}")
+        raise ValueError(f"'{format}' is not a graph format; there are {', '.join(FORMATS)}")
 
 
 def _node(term: Json) -> Node:

@@ -1,6 +1,6 @@
-"""The names of the graph: published namespaces and our own, all in one place.
+"""The vocabulary of the graph: published namespaces and our own.
 
-Code writes terms as CURIEs (``bdd:has-clause``) with the prefixes of ``PREFIXES``, whatever a user's file calls them.
+Code writes terms as CURIEs (``bdd:has-clause``) with the prefixes of ``PREFIXES``, whatever prefixes a user's file has.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from functools import cache
 
 METAMODELS = "https://secorolab.github.io/metamodels/"
 WORKBENCH = "https://robbdd.org/metamodels/workbench#"
-"""What the published vocabulary lacks: groups of clauses, free text, events in When, narrative, written order."""
+"""Namespace of terms missing in the published vocabulary: groups, free text, events in When, narrative, written order."""
 SHAPES = "https://robbdd.org/metamodels/shapes#"
-"""Our SHACL shapes; the local name of a shape is the diagnostic code behind ``shacl-``."""
+"""Namespace of our SHACL shapes; a shape's local name is the diagnostic code without ``shacl-``."""
 
 PREFIXES = {
     "bdd": f"{METAMODELS}acceptance-criteria/bdd#",
@@ -44,7 +44,7 @@ MEMBERSHIPS = {
     "workspace": ("bdd:SceneHasWorkspaces", "env:has-workspace", "-scene-has-ws"),
     "agent": ("bdd:SceneHasAgents", "agn:has-agent", "-scene-has-agn"),
 }
-"""Kind of an element → class, property and IRI ending of the node that makes it a member of a scene."""
+"""Kind of an element → class, property and IRI suffix of the node that makes it a member of a scene."""
 JUNCTIONS = {"and": "rbw:Conjunction", "or": "rbw:Disjunction", "not": "rbw:Negation"}
 COMPOSITES = {"sequence": "bt:Sequence", "selector": "bt:Selector"}
 """Kind of a behaviour tree's composite → its class."""
@@ -53,6 +53,6 @@ SELECTIONS = {"combinations": "bdd:Combination", "permutations": "bdd:Permutatio
 
 @cache
 def expand(term: str) -> str:
-    """Return the IRI of a CURIE; an IRI in full is returned as it is. Raises ``KeyError`` for an unknown prefix."""
+    """Return the IRI of a CURIE; a full IRI is returned unchanged. Raises ``KeyError`` for an unknown prefix."""
     prefix, _, local = term.partition(":")
     return term if local.startswith("//") else PREFIXES[prefix] + local

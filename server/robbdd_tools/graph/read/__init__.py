@@ -1,1 +1,1 @@
-"""From RDF to plain data: acceptance criteria, executions, scenes, variations."""
+"""Read RDF into plain data: acceptance criteria, executions, scenes, variations."""

@@ -1,4 +1,4 @@
-"""A graph, wherever it came from, as plain acceptance criteria. What is incomplete is left out."""
+"""Read acceptance criteria from any graph into plain data. Incomplete parts are left out."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 
 
 def _nowhere(_: str) -> None:
-    """Say that it is not known where something is written."""
+    """Return no source position."""
 
 
 def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
-    """Return the acceptance criteria that a graph states, in written order where the graph tells it.
+    """Return the acceptance criteria of a graph, in written order if the graph records it.
 
-    ``places`` tells where nodes are written. A variant that lacks something (a template, a value of a variable, a
-    known predicate …) is left out.
+    ``places`` returns the source positions of nodes. A variant that lacks something (a template, a value of a variable,
+    a known predicate …) is left out.
     """
     records = Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
@@ -51,7 +51,7 @@ def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
 
 
 def incomplete_variants(graph: Graph) -> dict[Iri, str]:
-    """Return the variants that ``read_model`` leaves out, each with what it lacks."""
+    """Return the variants that ``read_model`` leaves out, each with what is missing."""
     records = Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
     reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
@@ -65,7 +65,7 @@ def incomplete_variants(graph: Graph) -> dict[Iri, str]:
 
 
 def read_set(records: Records, node: str) -> tuple[Value, ...]:
-    """Return the elements of a set in written order, repeated ones repeated."""
+    """Return the elements of a set in written order, including repetitions."""
     listed = records.all(node, "rbw:element-list")
     items = records.items(listed[0]) if listed else None
     elements = records.all(node, "bdd:elements")
@@ -75,7 +75,7 @@ def read_set(records: Records, node: str) -> tuple[Value, ...]:
 
 
 def story_order(records: Records) -> list[Iri]:
-    """Return the stories of a graph in written order where it tells it."""
+    """Return the stories of a graph, in written order if it records that."""
     return sorted(records.instances("bdd:UserStory"), key=lambda node: (_position(records, node), node))
 
 
@@ -114,7 +114,7 @@ class _Reader:
 
     def _extra_clauses(self, node: Iri) -> tuple[Clause, ...]:
         stated = self.records.all(node, "bdd:has-clause")
-        # A published graph of a variant without own clauses has an empty node in place of the list.
+        # A published graph of a variant without clauses of its own has an empty node instead of the list.
         if not stated or self.records.is_blank(stated[0]):
             return ()
         return self.clauses.clauses(node)
@@ -147,7 +147,7 @@ class _Reader:
         )
 
     def _compositions(self, variant: Iri, workspaces: tuple[Iri, ...]) -> tuple[Iri, ...]:
-        """Return the compositions of a variant's scene; of a graph that does not tell, those of its workspaces."""
+        """Return the compositions of a variant's scene, or of its workspaces if the graph names no scene."""
         scenes = self.records.iris(self.records.all(variant, "rbw:scene"))
         if not scenes:
             every = self.records.subjects("env:of-workspace")

@@ -1,4 +1,4 @@
-"""Behaviour trees of a graph as plain data. What is incomplete is left out."""
+"""Read behaviour trees into plain data. Incomplete ones are left out."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from robbdd_tools.graph.read.instances import Places, python_name
 
 
 def read_trees(records: Records, places: Places) -> tuple[BehaviourTree, ...]:
-    """Return the behaviour trees that a graph states; ``places`` tells where nodes are written."""
+    """Return the behaviour trees of a graph; ``places`` returns the source positions of nodes."""
     found: list[BehaviourTree] = []
     for node in records.instances("bt:BehaviourTree"):
         try:
@@ -21,7 +21,7 @@ def read_trees(records: Records, places: Places) -> tuple[BehaviourTree, ...]:
 
 
 def read_tree(records: Records, node: Iri, places: Places) -> BehaviourTree:
-    """Return one behaviour tree; raises ``Incomplete`` when it has neither one root nor code, or holds itself."""
+    """Return one behaviour tree; raises ``Incomplete`` if it has neither one root nor code, or contains itself."""
     listed = records.iris(items_of(records, node, "rbw:node-list"))
     if records.is_a(node, "py:ModuleAttribute"):
         source = Implementation(node, "python", python_name(records, node), places(node))
@@ -32,7 +32,7 @@ def read_tree(records: Records, node: Iri, places: Places) -> BehaviourTree:
 
 def _node(records: Records, node: Iri, above: tuple[Iri, ...]) -> TreeNode:
     if node in above:
-        raise Incomplete(f"{node} stands below itself")
+        raise Incomplete(f"{node} contains itself")
     kind = next((kind for kind, class_ in COMPOSITES.items() if records.is_a(node, class_)), "leaf")
     if kind == "leaf":
         return TreeNode(node, kind)

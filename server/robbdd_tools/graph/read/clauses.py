@@ -1,4 +1,4 @@
-"""Clauses of a graph as plain data."""
+"""Read clauses into plain data."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class ClauseReader:
         return tuple(self.clause(node, (*inside, owner)) for node in self.records.list_of(owner, term))
 
     def clause(self, node: Node, inside: tuple[str, ...] = ()) -> Clause:
-        """Return one clause; ``inside`` are the nodes that hold it, outermost first."""
+        """Return one clause; ``inside`` are the nodes that contain it, outermost first."""
         iri = Iri(node)
         if iri in inside:
             raise Incomplete(f"{iri} contains itself")
@@ -119,7 +119,7 @@ class ClauseReader:
         }
 
     def time(self, iri: Iri) -> TimeConstraint:
-        """Return the time constraint on a node."""
+        """Return the time constraint of a node."""
         before, after = (self.records.all(iri, f"time:{side}-event") for side in ("before", "after"))
         horizon = self.records.literal(iri, "time:horizon-seconds")
         seconds = float(horizon) if isinstance(horizon, int | float) else None
@@ -131,7 +131,7 @@ class ClauseReader:
 
 
 def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:
-    """Yield what the arguments of clauses refer to, quantified variables apart."""
+    """Yield the references in the arguments of clauses, except quantified variables."""
     for clause in clauses:
         match clause:
             case Fluent() | TextFluent() | BehaviourClause():

@@ -1,4 +1,4 @@
-"""Executions of a graph as plain data. What is incomplete is left out."""
+"""Read executions into plain data. Incomplete ones are left out."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PROVIDERS = {
 
 
 def read_executions(records: Records, instances: InstanceReader, places: Places) -> tuple[Execution, ...]:
-    """Return the executions that a graph states, in written order where it tells it."""
+    """Return the executions of a graph, in written order if it records that."""
     nodes = records.instances("bdd:ScenarioExecution")
     found = [execution for node in nodes for execution in _complete(records, node, instances, places)]
     return tuple(sorted(found, key=lambda one: (_position(records, one.iri), one.iri)))
@@ -64,7 +64,7 @@ def _implementation(records: Records, node: Iri) -> Implementation:
         return Implementation(node, "ros-action", records.text(node, "rbw:ros-name"))
     name = records.text(node, "rbw:catalog-name")
     if not name:
-        raise Incomplete(f"{node} does not say what it is implemented by")
+        raise Incomplete(f"{node} does not name its implementation")
     return Implementation(node, "catalog", name)
 
 
@@ -114,7 +114,7 @@ def _mapper(records: Records, node: Iri) -> tuple[str, tuple[tuple[str, str], ..
 def _provider(records: Records, node: Iri) -> Provider:
     kind = next((kind for term, kind in _PROVIDERS.items() if records.is_a(node, term)), "")
     if not kind:
-        raise Incomplete(f"{node} does not say where its observations come from")
+        raise Incomplete(f"{node} does not name the provider of its observations")
     return Provider(
         node,
         kind,

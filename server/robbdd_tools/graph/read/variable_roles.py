@@ -1,4 +1,4 @@
-"""What each variable stands for, derived from the clauses that use it."""
+"""Infer the kind of each variable from the clauses that use it."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ ELEMENT_OF_KIND = {
     Kind.AGENT: "agent",
     Kind.ANY: "element",
 }
-"""Kind of a slot → kind of element that its variable, or each element of its set, must be."""
+"""Kind of a slot → element kind of its variable, or of each element of its set."""
 
 
 @dataclass(slots=True)
 class Roles:
-    """Variable or set → the kinds of element it stands for; quantifiers in the order they nest."""
+    """Variable or set → its element kinds; quantifiers in nesting order."""
 
     kinds: dict[str, dict[str, None]] = field(default_factory=dict[str, dict[str, None]])
     quantifiers: list[Iri] = field(default_factory=list[Iri])
 
     def add(self, variable: str, kinds: Iterable[str]) -> None:
-        """Note that a variable stands for elements of some kinds."""
+        """Record that a variable has some kinds."""
         self.kinds.setdefault(variable, {}).update(dict.fromkeys(kinds))
 
 
 def clauses_below(records: Records, owners: Iterable[str]) -> Iterator[Iri]:
-    """Yield all clauses of some owners, also those inside groups and quantifiers, outer ones first, each once."""
+    """Yield all clauses of some owners, including those inside groups and quantifiers, outer ones first, each once."""
     seen: set[str] = set()
     waiting = list(owners)
     while waiting:
@@ -50,7 +50,7 @@ def clauses_below(records: Records, owners: Iterable[str]) -> Iterator[Iri]:
 
 
 def words_of(records: Records, clause: str) -> tuple[Predicate | Behaviour, ...]:
-    """Return the catalog words that a clause is an instance of."""
+    """Return the catalog words of which a clause is an instance."""
     types = records.types(clause)
     catalog = load_catalog()
     if expand("bdd:WhenBehaviour") in types:
@@ -62,7 +62,7 @@ def words_of(records: Records, clause: str) -> tuple[Predicate | Behaviour, ...]
 
 
 def roles_in(records: Records, clauses: Iterable[Iri]) -> Roles:
-    """Return what variables stand for; what a quantified variable stands for, its set's elements do too."""
+    """Return the kinds of variables; the kinds of a quantified variable also apply to its set's elements."""
     roles = Roles()
     for clause in clauses:
         for word in words_of(records, clause):

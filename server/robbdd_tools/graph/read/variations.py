@@ -1,4 +1,4 @@
-"""Variations of a graph as plain data."""
+"""Read variations into plain data."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class VariationReader:
-    """Reads variations, with the elements of every constant set at hand; raises ``Incomplete``."""
+    """Reads variations, given the elements of every constant set; raises ``Incomplete``."""
 
     records: Records
     sets: Mapping[Iri, tuple[Value, ...]]
@@ -34,7 +34,7 @@ class VariationReader:
         return Product(variables, tuple(self._fitting(variable, choices) for variable, choices in pairs))
 
     def _fitting(self, variable: Iri, choices: tuple[Cell, ...] | Selection) -> tuple[Cell, ...] | Selection:
-        """Return each element for a variable that is no set, where a published graph selects one element."""
+        """Return single elements instead of sets of one if a published graph selects one element for a variable."""
         single = isinstance(choices, Selection) and choices.length == 1 and not self.records.is_a(variable, "bdd:Set")
         return choices.source if isinstance(choices, Selection) and single else choices
 
@@ -62,12 +62,12 @@ class VariationReader:
                     return self._selection(value, kind)
             if value in self.sets:
                 return self.sets[value]
-        raise Incomplete(f"{value} is no set of values")
+        raise Incomplete(f"{value} is not a set of values")
 
     def _selection(self, node: Iri, kind: str) -> Selection:
         source = self.records.one(node, "bdd:from")
         length = self.records.literal(node, "bdd:length")
         if source not in self.sets or not isinstance(length, int) or length < 1:
-            raise Incomplete(f"{node} does not say how many of which set it selects")
+            raise Incomplete(f"{node} does not say how many elements of which set it selects")
         repeated = self.records.text(node, "bdd:repetition-allowed") == "true"
         return Selection(kind, self.sets[source], length, repeated)

@@ -1,1 +1,1 @@
-"""SHACL: the shapes, what they need to be derived, and what they find, on the text."""
+"""SHACL: the shapes, the statements derived for them, and their findings mapped to text."""

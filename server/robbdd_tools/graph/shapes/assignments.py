@@ -1,4 +1,4 @@
-"""One derived node per variant and variable: what the variable gets, how often, and what it stands for."""
+"""One derived node per variant and variable: its values, their number, and its kinds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Choice:
-    """One thing that a variable may get: the node that was written, a set or not, and the values in it."""
+    """One value that a variable may get: the written node, whether it is a set, and the values in it."""
 
     written: Node
     is_set: bool
@@ -26,7 +26,7 @@ class _Choice:
 
 
 def add_assignments(derived: Derived, variant: Iri) -> None:
-    """Derive the assignments of a variant for the variables of its template and of its variation."""
+    """Derive the assignments of a variant to the variables of its template and its variation."""
     records = derived.records
     templates = records.iris(records.all(variant, "bdd:of-template"))
     variations = records.iris(records.all(variant, "bdd:has-variation"))
@@ -52,7 +52,7 @@ def add_assignments(derived: Derived, variant: Iri) -> None:
 
 
 def add_quantified(derived: Derived, quantifier: Iri, roles: Roles) -> None:
-    """Derive what a quantified variable gets from a set that is written out."""
+    """Derive the values of a quantified variable from a literal set."""
     records = derived.records
     for set_ in records.iris(records.all(quantifier, "bdd:in-set")):
         if not records.is_a(set_, "bdd:ConstantSet"):
@@ -70,7 +70,7 @@ def _kind_class(kind: str) -> str:
 
 
 def _declared(records: Records, template: Iri, roles: Roles) -> tuple[Iri, ...]:
-    """Return the variables of a template; where the graph does not tell, those that its clauses leave open."""
+    """Return the variables of a template; if the graph does not list them, the unbound ones of its clauses."""
     if records.all(template, "rbw:variables"):
         return records.iris(items_of(records, template, "rbw:variables"))
     bound = {
@@ -113,7 +113,7 @@ def _choices(records: Records, product: Iri, assigned: Iterable[Iri], variable: 
         if any(records.is_a(str(entry), kind) for kind in SELECTIONS.values()):
             sources = records.iris(records.all(str(entry), "bdd:from"))
             values = tuple(value for source in sources for value in elements_of(records, source))
-            # Published graphs select one element for a variable that is no set.
+            # Published graphs select one element for a variable that is not a set.
             single = records.literal(str(entry), "bdd:length") == 1 and not records.is_a(variable, "bdd:Set")
             yield from (
                 (_Choice(entry, False, (value,)) for value in values) if single else [_Choice(entry, True, values)]
@@ -125,7 +125,7 @@ def _choices(records: Records, product: Iri, assigned: Iterable[Iri], variable: 
 
 
 def _choice(records: Records, node: Node) -> _Choice:
-    """Return what one cell gives: a list or a named set gives a set."""
+    """Return the value of one cell: a list or a named set is a set."""
     items = records.items(node)
     if items is None and records.is_a(str(node), "bdd:ConstantSet"):
         items = elements_of(records, str(node))

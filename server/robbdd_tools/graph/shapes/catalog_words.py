@@ -1,4 +1,4 @@
-"""Shapes of the catalog's words, made from their slots, so that a new word brings its own."""
+"""Shapes of the catalog's words, generated from their slots."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _CLASSES = {
     Kind.ANY: "rbw:ElementTerm",
     Kind.VALUE: "bdd:ScenarioVariable",
 }
-"""What may fill a slot; a bare name is a literal."""
+"""Class of the values of each slot kind; a bare name is a literal."""
 _FIX = {
     Kind.OBJECT_SET: "name a 'set var' or an 'obj set'",
     Kind.WORKSPACE_SET: "name a 'set var' or a 'ws set'",

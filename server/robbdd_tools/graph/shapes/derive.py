@@ -1,7 +1,7 @@
-"""Adds to a copy of a graph what the shapes refer to: lengths, rows, words, assignments.
+"""Add to a copy of a graph what the shapes refer to: lengths, rows, words, assignments.
 
-Derived statements use our own vocabulary and are never written out. Derived nodes are anchored: each knows where
-in the source map the statements stand that it was derived from.
+Derived statements use our own vocabulary and are never written out. Derived nodes are anchored: each has the source-map
+keys of the statements that it was derived from.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def derive(graph: Graph) -> Derived:
-    """Return a copy of a graph with everything derived that shapes refer to."""
+    """Return a copy of a graph with all derived statements that shapes refer to."""
     from rdflib import Graph
 
     copy = Graph(bind_namespaces="none")
@@ -47,7 +47,7 @@ def derive(graph: Graph) -> Derived:
 
 @cache
 def load_vocabulary() -> Graph:
-    """Return the vocabulary, whose class hierarchy the shapes rely on."""
+    """Return the vocabulary with the class hierarchy that the shapes rely on."""
     from rdflib import Graph
 
     vocabulary = Graph(bind_namespaces="none")

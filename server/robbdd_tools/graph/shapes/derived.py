@@ -1,4 +1,4 @@
-"""A graph with derived statements: what the shapes need and SHACL cannot find by itself."""
+"""A graph with derived statements, which the shapes need and SHACL cannot compute itself."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Key = tuple[str, ...]
 
 
 def use_of(word: str) -> str:
-    """Return the class of clauses that use a word of the catalog."""
+    """Return the class of clauses that use a catalog word."""
     return f"{WORKBENCH}use-of-{word}"
 
 
@@ -32,7 +32,7 @@ class Derived:
     _nodes: int = 0
 
     def new_node(self, types: Iterable[str]) -> Node:
-        """Make a derived node with its classes."""
+        """Create a derived node with its classes."""
         from rdflib import BNode
 
         self._nodes += 1
@@ -42,7 +42,7 @@ class Derived:
         return node
 
     def add(self, node: Node | str, term: str, value: Node | str | int | bool) -> None:
-        """State something derived; a text stands for an IRI."""
+        """Add a derived statement; a string is an IRI."""
         from rdflib import Literal, URIRef
         from rdflib.term import Identifier
 
@@ -54,5 +54,5 @@ class Derived:
         self.graph.add((subject, URIRef(expand(term)), value))
 
     def anchor(self, node: Node | str, value: str, *keys: Key) -> None:
-        """Say where a derived value of a node (``""`` for a derived node itself) comes from."""
+        """Record the source of a derived value of a node (``""`` for a derived node itself)."""
         self.anchors.setdefault((str(node), value), []).extend(keys)

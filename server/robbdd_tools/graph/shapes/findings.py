@@ -1,4 +1,4 @@
-"""What SHACL says of a graph, as diagnostics on the text that causes it."""
+"""Map SHACL results to diagnostics on the text that causes them."""
 
 from __future__ import annotations
 
@@ -61,15 +61,15 @@ def results(report: Graph) -> Iterator[Result]:
 
 @dataclass(frozen=True, slots=True)
 class FindingWriter:
-    """Turns what SHACL says of a graph into diagnostics at the text that it was built from."""
+    """Converts SHACL results on a graph to diagnostics at its source text."""
 
     built: BuiltGraph
     derived: Derived
 
     def diagnostics(self, result: Result, files: Iterable[ShapeFile] = ()) -> Iterator[Diagnostic]:
-        """Yield one diagnostic for each place where the cause of a result is written.
+        """Yield one diagnostic for each source place of a result's cause.
 
-        ``files`` are those that the shape may stand in when it is none of ours.
+        ``files`` are searched for the shape if it is not one of ours.
         """
         if str(result.focus) in self.built.doubtful_nodes or str(result.value) in self.built.doubtful_nodes:
             return
@@ -80,7 +80,7 @@ class FindingWriter:
             shape = ()
         else:
             code = f"shape-{source[0].name.removesuffix('.ttl')}"
-            shape = (Related(source[1].uri, source[1].span, "the shape that asks for this"),)
+            shape = (Related(source[1].uri, source[1].span, "the shape that requires this"),)
         for location in self._locations(result):
             if not self._is_doubtful(location):
                 related = (*self._related(result, location), *shape)
@@ -88,13 +88,13 @@ class FindingWriter:
                 yield Diagnostic(location.uri, location.span, severity, code, message, related)
 
     def authors(self, focus: Node) -> Iterable[Key]:
-        """Return the declarations that describe a focus node, or what it was derived from."""
+        """Return the declarations that describe a focus node, or the nodes that it was derived from."""
         anchors = self.derived.anchors.get((str(focus), ""), [])
         nodes = (str(focus), *(key[0] for key in anchors))
         return next((self.built.authors[node] for node in nodes if node in self.built.authors), ())
 
     def _locations(self, result: Result) -> tuple[Location, ...]:
-        """Return the most exact places known: of the value, else of the property, else of the node."""
+        """Return the most precise known places: of the value, else of the property, else of the node."""
         places = self.built.sources.places
         for key in self._keys(result):
             if key in places:
@@ -121,7 +121,7 @@ class FindingWriter:
         )
 
     def _related(self, result: Result, location: Location) -> Iterator[Related]:
-        """Point from a wrong value to its declaration, and from an assignment to its variable's."""
+        """Yield links from a wrong value to its declaration, and from an assignment to its variable's."""
         variable = next(iter(self._derived(result.focus, "variable")), None)
         for node in (result.value, variable):
             declared = None if node is None else self.built.sources.node(str(node))
@@ -142,7 +142,7 @@ class FindingWriter:
         return f"'{self._subject(result.focus)}': {message}{self._found(result)}" if self.built.is_read else message
 
     def _found(self, result: Result) -> str:
-        """Say what a value of a foreign graph is where the IRI of a node is expected."""
+        """Describe a value of a foreign graph that should be the IRI of a node."""
         from rdflib import Literal, URIRef
 
         if not result.message.startswith(("'{value}' cannot stand for", "'{value}' is no ")):
@@ -154,7 +154,7 @@ class FindingWriter:
         return ""
 
     def _subject(self, focus: Node) -> str:
-        """Return the name of what a finding is about; a derived node is called after what it was derived from."""
+        """Return the name of a finding's subject; a derived node is named after its source."""
         names = self.built.names
         anchors = self.derived.anchors.get((str(focus), ""), [])
         roots = (str(focus), *(key[0] for key in anchors))
@@ -174,7 +174,7 @@ class FindingWriter:
 
 
 def clash_finding(built: BuiltGraph, clash: Clash) -> Diagnostic:
-    """Return what is wrong with two names that make one node."""
+    """Return the diagnostic for two names that denote the same node."""
     name = built.names.get(clash.iri, clash.iri).rpartition(".")[2]
     message = (
         f"'{name}' already stands for something else in this namespace (both are <{clash.iri}>): "
@@ -185,7 +185,7 @@ def clash_finding(built: BuiltGraph, clash: Clash) -> Diagnostic:
 
 
 def merged(found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return findings in the order of the text, those with one message at one place once."""
+    """Return findings in text order, merging those with the same message and place."""
     kept: dict[tuple[str, Span, str], Diagnostic] = {}
     for diagnostic in sorted(found, key=sort_key):
         kept.setdefault((diagnostic.uri, diagnostic.span, diagnostic.message), diagnostic)

@@ -1,10 +1,10 @@
-"""SHACL only where an edit can have changed what it says.
+"""Incremental SHACL: validate only what an edit can have affected.
 
-What the shapes find in a declaration is a function of its *neighbourhood*: the declaration, all that it uses directly
-or through others, whoever contests one of these nodes with it, and for a composition those of the workspaces in it.
-The shapes follow properties forwards only (``locality``), and every node that a declaration leads to is described by
-one that it uses. So the findings of a declaration are kept while its neighbourhood stays as it was; the graph of the
-others' neighbourhoods together is built and validated anew. Differential tests hold this to whole-graph validation.
+The findings in a declaration are a function of its *neighbourhood*: the declaration, everything that it uses directly
+or indirectly, other declarations of the same nodes, and for a composition those of the workspaces in it. The shapes
+follow properties only forwards (``locality``), and every node reachable from a declaration is described by one that it
+uses. So findings are cached while the neighbourhood is unchanged; for the other declarations, the graph of their
+neighbourhoods is built and validated together. Differential tests compare this with whole-graph validation.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 AT_ONCE = 60
-"""Declarations that are validated together; between two such groups newer work may take over."""
+"""Number of declarations validated together; newer work may interrupt between two groups."""
 
 
 class Superseded(Exception):
-    """A newer revision waits; what was found so far is kept for it."""
+    """A newer revision is waiting; findings so far are cached for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +46,9 @@ class _Kept:
 
 
 class Validation:
-    """The validation of one file, revision after revision.
+    """The validation of one file over its revisions.
 
-    ``looked_at`` counts the declarations that were validated the last time.
+    ``looked_at`` counts the declarations validated in the last run.
     """
 
     def __init__(self) -> None:
@@ -64,7 +64,8 @@ class Validation:
         project: ProjectShapes = NO_SHAPES,
         is_superseded: Callable[[], bool] = lambda: False,
     ) -> list[Diagnostic]:
-        """Return what ``validate`` finds in the graph of a file; raises ``Superseded`` when something newer waits."""
+        """Return the diagnostics of ``validate`` for the graph of a file; raises ``Superseded`` if a newer revision
+        waits."""
         self.looked_at = 0
         if graph_format(uri):
             return validate(build_graph(snapshot, uri), project=project)
@@ -85,7 +86,7 @@ class Validation:
         return merged([*found, *project.remarks])
 
     def _local_files(self, project: ProjectShapes) -> tuple[ShapeFile, ...]:
-        """Return the project's shape files that need no whole graph; with others than before nothing kept counts."""
+        """Return the project's shape files that do not need the whole graph; if they changed, clear the cache."""
         files = tuple(file for file in project.files if not file.faults and is_local(file.graph))
         if files != self._files:
             self._files = files
@@ -94,7 +95,7 @@ class Validation:
         return tuple(file for file in files if file.uri not in self._unusable)
 
     def _forget(self, around: Neighbourhoods) -> None:
-        """Drop what is kept of declarations in whose neighbourhood something is not as it was."""
+        """Drop the cached findings of declarations whose neighbourhood changed."""
         now = {around.identity(entry): entry for entry in around.reached}
         changed = [entry for identity, entry in now.items() if not self._holds(around, identity, entry)]
         outdated = {around.identity(entry) for entry in around.touched_by(changed)}
@@ -145,7 +146,7 @@ class Validation:
         try:
             return list(results(shacl_report(writer.derived.graph, together(local))))
         except UnusableShapes:
-            # Which of them is at fault, and what the others find, the whole graph tells.
+            # Whole-graph validation determines which file is at fault, and the findings of the others.
             self._unusable = {file.uri for file in local}
             return []
 

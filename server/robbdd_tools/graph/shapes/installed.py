@@ -1,4 +1,4 @@
-"""The shapes of the installation: the written ones and those of the catalog's words."""
+"""The built-in shapes: the written ones and those of the catalog's words."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def load_shapes() -> Graph:
 
 
 def aim_property_shapes(shapes: Graph) -> None:
-    """Give every property shape the targets of the node shapes that have it, which then let go of it.
+    """Move targets from node shapes to their property shapes, which is equivalent.
 
-    This says the same. pyshacl takes a nested shape up anew for each focus node, but one that has targets of its
-    own once for all of them, which makes validation several times as fast.
+    pyshacl evaluates a nested shape separately for each focus node, but a shape with targets once for all of them; this
+    makes validation several times as fast.
     """
     from rdflib.namespace import SH
 

@@ -1,8 +1,8 @@
-"""Which shapes say the same of a declaration whatever stands elsewhere, so that a part of a graph is enough for them.
+"""Shapes that can be checked on one declaration's neighbourhood, without the whole graph.
 
-Such a shape begins at the nodes of a class and follows properties forwards. Whatever it meets belongs to what the
-declaration uses. One that goes against the direction of a property, asks in SPARQL or names its nodes itself needs
-the whole graph, as does one about nodes that several declarations have in common.
+Such a shape starts at the nodes of a class and follows properties forwards, so it only reaches nodes that the
+declaration uses. A shape with an inverse path, SPARQL or explicit target nodes needs the whole graph, as does a shape
+on nodes that several declarations share.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _CLASSES = ("http://www.w3.org/2000/01/rdf-schema#Class", "http://www.w3.org/200
 
 
 def is_local(shapes: Graph) -> bool:
-    """Tell whether what some shapes find in a declaration depends only on what the declaration uses."""
+    """Return whether the findings of some shapes in a declaration depend only on what the declaration uses."""
     from rdflib import URIRef
     from rdflib.namespace import RDF, SH
 
@@ -41,5 +41,5 @@ def is_local(shapes: Graph) -> bool:
 
 
 def _is_common(name: str) -> bool:
-    """Tell whether instances of a class may be described by several declarations, or be none of the user's at all."""
+    """Return whether instances of a class may be described by several declarations, or by none of the user's."""
     return name in _COMMON or not name.startswith(METAMODELS)

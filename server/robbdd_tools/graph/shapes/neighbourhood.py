@@ -1,4 +1,4 @@
-"""What each declaration of a graph depends on, in a form that can be compared with an earlier revision's."""
+"""The dependencies of each declaration of a graph, comparable between revisions."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 Identity = tuple[str, "Declaration", int]
-"""What is the same declaration in two revisions: its document, its text (by identity), which one of equal text."""
+"""Identity of a declaration across revisions: its document, its text (by identity), its index among equal texts."""
 Fingerprint = tuple[object, ...]
-"""All that findings in a declaration depend on, besides its text and what it leads to."""
+"""All that findings in a declaration depend on, besides its text and the declarations that it uses."""
 
 
 class Neighbourhoods:
-    """The declarations of a file's graph, what each depends on and who depends on it, in one revision."""
+    """The declarations of a file's graph with their dependencies and dependents, in one revision."""
 
     def __init__(self, snapshot: Snapshot, uri: str) -> None:
         self.uses = Uses(snapshot.closure(uri))
@@ -37,11 +37,11 @@ class Neighbourhoods:
         self._add_compositions()
 
     def identity(self, entry: Reached) -> Identity:
-        """Return what a declaration is known by in other revisions."""
+        """Return the identity of a declaration across revisions."""
         return self._identities[entry.key]
 
     def fingerprint(self, entry: Reached) -> Fingerprint:
-        """Return what, besides its text, says how a declaration stands in its graph."""
+        """Return the context of a declaration in its graph, besides its text, that affects its findings."""
         return (
             tuple(self._identities[used.key] for used in self._leads_to(entry)),
             self.uses.has_error(entry),
@@ -50,7 +50,7 @@ class Neighbourhoods:
         )
 
     def complete(self, entries: Iterable[Reached]) -> tuple[Reached, ...]:
-        """Return some declarations with all that they depend on, in the order of the graph."""
+        """Return some declarations with all their dependencies, in graph order."""
         found = {entry.key for entry in entries}
         waiting = [self._by_key[key] for key in found]
         while waiting:
@@ -61,7 +61,7 @@ class Neighbourhoods:
         return tuple(entry for entry in self.reached if entry.key in found)
 
     def touched_by(self, changed: Iterable[Reached]) -> list[Reached]:
-        """Return some declarations with all that depend on them."""
+        """Return some declarations with all their dependents."""
         waiting = list(changed)
         if not waiting:
             return []
@@ -90,7 +90,7 @@ class Neighbourhoods:
             seen[which] += 1
 
     def _add_declarers(self) -> None:
-        """Who contests a node depends on the others; who shares one sees it named by the first."""
+        """Record declarers of a contested node as each other's dependencies, and the first name of a shared node."""
         for declarers in self.known.contested.values():
             others = [self._by_key[declarer.key] for declarer in declarers]
             for declarer in declarers:
@@ -101,11 +101,11 @@ class Neighbourhoods:
                 self._seen_as.setdefault(declarer.key, []).append((iri, first.symbol.path))
 
     def holds(self, anchor: Anchor) -> bool:
-        """Tell whether the declaration that a place counts from is still there."""
+        """Return whether the declaration that a place is relative to still exists."""
         return anchor.declaration is None or (anchor.uri, anchor.declaration, 0) in self._present
 
     def _add_compositions(self) -> None:
-        """A composition encloses what those of the workspaces in it hold, whether it names these or not."""
+        """Add dependencies of a composition on those of the workspaces in it, whether it names them or not."""
         compositions = [entry for entry in self.reached if isinstance(entry.tree, tree.Composition)]
         describing: dict[str, list[Reached]] = {}
         for entry in compositions:

@@ -1,4 +1,4 @@
-"""A project's own SHACL shapes: named in its configuration, read once per change, reported like ours."""
+"""A project's own SHACL shapes: named in its configuration, cached until changed, reported like ours."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _SERVICE = re.compile(r"\bSERVICE\b", re.IGNORECASE)
 
 @dataclass(frozen=True, slots=True)
 class ShapeFile:
-    """A file of shapes with the places of its nodes; ``faults`` are what keeps it from being used."""
+    """A file of shapes with the places of its nodes; ``faults`` are why it cannot be used."""
 
     uri: str
     name: str
@@ -35,15 +35,15 @@ class ShapeFile:
     faults: tuple[Diagnostic, ...] = ()
 
     def place(self, shape: str) -> Location | None:
-        """Return where a shape is written in this file."""
+        """Return the source place of a shape in this file."""
         return self.places.node(shape)
 
 
 @dataclass(frozen=True, slots=True)
 class ProjectShapes:
-    """The shapes of the project that a model belongs to, and what is wrong with its configuration.
+    """The shapes of a model's project, and the faults of its configuration.
 
-    ``faults`` stand in the configuration, ``remarks`` on the model where no file holds the configuration.
+    ``faults`` are in the configuration, ``remarks`` on the model if no configuration file exists.
     """
 
     files: tuple[ShapeFile, ...] = ()
@@ -53,17 +53,17 @@ class ProjectShapes:
 
 @dataclass(frozen=True, slots=True)
 class EditorShapes:
-    """File patterns that an editor's setting ``robbdd.shapes`` names; they count from its folder."""
+    """File patterns of an editor's setting ``robbdd.shapes``, relative to its folder."""
 
     folder: str = ""
     patterns: tuple[str, ...] = ()
 
 
 def project_shapes(uri: str, editor: EditorShapes | None = None) -> ProjectShapes:
-    """Return the shapes that the nearest configuration above a model names, and those that an editor adds.
+    """Return the shapes named in the nearest configuration above a model, and those added by an editor.
 
-    It is ``shapes = ["shapes/*.ttl"]`` in ``robbdd.toml``, or under ``[tool.robbdd]`` in ``pyproject.toml``; patterns
-    count from its folder.
+    The setting is ``shapes = ["shapes/*.ttl"]`` in ``robbdd.toml``, or under ``[tool.robbdd]`` in ``pyproject.toml``;
+    patterns are relative to its folder.
     """
     configured = _nearest(uri)
     if editor is None or not editor.patterns:
@@ -71,7 +71,7 @@ def project_shapes(uri: str, editor: EditorShapes | None = None) -> ProjectShape
     paths, problems = _matches(Path(editor.folder), editor.patterns)
     known = {file.uri for file in configured.files}
     added = tuple(file for file in map(shape_file, paths) if file.uri not in known)
-    message = "the setting 'robbdd.shapes' of the editor: {}"
+    message = "the editor's setting 'robbdd.shapes': {}"
     faults = tuple(
         Diagnostic(uri, Span(0, 0), Severity.WARNING, "shapes-unchecked", message.format(problem))
         for problem in problems
@@ -88,7 +88,7 @@ def _nearest(uri: str) -> ProjectShapes:
 
 
 def _matches(folder: Path, patterns: Sequence[str]) -> tuple[list[Path], list[str]]:
-    """Return the files that some patterns name, each once, and what is wrong with the patterns."""
+    """Return the files that match some patterns, each once, and the faults of the patterns."""
     paths: dict[Path, None] = {}
     problems: list[str] = []
     for pattern in patterns:
@@ -96,7 +96,7 @@ def _matches(folder: Path, patterns: Sequence[str]) -> tuple[list[Path], list[st
             matched = sorted(path for path in folder.glob(pattern) if not path.is_dir())
         # pathlib raises NotImplementedError for a pattern that is an absolute path.
         except (ValueError, NotImplementedError, OSError) as error:
-            problems.append(f"'{pattern}' is no file pattern: {error}")
+            problems.append(f"'{pattern}' is not a file pattern: {error}")
             continue
         if not matched:
             problems.append(f"no file matches the shapes '{pattern}'")
@@ -105,7 +105,7 @@ def _matches(folder: Path, patterns: Sequence[str]) -> tuple[list[Path], list[st
 
 
 def shape_file(path: Path) -> ShapeFile:
-    """Return a file of shapes, read anew only when it has changed."""
+    """Return a file of shapes, cached until it changes."""
     try:
         state = path.stat()
         return _read(path, state.st_mtime_ns, state.st_size)
@@ -134,28 +134,28 @@ def _read(path: Path, _time: int, _size: int) -> ShapeFile:
 
 
 def _followed_services(path: Path, document: Document, graph: Graph) -> Iterator[Diagnostic]:
-    """Yield the SPARQL of shapes and rules that would ask a server: opening a project must not reach the network."""
+    """Yield faults for SPARQL in shapes that would contact a server: opening a project must not use the network."""
     from rdflib.namespace import SH
 
     for term in (SH.select, SH.ask, SH.construct):
         if any(_SERVICE.search(str(text)) for text in graph.objects(None, term)):
             found = _SERVICE.search(document.text)
-            message = "the SPARQL of a shape asks this model only: SERVICE is not followed"
+            message = "the SPARQL of a shape reads only this model: SERVICE is not followed"
             yield _fault(path, found.start() if found else 0, "shapes-syntax", message)
 
 
 def unchecked(uri: str, faults: tuple[Diagnostic, ...]) -> Iterator[Diagnostic]:
-    """Yield faults of shapes at their place, and for the model which of them was therefore not checked."""
+    """Yield faults of shapes at their place, and on the model a remark about the skipped shapes."""
     yield from faults
     for fault in faults:
         name = fault.uri.rpartition("/")[2]
         related = (Related(fault.uri, fault.span, fault.message),)
-        message = f"the project's own shapes are not all checked: '{name}' cannot be used"
+        message = f"not all of the project's own shapes are checked: '{name}' cannot be used"
         yield Diagnostic(uri, Span(0, 0), Severity.WARNING, "shapes-unchecked", message, related)
 
 
 def broken(file: ShapeFile, error: Exception) -> Diagnostic:
-    """Return what pyshacl finds wrong with a file of shapes, at the shape that it names if it names one."""
+    """Return pyshacl's error on a file of shapes, at the shape that it names, if any."""
     message = str(getattr(error, "message", "") or error).partition("\n")[0]
     names = sorted((key[0] for key in file.places.places if len(key) == 1 and key[0] in message), key=len)
     place = file.place(names[-1]) if names else None

@@ -1,4 +1,4 @@
-"""SHACL over a built graph; what it finds comes back onto the text that causes it."""
+"""Run SHACL on a graph and map violations to source ranges."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ NO_SHAPES = ProjectShapes()
 
 
 def validate(built: BuiltGraph, shapes: Graph | None = None, project: ProjectShapes = NO_SHAPES) -> list[Diagnostic]:
-    """Return what SHACL finds in a graph, at the tokens that cause it, in the order of the text.
+    """Return the SHACL diagnostics of a graph, at the tokens that cause them, in text order.
 
-    Declarations in doubt (see ``BuiltGraph``) are passed over: their error is known already. ``shapes`` replaces
-    the bundled ones; those of a ``project`` come on top.
+    Declarations in doubt (see ``BuiltGraph``) are skipped: their error is already reported. ``shapes`` replaces the
+    bundled shapes; those of a ``project`` are added.
     """
     derived = derive(built.graph)
     report = shacl_report(derived.graph, load_shapes() if shapes is None else shapes)
@@ -36,7 +36,7 @@ def validate(built: BuiltGraph, shapes: Graph | None = None, project: ProjectSha
 
 
 def project_findings(writer: FindingWriter, project: ProjectShapes) -> Iterator[Diagnostic]:
-    """Yield what the shapes of a project find, all usable files together, and what is wrong with the others."""
+    """Yield the findings of a project's shapes, all usable files together, and the faults of the others."""
     faults = [*project.faults, *(fault for file in project.files for fault in file.faults)]
     usable = [file for file in project.files if not file.faults]
     while usable:
@@ -64,7 +64,7 @@ def together(files: Iterable[ShapeFile]) -> Graph:
 
 
 def _culprits(writer: FindingWriter, files: list[ShapeFile]) -> list[Diagnostic]:
-    """Return the files that cannot even be used alone."""
+    """Return the faults of files that cannot be used even alone."""
     found: list[Diagnostic] = []
     for file in files:
         try:
@@ -75,6 +75,6 @@ def _culprits(writer: FindingWriter, files: list[ShapeFile]) -> list[Diagnostic]
 
 
 def _faults(built: BuiltGraph, found: list[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield what is wrong with a graph file; a variant that is left out is not reported beside its cause."""
+    """Yield the faults of a graph file; the error of an omitted variant is not reported in addition to its cause."""
     has_error = any(diagnostic.severity is Severity.ERROR for diagnostic in found)
     return (fault for fault in built.faults if not (has_error and fault.code == "incomplete-variant"))

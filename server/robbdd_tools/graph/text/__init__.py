@@ -1,1 +1,1 @@
-"""From RDF to RobBDD text, and what that text cannot say."""
+"""Write RDF as RobBDD text, and report what the text cannot express."""

@@ -1,4 +1,4 @@
-"""Behaviour trees of a graph as RobBDD text."""
+"""Write behaviour trees of a graph as RobBDD text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Templates and clauses of a graph as RobBDD text."""
+"""Write templates and clauses of a graph as RobBDD text."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ _SLOT = re.compile(r"<(\w+)>|\$(\w+)")
 class ClauseText:
     """Writes the clauses of one owner, a template or a variant, whose qualified name is ``owner``.
 
-    ``variables`` maps the variables that can be named to their references. Nodes that the text gives no name get
-    the IRI of the path to them, as a graph that is built from the text has it.
+    ``variables`` maps the available variables to their references. Nodes without a name in the text get the IRI of
+    their path, as in a graph built from the text.
     """
 
     names: Names
@@ -41,7 +41,7 @@ class ClauseText:
     variables: dict[str, str] = field(default_factory=dict[str, str])
 
     def body(self, clauses: Sequence[Clause], path: str = "") -> str:
-        """Return Given, When or for all, and Then; raises ``Incomplete`` without anything in When."""
+        """Return Given, When or for all, and Then; raises ``Incomplete`` if When is empty."""
         loops = [clause for clause in clauses if isinstance(clause, ForAll)]
         behaviours = [clause for clause in clauses if isinstance(clause, BehaviourClause)]
         events = [clause for clause in clauses if isinstance(clause, EventClause)]
@@ -52,11 +52,11 @@ class ClauseText:
             inner = [*self.events(events, path), self._behaviour(behaviours[0], path)]
             middle = "When:\n" + indented("\n".join(inner))
         else:
-            raise Incomplete("its When has not exactly one behaviour or one 'for all'")
+            raise Incomplete("its When does not have exactly one behaviour or one 'for all'")
         return "".join(f"{part}\n" for part in (given, middle, self.conditions(clauses, "then", path)) if part)
 
     def conditions(self, clauses: Iterable[Clause], role: str, path: str = "") -> str:
-        """Return ``Given: …`` or ``Then: …``, nothing when there is no clause of the role."""
+        """Return ``Given: …`` or ``Then: …``, empty if the role has no clause."""
         silent = (ForAll, BehaviourClause, EventClause)
         chosen = [clause for clause in clauses if not isinstance(clause, silent) and clause.role == role]
         while len(chosen) == 1 and isinstance(chosen[0], Junction) and chosen[0].operator == "and":
@@ -74,7 +74,7 @@ class ClauseText:
         return lines
 
     def time(self, time: TimeConstraint) -> str:
-        """Return the words of a time constraint."""
+        """Return a time constraint as text."""
         if isinstance(time, During):
             return f"from {self._event(time.start)} until {self._event(time.end)}"
         horizon = "" if time.horizon is None else f"{str(time.horizon).removesuffix('.0')} seconds "
@@ -112,14 +112,14 @@ class ClauseText:
                 inner = self._joined("and", self._each(clause.clauses, path))
                 return f"( var {name} exists in {in_set} ) such that {{\n{indented(inner)}\n}}"
             case _:
-                raise Incomplete(f"{clause.iri} cannot stand in Given or Then")
+                raise Incomplete(f"{clause.iri} is not allowed in Given or Then")
 
     def _predicate(self, clause: Fluent | TextFluent) -> str:
         if isinstance(clause, Fluent):
             return self._phrase(load_catalog().predicates[clause.predicate].phrase, clause.arguments)
         for name in clause.arguments:
             if not NAME.fullmatch(name):
-                raise Incomplete(f"{clause.iri} has a placeholder '{name}', which is no name")
+                raise Incomplete(f"{clause.iri} has a placeholder '{name}', which is not a valid name")
         arguments = "".join(f", {name}={self._variable(value)}" for name, value in clause.arguments.items())
         return f"pred({quoted(clause.template)}{arguments})"
 
@@ -173,7 +173,7 @@ class ClauseText:
 
 
 def template_text(names: Names, reader: ClauseReader, template: Iri, variables: Sequence[Iri]) -> str:
-    """Return a template with the variables that it declares; raises ``Incomplete``."""
+    """Return a template with its declared variables; raises ``Incomplete``."""
     records = names.records
     namespace = names.split(template)[0]
     name = names.paths[template]

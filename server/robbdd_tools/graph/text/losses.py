@@ -1,4 +1,4 @@
-"""What a graph says that another one, made from its text, does not: by triple, whatever blank nodes are called."""
+"""Compare a graph with the one made from its text, triple by triple, independent of blank node labels."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ _PARTS = ("bdd:of-scenario", "bdd:has-scene", "bdd:given", "bdd:when", "bdd:then
 
 @dataclass(frozen=True, slots=True)
 class Losses:
-    """Triples as lines of text: ``lost`` are said by the first graph only, ``added`` of its nodes by the second only.
+    """Differences as lines of text: ``lost`` triples are only in the first graph, ``added`` triples on its nodes only
+    in the second.
 
-    ``renamed`` are written names that changed, old and new.
+    ``renamed`` are changed written names, old and new.
     """
 
     lost: tuple[str, ...]
@@ -30,7 +31,7 @@ class Losses:
 
 
 def compare(before: Graph, after: Graph, renamed: Mapping[str, str]) -> Losses:
-    """Compare a graph with the one that its text gives; ``renamed`` says which nodes the text calls otherwise."""
+    """Compare a graph with the one made from its text; ``renamed`` maps nodes to their different names in the text."""
     from rdflib.namespace import RDF
 
     first, second = _Side(before, node_names(before)), _Side(after, node_names(after))
@@ -56,7 +57,7 @@ def compare(before: Graph, after: Graph, renamed: Mapping[str, str]) -> Losses:
 
 
 def _is_made(iri: str) -> bool:
-    """Tell whether a name is one that nobody writes: those contain a point."""
+    """Return whether a name is generated: such names contain a dot."""
     return "." in iri.replace("#", "/").rpartition("/")[2]
 
 
@@ -73,7 +74,7 @@ class _Side:
         return (triple for triple in self.graph if not self._lists.is_cell(triple[0]))
 
     def line(self, triple: tuple[Node, Node, Node], mapping: Mapping[str, str]) -> str:
-        """Return a triple as text that is the same in both graphs."""
+        """Return a triple as text that is equal for both graphs."""
         return " ".join(self._term(node, mapping) for node in triple)
 
     def _term(self, node: Node, mapping: Mapping[str, str]) -> str:
@@ -90,7 +91,7 @@ class _Side:
         return f"<{mapping.get(str(node), str(node))}>"
 
     def shown(self, triple: tuple[Node, Node, Node]) -> str:
-        """Return a triple for a reader."""
+        """Return a triple in readable form."""
         return " ".join(self._shown(node) for node in triple)
 
     def _shown(self, node: Node) -> str:
@@ -105,7 +106,7 @@ class _Side:
         return "a" if node == RDF.type else self.names.get(str(node), str(node))
 
     def _is_empty(self, node: Node) -> bool:
-        """Tell whether nothing is said of a blank node, which published graphs have in place of an empty list."""
+        """Return whether nothing is said of a blank node, which published graphs use as an empty list."""
         from rdflib import BNode
 
         return isinstance(node, BNode) and (node, None, None) not in self.graph
@@ -125,7 +126,7 @@ class _Side:
 
 
 def _align(first: _Side, second: _Side, mapping: dict[str, str]) -> None:
-    """Add what has no written name: the parts of templates and variants, found by the way that leads to them."""
+    """Match nodes without a written name, the parts of templates and variants, by the paths that lead to them."""
     from rdflib import URIRef
 
     waiting = sorted(set(first.graph.subjects()), key=str)

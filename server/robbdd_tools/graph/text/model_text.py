@@ -1,4 +1,4 @@
-"""A graph as RobBDD text: the way back from knowledge to what a person can read and edit."""
+"""Write a graph as RobBDD text that a person can read and edit."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ if TYPE_CHECKING:
     from rdflib import Graph
 
 OWL_INSTANT = "http://www.w3.org/2006/time#Instant"
-"""What some models type their events as."""
+"""Type of events in some models."""
 
 
 _LARGER = (
     *("bdd:ScenarioTemplate", "bdd:UserStory", "bdd:ScenarioVariant", "bdd:FluentClause", "bdd:ScenarioVariable"),
     *("bdd:Scene", "bdd:Set", "bhv:Behaviour", "bt:BehaviourTree", "env:Object", "env:Workspace", "agn:Agent"),
 )
-"""Types of nodes that are not written as events and tasks, which they may be as well: that is lost instead."""
+"""Types of nodes that are not written as events or tasks, even if they also have such a type, which is then lost."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelText:
-    """A model as text. ``scene`` is what its scene file holds, empty when it needs none.
+    """A model as text. ``scene`` is the content of its scene file, empty if it needs none.
 
-    ``renamed`` maps nodes to the IRIs that the text gives them instead; ``left_out`` nodes to the reason why they
-    cannot be written.
+    ``renamed`` maps nodes to their new IRIs in the text; ``left_out`` maps nodes to the reason why they cannot be
+    written.
     """
 
     criteria: str
@@ -46,7 +46,7 @@ class ModelText:
 
 
 def write_model(graph: Graph, scene_name: str) -> ModelText:
-    """Return a graph as text; ``scene_name`` is how the criteria import the file with the scenes.
+    """Return a graph as text; ``scene_name`` is the import path of the scene file.
 
     Raises ``Incomplete`` for a scene or a name that cannot be written.
     """
@@ -121,7 +121,7 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
 
 
 def _variables(records: Records, reader: ClauseReader, template: Iri) -> list[Iri]:
-    """Return the variables that a template declares; of a graph that does not tell, those that it leaves open."""
+    """Return the variables of a template; if the graph does not list them, the unbound ones of its clauses."""
     if records.all(template, "rbw:variables"):
         return list(records.iris(items_of(records, template, "rbw:variables")))
     clauses = reader.clauses(template)

@@ -1,4 +1,4 @@
-"""What the nodes of a graph are called in RobBDD text: namespaces, names that are still free, references."""
+"""Names of a graph's nodes in RobBDD text: namespaces, unused names, references."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ _ENDING = re.compile(r"[^\W\d][\w\-]*\Z")
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?")
 _ESCAPES = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
 _VARIABLES = frozenset({"variable", "each"})
-"""One node may be the variable of a template and of a quantifier in another."""
+"""Kinds that may share a node: the variable of a template, and that of a quantifier in another template."""
 NO_NAMESPACE = "https://robbdd.org/imported/"
-"""The namespace of what has no name at all where nothing of the graph has one."""
+"""Namespace of nodes without a name if no node of the graph has one."""
 
 
 @dataclass(slots=True)
 class Names:
-    """Gives each node a name once. ``renamed`` maps nodes to the IRIs that the text gives them instead.
+    """Assigns each node a name once. ``renamed`` maps nodes to their new IRIs in the text.
 
-    ``stated`` maps namespaces to the prefixes that the graph has for them; ``used`` those that the text needs.
+    ``stated`` maps namespaces to the prefixes of the graph; ``used`` to those that the text needs.
     """
 
     records: Records
@@ -42,7 +42,7 @@ class Names:
     _kinds: dict[str, str] = field(default_factory=dict[str, str])
 
     def split(self, node: str) -> tuple[str, str]:
-        """Return namespace and name of a node; the name is ``""`` when the node has none that can be written."""
+        """Return namespace and name of a node; the name is ``""`` if the node has none that can be written."""
         fitting = [ns for ns in self.stated if node.startswith(ns) and NAME.fullmatch(node[len(ns) :])]
         if fitting:
             longest = max(fitting, key=len)
@@ -52,15 +52,15 @@ class Names:
         return (node[: match.start()], match[0]) if match else (NO_NAMESPACE, "")
 
     def declare(self, node: str, kind: str, *, owner: str = "", namespace: str | None = None, before: str = "") -> str:
-        """Return the name of a node where it is declared and note how it is referred to.
+        """Return the name of a node at its declaration and record its reference.
 
-        ``owner`` is the qualified name that it stands in; ``namespace`` the one that the text imposes;
-        ``before`` what the language puts in front of the name in the IRI. ``kind`` names what has no name. Raises
-        ``Incomplete`` for a node that is declared as something else already.
+        ``owner`` is the qualified name of its parent; ``namespace`` the one that the text imposes; ``before`` the
+        language's prefix of the name in the IRI. ``kind`` is the name of a nameless node. Raises ``Incomplete`` for a
+        node that is already declared as something else.
         """
         first = self._kinds.setdefault(node, kind)
         if first != kind and not {first, kind} <= _VARIABLES:
-            raise Incomplete(f"{node} is written as {first} already, so that it cannot be {kind} as well")
+            raise Incomplete(f"{node} is already written as {first}, so it cannot be {kind} as well")
         own, name = self.split(node)
         if namespace is not None and node.startswith(namespace + before):
             local = node[len(namespace + before) :]
@@ -76,11 +76,11 @@ class Names:
         return name
 
     def fresh(self, name: str) -> str:
-        """Return a file-level name that nothing has yet."""
+        """Return an unused file-level name."""
         return self._free(name, "", "", "")
 
     def prefix(self, namespace: str) -> str:
-        """Return the prefix of a namespace, which the text then declares."""
+        """Return the prefix of a namespace, and declare it in the text."""
         if namespace not in self.used:
             wanted = self.stated.get(namespace) or re.split(r"[/#:]", namespace.rstrip("/#:"))[-1]
             others = {prefix for ns, prefix in self.stated.items() if ns != namespace}
@@ -92,13 +92,13 @@ class Names:
         return f"(ns={self.prefix(self.split(node)[0])})"
 
     def reference(self, node: str) -> str:
-        """Return ``<name>``; raises ``Incomplete`` for what the text does not declare."""
+        """Return ``<name>``; raises ``Incomplete`` for a node that the text does not declare."""
         if node not in self.paths:
-            raise Incomplete(f"{node} is declared nowhere")
+            raise Incomplete(f"{node} is not declared")
         return f"<{self.paths[node]}>"
 
     def lazily(self, node: str, kind: str) -> str:
-        """Return ``<name>`` of an event or task, which is declared by being used."""
+        """Return ``<name>`` of an event or task, and declare it."""
         if node not in self.paths:
             self.declared.setdefault(kind, {})[node] = None
             self.declare(node, kind)
@@ -139,5 +139,5 @@ def braces(parts: Iterable[str]) -> str:
 
 
 def indented(text: str) -> str:
-    """Return text one level further to the right; lines of strings never begin a line, they have no line breaks."""
+    """Return text indented by one level; strings contain no line breaks."""
     return "\n".join(f"    {line}" if line else line for line in text.split("\n"))

@@ -1,4 +1,4 @@
-"""Sets, compositions and scenes of a graph as RobBDD text."""
+"""Write sets, compositions and scenes of a graph as RobBDD text."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MEMBERSHIP = re.compile(r"-scene-has-(?:obj|ws|agn)(?:-\d+)?\Z")
 
 @dataclass(slots=True)
 class SceneText:
-    """Writes what scenes consist of. ``kinds`` tells the kind of each set that declares elements."""
+    """Writes the contents of scenes. ``kinds`` maps each set that declares elements to its kind."""
 
     names: Names
     kinds: dict[str, str] = field(default_factory=dict[str, str])
@@ -49,12 +49,12 @@ class SceneText:
         return blocks
 
     def link(self, node: str) -> str:
-        """Return a set as it is named in a variation or scene: ``obj set <…>``, ``set <…>``."""
+        """Return a reference to a set in a variation or scene: ``obj set <…>``, ``set <…>``."""
         kind = self.kinds.get(node)
         return f"{WORDS[kind]} set {self.names.reference(node)}" if kind else f"set {self.names.reference(node)}"
 
     def constant_set(self, node: Iri) -> str:
-        """Return the declaration of a set that lists values."""
+        """Return the declaration of a set of values."""
         values: list[str] = []
         for item in elements_of(self.names.records, node):
             try:
@@ -64,7 +64,7 @@ class SceneText:
         return f"const set {self.names.scope_of(node)} {self.names.paths[node]} {braces(values)}"
 
     def _choose_sets(self) -> None:
-        """Decide which sets declare elements: those that scenes name, then the larger ones; each element once."""
+        """Choose the sets that declare elements: those that scenes name, then the larger ones; each element once."""
         records = self.names.records
         in_scenes = {
             str(item) for node in records.subjects("rbw:entries") for item in items_of(records, node, "rbw:entries")
@@ -100,7 +100,7 @@ class SceneText:
             self.names.declare(member, kind, owner=name, namespace=self.names.split(node)[0])
 
     def _declare_rest(self, elements: list[str]) -> None:
-        """Put elements that no set declares into sets of our own, one for each kind and namespace."""
+        """Put elements without a declaring set into generated sets, one for each kind and namespace."""
         groups: dict[tuple[str, str], list[str]] = {}
         for element in sorted(elements):
             groups.setdefault((self._elements[element], self.names.split(element)[0]), []).append(element)
@@ -143,7 +143,7 @@ class SceneText:
         return f"scene {self.names.scope_of(node)} {self.names.paths[node]} {{{body}}}"
 
     def _of(self, variant: Iri) -> Iterator[str]:
-        """Yield a scene for a variant of a graph that does not tell which scene it is."""
+        """Yield a scene for a variant whose scene the graph does not name."""
         records = self.names.records
         stated = records.all(variant, "rbw:scene")
         if stated:
@@ -162,7 +162,7 @@ class SceneText:
         self.scenes[variant] = self.scenes[node]
 
     def _parts(self, members: frozenset[str]) -> Iterator[str]:
-        """Yield sets and compositions that bring the members of a scene, a whole set where a part of it is needed."""
+        """Yield sets and compositions with the members of a scene, a whole set even if only a part is needed."""
         missing = set(members)
         for node in self._compositions:
             workspaces = set(map(str, self.names.records.all(node, "env:of-workspace")))

@@ -1,4 +1,4 @@
-"""User stories, variants and variations of a graph as RobBDD text."""
+"""Write user stories, variants and variations of a graph as RobBDD text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class StoryText:
     """Writes stories. ``variables`` maps each template to its variables' references from outside of it.
 
-    What cannot be written is noted in ``left_out`` with the reason.
+    ``left_out`` records nodes that cannot be written, with the reason.
     """
 
     names: Names
@@ -32,7 +32,7 @@ class StoryText:
     left_out: dict[str, str]
 
     def text(self, story: Iri) -> str:
-        """Return a user story; raises ``Incomplete`` when none of its variants can be written."""
+        """Return a user story; raises ``Incomplete`` if none of its variants can be written."""
         records, names = self.names.records, self.names
         namespace = names.split(story)[0]
         name = names.paths[story]
@@ -97,7 +97,7 @@ class StoryText:
     def _row(self, row: Node, width: int) -> list[str]:
         cells = self.names.records.items(row)
         if cells is None or len(cells) != width:
-            raise Incomplete("a row of its variation has not one cell for each variable")
+            raise Incomplete("a row of its variation does not have one cell for each variable")
         return [self._cell(cell) for cell in cells]
 
     def _cell(self, node: Node) -> str:

@@ -1,1 +1,1 @@
-"""From declarations to RDF, with the place in the text of every node; graphs by others; results of runs."""
+"""Write declarations as RDF with source positions; read foreign graphs; add results of runs."""

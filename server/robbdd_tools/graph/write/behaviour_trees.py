@@ -1,6 +1,6 @@
-"""Behaviour trees in the graph: their nodes, what composites do with them, which behaviours are linked to them.
+"""Behaviour trees in the graph: their nodes, the semantics of composites, the linked behaviours.
 
-In the terms of the published metamodel of behaviour trees, as far as it has them.
+Uses the terms of the published metamodel of behaviour trees where they exist.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def add_behaviour_tree(frame: Frame, declared: tree.BehaviourTree) -> None:
-    """State a behaviour tree with its nodes in written order, and what executes what."""
+    """Add the triples of a behaviour tree, with its nodes in written order."""
     node = frame.claimed(declared.name.text, declared.name)
     if node is None:
         return
@@ -31,7 +31,7 @@ def add_behaviour_tree(frame: Frame, declared: tree.BehaviourTree) -> None:
     for part, own in named.items():
         if isinstance(part, tree.TreeComposite):
             sink.add_types(own, [COMPOSITES[part.kind]], frame.at(part.name))
-            # What has succeeded is not done again while a later part is at work.
+            # Completed children are not ticked again while a later child runs.
             sink.add(own, "bt:memory", sink.literal(True), frame.at(part.name))
             sink.add(own, "bt:children", sink.make_list(_nodes(part.nodes, named)), frame.at(part.name))
             for child in part.nodes:
@@ -50,7 +50,7 @@ def add_behaviour_tree(frame: Frame, declared: tree.BehaviourTree) -> None:
 def _named(
     frame: Frame, declared: tree.BehaviourTree, node: URIRef
 ) -> Iterator[tuple[tree.TreeComposite | tree.TreeLeaf, URIRef]]:
-    """Yield the parts that have a name of their own, with their nodes."""
+    """Yield the named parts, with their nodes."""
     for part in walk(declared):
         if isinstance(part, tree.TreeComposite | tree.TreeLeaf):
             own = frame.claimed(f"{declared.name.text}.{part.name.text}", part.name)
@@ -65,6 +65,6 @@ def _nodes(parts: Iterable[tree.TreeNode], named: dict[tree.TreeComposite | tree
 
 
 def link_behaviour(frame: Frame, behaviour: URIRef, use: tree.BehaviourUse) -> None:
-    """State which node of a behaviour tree a behaviour is linked to, if any."""
+    """Add the link of a behaviour to a node of a behaviour tree, if any."""
     if use.node is not None:
         frame.sink.add(behaviour, "rbw:coordination-node", frame.target(use.node), frame.at(use.node))

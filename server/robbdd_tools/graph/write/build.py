@@ -1,7 +1,7 @@
-"""A file with what it uses of its imports becomes one graph.
+"""Build one graph from a file and the parts of its imports that it uses.
 
-The file's own declarations are all stated; of the files it imports, those that it leads to. Nothing here raises on
-what a user wrote: a broken declaration, a name that leads nowhere or an IRI that is none states nothing.
+The file's own declarations are all included; those of imported files if they are reachable. User input never raises: a
+broken declaration, an unresolved name or an invalid IRI adds no triples.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ SCENARIO_PARTS = {"given": "bdd:Given", "when": "bdd:When", "then": "bdd:Then"}
 
 
 def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
-    """Return the graph of a file of a snapshot (an empty one when the file cannot be read).
+    """Return the graph of a file in a snapshot (empty if the file cannot be read).
 
-    A file that is a graph itself, by its ending, is read.
+    A file with a graph format's extension is parsed as a graph.
     """
     file = snapshot.file(uri) if graph_format(uri) else None
     if file is not None:
@@ -60,10 +60,10 @@ def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
 
 
 def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: Identities) -> BuiltGraph:
-    """Return the graph of some declarations: of a file with all that it leads to, or of a part that is complete.
+    """Return the graph of some declarations: a file's with everything reachable, or a complete part of them.
 
-    A part is complete when it holds all that its declarations use and who contests a node with one of them.
-    ``known`` are the nodes of all of the file's declarations.
+    A part is complete if it contains everything that its declarations use and all declarations that contest their
+    nodes. ``known`` are the nodes of all of the file's declarations.
     """
     sink = Sink()
     for node, declarers in known.shared.items():
@@ -85,9 +85,9 @@ def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: 
 
 
 def _nodes_of(entry: Reached) -> Iterator[str]:
-    """Yield what a declaration alone stands for in the graph, the parts of a template included.
+    """Yield the nodes that only this declaration describes, including the parts of a template.
 
-    Templates of one namespace share variables and behaviours, so that an error in one says nothing of another.
+    Templates of one namespace share variables and behaviours, so an error in one says nothing about another.
     """
     for definition in entry.file.definitions.values():
         if definition.iri is not None and definition.kind not in SHARED and entry.holds(definition):
@@ -97,7 +97,7 @@ def _nodes_of(entry: Reached) -> Iterator[str]:
 
 
 def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
-    """State all declarations: first what stands alone, then compositions, which nest, then stories."""
+    """Add all declarations: first independent ones, then compositions, which nest, then stories."""
     scenes = Scenes()
     tasks: dict[URIRef, URIRef] = {}
     placed = [(entry.tree, Frame(sink, entry.file, entry.placed)) for entry in reached]
@@ -204,9 +204,9 @@ def _add_variables(frame: Frame, node: URIRef, template: tree.Template) -> None:
 
 
 def _add_prefixes(sink: Sink, reached: Iterable[Reached]) -> dict[str, str]:
-    """State the prefix of each namespace, so that names can be shortened however the graph is stored.
+    """Add the prefix of each namespace, so that names can be shortened in every graph format.
 
-    The file's own prefixes come first; a prefix that means something else already gets a number.
+    The file's own prefixes come first; a prefix that is already used for another namespace gets a number.
     """
     prefixes: dict[str, str] = {}
     for root in _namespaces(reached):

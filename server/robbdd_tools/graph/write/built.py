@@ -1,4 +1,4 @@
-"""What is known of a graph besides its triples: where they come from and what is in doubt."""
+"""Metadata of a graph: source positions, and declarations in doubt."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Clash:
-    """Two declarations whose names make one IRI: the later one, which the graph leaves out, and the first."""
+    """Two declarations with the same IRI: the later one, which the graph leaves out, and the first."""
 
     iri: str
     location: Location
@@ -25,13 +25,12 @@ class Clash:
 
 @dataclass(frozen=True, slots=True)
 class BuiltGraph:
-    """A graph with what is known of its origin.
+    """A graph with its metadata.
 
-    ``names`` gives the qualified name that stands in the text for an IRI (a CURIE for a graph that was read);
-    ``doubtful`` the extents of declarations that already have an error or build on one that has;
-    ``doubtful_nodes`` what these declare. ``faults`` are what kept a graph file from being read;
-    ``is_read`` tells that it is one, whose findings have to name their node. ``authors`` are the declarations (document
-    and offset) that a node is described by.
+    ``names`` maps an IRI to its qualified name in the text (a CURIE for a parsed graph); ``doubtful`` are the extents
+    of declarations that have an error or use one that has; ``doubtful_nodes`` are the nodes that these declare.
+    ``faults`` are why a graph file could not be read; ``is_read`` marks a graph file, whose findings have to name their
+    node. ``authors`` are the declarations (document and offset) that describe a node.
     """
 
     uri: str

@@ -1,4 +1,4 @@
-"""Given, When and Then as triples: fluents, groups, quantifiers, behaviours."""
+"""Write Given, When and Then as triples: fluents, groups, quantifiers, behaviours."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Slot
 
 MOST_NESTED = 100
-"""Parentheses in parentheses; deeper ones are left out rather than exhausting the stack."""
+"""Maximum nesting of parentheses; deeper ones are left out to protect the stack."""
 
 
 @dataclass(frozen=True, slots=True)
 class ClauseWriter:
     """Writes the clauses of one owner, a template or a variant.
 
-    ``namespace`` is that of the owner, ``owner`` its qualified name (``story.variant``), ``scenario`` the node of
-    the template's scenario. Nodes without a name of their own are called after the path to them:
-    kind, owner, then the steps, joined by points, which no name contains.
+    ``namespace`` is that of the owner, ``owner`` its qualified name (``story.variant``), ``scenario`` the node of the
+    template's scenario. Unnamed nodes are named after their path: kind, owner, then the steps, joined by dots, which no
+    name contains.
     """
 
     frame: Frame
@@ -52,7 +52,7 @@ class ClauseWriter:
         return nodes + self.top(body.then, "then", path)
 
     def top(self, expression: tree.Expression | None, role: str, path: str = "") -> list[Node]:
-        """Write the clauses of one role; an *and* around them is the list itself."""
+        """Write the clauses of one role; an enclosing *and* becomes the list itself."""
         if expression is None:
             return []
         path = f"{path}.{role}"
@@ -187,7 +187,7 @@ class ClauseWriter:
         return [node]
 
     def _emissions(self, node: URIRef, use: tree.BehaviourUse, path: str) -> None:
-        """State which events of the model the behaviour's own events are."""
+        """Add the mapping of the behaviour's own events to events of the model."""
         sink, at = self._sink, self.frame.at
         found: list[Node] = []
         for index, emission in enumerate(use.emissions):
@@ -221,7 +221,7 @@ class ClauseWriter:
 
 
 def add_time(frame: Frame, node: URIRef, time: tree.TimeConstraint) -> None:
-    """State a time constraint on the node that it constrains."""
+    """Add a time constraint to the node that it constrains."""
     kind = type(time).__name__.lower()
     sink = frame.sink
     sink.add_types(node, ["time:TimeConstraint", TIME_TYPES[kind]], frame.at(time))

@@ -1,4 +1,4 @@
-"""Which declarations belong to a file's graph, and which of them are in doubt because of errors."""
+"""The declarations of a file's graph, and which of them are in doubt because of errors."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 Key = tuple[str, int]
-"""What identifies a declaration among all of one revision: its document and its offset."""
+"""Key of a declaration within one revision: its document and its offset."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """A declaration that belongs to a graph; ``own`` when it stands in the file the graph is made of.
+    """A declaration in a graph; ``own`` if it is in the graph's main file.
 
     ``key`` identifies it among all declarations of the revision.
     """
@@ -36,26 +36,26 @@ class Reached:
 
     @property
     def uri(self) -> str:
-        """The document it stands in."""
+        """Its document."""
         return self.key[0]
 
     @property
     def tree(self) -> tree.ChunkTree | None:
-        """Its tree, ``None`` when it is broken."""
+        """Its tree, ``None`` if it is broken."""
         return self.placed.declaration.tree
 
     def holds(self, definition: Definition) -> bool:
-        """Tell whether a definition is part of it."""
+        """Return whether a definition is part of it."""
         return self.covers(Location(definition.uri, definition.span))
 
     def covers(self, location: Location) -> bool:
-        """Tell whether a place is inside it."""
+        """Return whether it contains a place."""
         span = self.placed.span
         return location.uri == self.uri and span.start <= location.span.start < span.end
 
 
 class Uses:
-    """Which declarations lead to which, among all of a file and its imports (``closure``, the file first)."""
+    """References between the declarations of a file and its imports (``closure``, the file first)."""
 
     def __init__(self, closure: Sequence[FileAnalysis]) -> None:
         self._files = {
@@ -69,13 +69,13 @@ class Uses:
         self._errors: dict[str, list[int]] = {}
 
     def __iter__(self) -> Iterator[Reached]:
-        """Yield all declarations, imports before their importers, each file's in the order of the text."""
+        """Yield all declarations, imports before their importers, each file's in text order."""
         return (entry for entries in self._files.values() for entry in entries)
 
     def of(self, entry: Reached) -> list[Reached]:
-        """Return the declarations that the references of one lead to, in the order of the references.
+        """Return the declarations that one refers to, in the order of its references.
 
-        One that gives no namespace leads to that of its file as well.
+        A declaration without an explicit namespace also refers to that of its file.
         """
         key = entry.key
         if key not in self._found:
@@ -87,7 +87,7 @@ class Uses:
         return self._found[key]
 
     def has_error(self, entry: Reached) -> bool:
-        """Tell whether an error stands in a declaration or one of its references leads nowhere."""
+        """Return whether a declaration has an error or an unresolved reference."""
         if entry.tree is None or len(entry.placed.targets) < _distinct_references(entry.placed.declaration):
             return True
         if entry.uri not in self._errors:
@@ -99,7 +99,7 @@ class Uses:
 
 
 def reach(uses: Uses) -> tuple[Reached, ...]:
-    """Return all declarations of the first file and those it leads to, imports before their importers."""
+    """Return all declarations of the first file and those reachable from them, imports before their importers."""
     every = tuple(uses)
     waiting = [entry for entry in every if entry.own]
     found = {entry.key for entry in waiting}
@@ -112,11 +112,10 @@ def reach(uses: Uses) -> tuple[Reached, ...]:
 
 
 def doubtful(uses: Uses, reached: Sequence[Reached], left_out: Iterable[Location]) -> tuple[Reached, ...]:
-    """Return the declarations about which no further finding can be trusted.
+    """Return the declarations whose further findings are not reliable.
 
-    These are the ones with an error or of which something was left out, and those that use one of which something
-    is missing: a broken one, or a set, composition or scene with an error. An error inside a template or story says
-    nothing about its users.
+    These are the ones with an error or an omitted part, and users of an incomplete declaration: a broken one, or a set,
+    composition or scene with an error. An error inside a template or story says nothing about its users.
     """
     places = tuple(left_out)
     suspect = [entry for entry in reached if uses.has_error(entry) or any(map(entry.covers, places))]

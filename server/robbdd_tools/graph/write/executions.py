@@ -1,4 +1,4 @@
-"""Executions as triples: behaviour implementations, observations, policies, and which variant runs how."""
+"""Write executions as triples: behaviour implementations, observations, policies, and executed variants."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FORMS: dict[type[tree.Node], str] = {
 
 
 def add_execution(frame: Frame, root: tree.ChunkTree | None, position: int) -> None:
-    """State a declaration of a ``.bddx``; ``position`` is its place among all. Any other states nothing here."""
+    """Add a declaration of a ``.bddx``, if it is one; ``position`` is its index among all."""
     match root:
         case tree.Implementation():
             _add_implementation(frame, root)
@@ -39,7 +39,7 @@ def add_execution(frame: Frame, root: tree.ChunkTree | None, position: int) -> N
 
 
 def add_python(frame: Frame, node: URIRef, source: tree.PythonAttribute) -> None:
-    """State that a node is an attribute of a Python module."""
+    """Add that a node is an attribute of a Python module."""
     frame.sink.add_types(node, ["py:ModuleAttribute"], frame.at(source))
     _say(frame, node, "py:module-name", source.module.text, source.module)
     _say(frame, node, "py:attribute-name", source.attribute.text, source.attribute)
@@ -51,13 +51,13 @@ def _say(frame: Frame, node: URIRef, term: str, value: str | float | None, place
 
 
 def _number(frame: Frame, node: URIRef, term: str, number: tree.Number | None, factor: float = 1.0) -> None:
-    """State a number of SI units as a double."""
+    """Add a number in SI units as a double."""
     if number is not None:
         _say(frame, node, term, float(number.value) * factor, number)
 
 
 def _part(frame: Frame, node: URIRef, name: str, term: str) -> URIRef | None:
-    """State a part of a node under a name of its own."""
+    """Add a part of a node with its own name."""
     part = frame.sink.iri(f"{node}.{name}")
     frame.sink.add(node, term, part)
     return part
@@ -196,7 +196,7 @@ def _add_execution(frame: Frame, root: tree.Execution, position: int) -> None:
 
 
 def _add_listed(frame: Frame, node: URIRef, term: str, list_term: str, references: Iterable[tree.Ref]) -> None:
-    """State the targets of references, and their written order."""
+    """Add the targets of references, and their written order."""
     found: list[URIRef] = []
     for reference in references:
         target = frame.target(reference)

@@ -1,4 +1,4 @@
-"""Models that are graphs already: read from Turtle or JSON-LD, whoever wrote them, each node with its place."""
+"""Read models that are graphs, in Turtle or JSON-LD from any author, with the position of each node."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def read_graph_file(document: Document, others: Sequence[Document] = ()) -> Buil
 
 
 def node_names(graph: Graph) -> dict[str, str]:
-    """Return what findings call the nodes: CURIEs; a blank node is called after the node that it belongs to."""
+    """Return the names of nodes in findings: CURIEs; a blank node has the name of the node that it belongs to."""
     from rdflib import BNode, Graph, URIRef
 
     short = Graph(bind_namespaces="none")
@@ -59,7 +59,7 @@ def node_names(graph: Graph) -> dict[str, str]:
 
 
 def _blank_owners(graph: Graph) -> list[tuple[Node, Node]]:
-    """Return each blank node behind the named node that leads to it."""
+    """Return each blank node with the named node that leads to it."""
     from rdflib import BNode
 
     inner: dict[Node, list[Node]] = {}
@@ -80,9 +80,9 @@ def _blank_owners(graph: Graph) -> list[tuple[Node, Node]]:
 
 
 def graph_places(documents: Iterable[Document], graph: Graph) -> SourceMap:
-    """Return where the nodes of a graph stand in its texts; a blank one where the node stands that it belongs to.
+    """Return the positions of the nodes of a graph in its texts; a blank node has that of the node that it belongs to.
 
-    A node of several texts stands where the last of them has it: those before import what describes it.
+    A node in several texts has its position in the last of them: earlier texts import the one that describes it.
     """
     namespaces = {prefix: str(namespace) for prefix, namespace in graph.namespaces()}
     places: dict[str, Location] = {}
@@ -100,7 +100,7 @@ def graph_places(documents: Iterable[Document], graph: Graph) -> SourceMap:
 
 
 def _left_out(uri: str, graph: Graph, places: SourceMap, names: dict[str, str]) -> list[Diagnostic]:
-    """Report the scenario variants that a run would silently lack."""
+    """Report the scenario variants that runs would leave out."""
     found: list[Diagnostic] = []
     for variant, reason in incomplete_variants(graph).items():
         place = places.node(variant) or Location(uri, Span(0, 0))

@@ -1,4 +1,4 @@
-"""Merges the graphs that a foreign graph imports (``owl:imports``) from files on this machine."""
+"""Merge the graphs that a foreign graph imports (``owl:imports``) from local files."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
 GRAPH_FORMATS = {"ttl": "ttl", "json": "json-ld", "jsonld": "json-ld"}
-"""Ending of a model that is a graph → its format."""
+"""Extension of a graph file → its format."""
 IMPORTS = "http://www.w3.org/2002/07/owl#imports"
 
 
 def graph_format(uri: str) -> str:
-    """Return the format of a file that is a graph by its ending; ``""`` for any other file."""
+    """Return the graph format of a file by its extension; ``""`` for any other file."""
     return GRAPH_FORMATS.get(PurePosixPath(uri).suffix.removeprefix(".").lower(), "")
 
 
 @dataclass(slots=True)
 class Merged:
-    """A graph with those that it imports, the documents they come from, and what is wrong with the imports."""
+    """A graph with those that it imports, their documents, and the faults of the imports."""
 
     graph: Graph
     documents: list[Document]
@@ -101,12 +101,12 @@ def _file(importer: str, name: str) -> Path | None:
 
 
 def _read(path: Path | None, name: str) -> tuple[Document, Graph] | str:
-    """Return the document and graph of an imported file, else what is wrong with the import."""
+    """Return the document and graph of an imported file, or the fault of the import."""
     if path is None:
-        return f"'{name}' is not fetched: put the file beside this one, under the name that its address ends with"
+        return f"'{name}' is not fetched: put the file next to this one, under the name that its address ends with"
     uri = path_to_uri(path)
     if not graph_format(uri):
-        return f"'{path.name}' is no graph: import a file that ends in .{', .'.join(GRAPH_FORMATS)}"
+        return f"'{path.name}' is not a graph: import a file that ends in .{', .'.join(GRAPH_FORMATS)}"
     text = read_text(path)
     if isinstance(text, Unreadable):
         return text.reason

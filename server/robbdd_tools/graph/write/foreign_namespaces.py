@@ -1,4 +1,4 @@
-"""Namespaces of foreign graphs that look like those of the vocabulary: ``unknown-namespace``, and ``no-criteria``."""
+"""Foreign namespaces that resemble those of the vocabulary: ``unknown-namespace``, and ``no-criteria``."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from robbdd_tools.base.document import Document
 
 MOST_NAMED = 3
-"""Terms that a message repeats."""
+"""Maximum number of terms in a message."""
 
 
 def foreign_namespaces(document: Document, graph: Graph) -> Iterator[Diagnostic]:
-    """Yield each unknown namespace with terms of the vocabulary, else one finding where no term is known."""
+    """Yield each unknown namespace with terms of the vocabulary, or one diagnostic if no term is known."""
     from rdflib.namespace import RDF
 
     found = sorted(_lookalikes(graph).items())
@@ -30,12 +30,12 @@ def foreign_namespaces(document: Document, graph: Graph) -> Iterator[Diagnostic]
         yield _unknown(document, namespace, own, sorted(terms))
     known = tuple(PREFIXES[prefix] for prefix in ("bdd", "time", "task", "bhv", "env", "agn", "obs", "rbw"))
     if not found and not any(str(kind).startswith(known) for kind in graph.objects(None, RDF.type)):
-        message = "nothing in this graph is of the vocabulary of acceptance criteria: is it the right file?"
+        message = "this graph uses no term of the acceptance criteria vocabulary: is it the right file?"
         yield Diagnostic(document.uri, Span(0, 0), Severity.WARNING, "no-criteria", message)
 
 
 def _lookalikes(graph: Graph) -> dict[str, tuple[str, set[str]]]:
-    """Map each unknown namespace to the one of the vocabulary that has most of its terms, and these terms."""
+    """Map each unknown namespace to the vocabulary namespace that shares most terms with it, and these terms."""
     from rdflib.namespace import RDF
 
     used: dict[str, set[str]] = {}
@@ -48,7 +48,7 @@ def _lookalikes(graph: Graph) -> dict[str, tuple[str, set[str]]]:
     for namespace, terms in used.items():
         fitting = {own: terms & names for own, names in _vocabulary().items()}
         own = max(fitting, key=lambda name: (len(fitting[name]), name))
-        # One word, such as 'Object', may be anybody's.
+        # A single word, such as 'Object', may belong to any vocabulary.
         if len(fitting[own]) > 1:
             found[namespace] = (own, fitting[own])
     return found
@@ -69,9 +69,7 @@ def _vocabulary() -> dict[str, set[str]]:
 def _unknown(document: Document, namespace: str, own: str, terms: list[str]) -> Diagnostic:
     places = list(_places(document.text, namespace))
     named = ", ".join(f"'{term}'" for term in terms[:MOST_NAMED]) + (" …" if len(terms) > MOST_NAMED else "")
-    message = (
-        f"the namespace <{namespace}> is unknown, so that nothing is made of its terms ({named}); did you mean <{own}>?"
-    )
+    message = f"the namespace <{namespace}> is unknown, so its terms are ignored ({named}); did you mean <{own}>?"
     fixes: tuple[Fix, ...] = ()
     if places:
         edits = tuple(Edit(document.uri, place, own) for place in places)
@@ -81,7 +79,7 @@ def _unknown(document: Document, namespace: str, own: str, terms: list[str]) -> 
 
 
 def _places(text: str, namespace: str) -> Iterator[Span]:
-    """Yield where a namespace is written as such, not as the beginning of a longer IRI."""
+    """Yield the spans of a namespace itself, not as the start of a longer IRI."""
     start = text.find(namespace)
     while start >= 0:
         end = start + len(namespace)

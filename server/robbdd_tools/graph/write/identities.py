@@ -1,4 +1,4 @@
-"""Which declarations of a graph speak of the same node, and the name that stands for each node in the text."""
+"""Declarations of the same node, and the name of each node in the text."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 VARIABLES = frozenset({SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE})
 SHARED = VARIABLES | {SymbolKind.BEHAVIOUR}
-"""Kinds whose nodes several templates of a namespace may have in common."""
+"""Kinds whose nodes several templates of a namespace may share."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Named:
-    """A name that makes a node: ``local`` ends its IRI, ``says`` is what is stated of a shared one."""
+    """A name of a node: ``local`` ends its IRI, ``says`` is the content of a shared one."""
 
     symbol: Symbol
     local: str
@@ -51,10 +51,9 @@ class Declarer:
 class Identities:
     """The nodes that some declarations name.
 
-    ``starts`` maps a declaration to the namespaces (IRIs, ``None``: unknown) that it names nodes in.
-    ``names`` maps an IRI to the first qualified name for it. ``shared`` are nodes that several declarations agree
-    on, ``contested`` those where it matters who else names them: only one can have them, or they say different
-    things of them. Both list the declarers in the order of the graph.
+    ``starts`` maps a declaration to the namespaces (IRIs, ``None``: unknown) in which it names nodes. ``names`` maps an
+    IRI to its first qualified name. ``shared`` are nodes that several declarations define equally; ``contested`` are
+    those where only one can have the IRI, or where they differ. Both list the declarers in graph order.
     """
 
     names: Mapping[str, str]
@@ -64,7 +63,7 @@ class Identities:
 
 
 def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
-    """Return which nodes some declarations name, and who names the same."""
+    """Return the nodes that some declarations name, and the shared and contested ones."""
     names: dict[str, str] = {}
     first: dict[str, tuple[Reached, _Named]] = {}
     repeated: dict[str, list[Declarer]] = {}
@@ -94,7 +93,7 @@ def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
 
 
 def _sorted_out(found: Identities, repeated: Mapping[str, list[Declarer]]) -> Identities:
-    """Tell agreement from contest; a declaration that may lose its name to another may state nothing at all."""
+    """Separate shared from contested nodes; a declaration that loses its name to another may be left out entirely."""
     for iri, declarers in repeated.items():
         agreed = {declarer.says for declarer in declarers}
         (found.contested if None in agreed or len(agreed) > 1 else found.shared)[iri] = declarers
@@ -121,7 +120,7 @@ def _says(symbol: Symbol, words: Mapping[str, str]) -> str | None:
 
 
 def _behaviours(body: tree.Body) -> Iterator[tuple[str, str]]:
-    """Yield name and word of each behaviour of a template; the last ``for all`` inside has the last one."""
+    """Yield name and word of each behaviour of a template; of nested ``for all``, the innermost one."""
     inner: tree.Body | None = body
     while inner is not None:
         if inner.when is not None:

@@ -1,4 +1,4 @@
-"""Executable scenes as triples: distributions, what places bodies, and the models of a scene's elements."""
+"""Write executable scenes as triples: distributions, placements of bodies, and the models of a scene's elements."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.write.sink import Frame
 
 Placed = list[tuple["tree.ChunkTree | None", "Frame"]]
-"""Trees of declarations, each with the frame that it becomes triples in."""
+"""Trees of declarations, each with the frame for its triples."""
 
 
 def add_instances(placed: Placed) -> None:
-    """State all declarations of executable scenes: trees first, since names lead through them."""
+    """Add all declarations of executable scenes: trees first, since names are resolved through them."""
     trees = Trees()
     templates = {root.name.text: root for root, _ in placed if isinstance(root, tree.KinematicTree)}
     for root, frame in placed:
@@ -86,7 +86,7 @@ def _add_distribution(frame: Frame, root: tree.Distribution) -> None:
 
 
 class _InstanceWriter:
-    """States one scene instance."""
+    """Writes one scene instance."""
 
     def __init__(self, frame: Frame, trees: Trees, root: tree.SceneInstance) -> None:
         self._frame = frame
@@ -121,7 +121,7 @@ class _InstanceWriter:
         return node
 
     def _element(self, instance: URIRef, modelled: tree.Modelled) -> None:
-        """State what an element, or each of a set, is realised by; sets inside a set come after it and go first."""
+        """Add the models of an element, or of each element of a set; sets inside a set follow it and override it."""
         sink, place = self._sink, self._frame.at(modelled.reference)
         target = self._frame.target(modelled.reference)
         node = sink.iri(f"{instance}.{len(self._elements)}")
@@ -169,7 +169,7 @@ class _InstanceWriter:
         if node is not None:
             target = self._named(mapping.reference)
             sink.add(node, "rbw:stands-for", target, self._frame.at(mapping.reference))
-            # Without a name of its own, the body or tree has the same name in the file.
+            # By default, the body or tree has the same name in the file.
             where = mapping.target or mapping.reference
             name = mapping.reference.path.rpartition(".")[2] if mapping.target is None else mapping.target.value
             sink.add(node, "rbw:name", sink.literal(name), self._frame.at(where))

@@ -1,7 +1,7 @@
-"""Kinematic trees and graphs as triples: bodies, their frames, and what places one frame relative to another.
+"""Write kinematic trees and graphs as triples: bodies, their frames, and the placement of frames.
 
-A frame's name is that of its tree or graph with the path behind it (``…/arm.base.origin``); an instance of a tree
-has the template's parts under its own name.
+A frame's name is that of its tree or graph followed by the path (``…/arm.base.origin``); an instance of a tree has the
+template's parts under its own name.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Owner = tree.KinematicTree | tree.Graph
 MOST_STEPS = 50
-"""Trees that a name is followed through: trees that contain one another must not go round for ever."""
+"""Maximum number of trees through which a name is resolved: trees that contain one another must not loop for ever."""
 
 
 @dataclass(slots=True)
@@ -32,7 +32,7 @@ class Trees:
     owners: dict[str, tuple[URIRef | None, Owner]] = field(default_factory=dict[str, tuple["URIRef | None", Owner]])
 
     def node(self, path: str, scopes: tuple[str, ...] = ()) -> str | None:
-        """Return the IRI of what a qualified name stands for, looked up in the scopes first; ``None`` for nothing."""
+        """Return the IRI of a qualified name, looked up in the scopes first; ``None`` if there is none."""
         for candidate in (*(f"{scope}.{path}" for scope in scopes), path):
             found = self._found(candidate)
             if found is not None:
@@ -72,7 +72,7 @@ def _uses(owner: Owner) -> Iterator[tree.TreeUse]:
 
 
 def _has(owner: Owner, path: str) -> bool:
-    """Tell whether a tree has a body, or a frame in a body, of a name."""
+    """Return whether a tree has a body, or a frame in a body, with a name."""
     body, _, frame = path.partition(".")
     for entry in owner.entries:
         if isinstance(entry, tree.RigidBody) and entry.name.text == body:
@@ -82,10 +82,10 @@ def _has(owner: Owner, path: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class TreeWriter:
-    """States the parts of a tree or graph: of ``owner``, called ``path``, as parts of ``node``.
+    """Writes the parts of a tree or graph: those of ``owner``, named ``path``, as parts of ``node``.
 
-    ``scopes`` are what names in it may be relative to, innermost last; ``template`` is the name by which the parts of
-    an instance may speak of the tree they stand in.
+    ``scopes`` are the paths that its names may be relative to, innermost last; ``template`` is the name by which the
+    parts of an instance may refer to their own tree.
     """
 
     frame: Frame
@@ -97,7 +97,7 @@ class TreeWriter:
     template: str = ""
 
     def write(self) -> None:
-        """State everything."""
+        """Add all triples."""
         sink, owner = self.frame.sink, self.owner
         parts: list[Node | None] = []
         for entry in owner.entries:

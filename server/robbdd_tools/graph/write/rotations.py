@@ -1,4 +1,4 @@
-"""Rotations as the language writes them, as unit quaternions (w, x, y, z)."""
+"""Convert written rotations to unit quaternions (w, x, y, z)."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from robbdd_tools.syntax import tree
 
 Quaternion = tuple[float, float, float, float]
 _SAME = 1e-4
-"""How far from orthogonal unit vectors (each dot product) written direction cosines may be."""
+"""Tolerance of the dot products of direction cosines, compared with orthogonal unit vectors."""
 
 
 def rotation_of(value: tree.Vector | tree.EulerAngles | tree.Axes) -> Quaternion | None:
-    """Return the rotation that is written; ``None`` for numbers that are no rotation.
+    """Return the written rotation; ``None`` for numbers that are not a rotation.
 
-    Quaternions are scaled to unit length. Euler angles are intrinsic unless written otherwise, in rad without a unit.
+    Quaternions are normalised. Euler angles are intrinsic by default, in rad without a unit.
     """
     match value:
         case tree.Vector():
@@ -70,7 +70,7 @@ def product(first: Quaternion, second: Quaternion) -> Quaternion:
 
 
 def _from_axes(axes: list[tuple[float, ...]]) -> Quaternion | None:
-    """Turn the columns of a rotation matrix into a quaternion, by way of its largest component."""
+    """Convert the columns of a rotation matrix to a quaternion, starting from its largest component."""
     if any(len(axis) != 3 for axis in axes):
         return None
     x, y, z = axes

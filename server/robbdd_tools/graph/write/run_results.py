@@ -1,7 +1,7 @@
-"""Results of runs as knowledge: what was judged, in which execution, with which values, beside the model itself.
+"""Add results of runs to the graph: the verdicts, their executions and the values used, next to the model itself.
 
-Clauses' verdicts are EARL assertions, executions are PROV activities. Nodes are named after the content of the
-results, so that the same results give the same graph.
+Clauses' verdicts are EARL assertions, executions are PROV activities. Nodes are named after the content of the results,
+so equal results give equal graphs.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ Json = Mapping[str, Any]
 
 
 class BadResults(Exception):
-    """A document is none of ``docs/schemas/run.schema.json``; the message says where."""
+    """A document does not follow ``docs/schemas/run.schema.json``; the message says where."""
 
 
 def read_results(text: str) -> Json:
-    """Return the results of a run from their JSON; raises ``BadResults``."""
+    """Parse the results of a run from JSON; raises ``BadResults``."""
     try:
         document: object = json.loads(text)
     except ValueError as error:
-        raise BadResults(f"no JSON: {error}") from error
+        raise BadResults(f"not JSON: {error}") from error
     return _object(document, "the document")
 
 
 def add_results(graph: Graph, document: Json) -> None:
-    """State the results of a run in the graph of its model; raises ``BadResults``."""
+    """Add the results of a run to the graph of its model; raises ``BadResults``."""
     digest = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
     writer = _Writer(graph, user_prefixes(graph))
     run = writer.node(f"urn:robbdd:run:{digest}", "prov:Activity", "rbw:Run")
@@ -69,7 +69,7 @@ class _Writer:
         self.graph.add((node, URIRef(expand(term)), value))
 
     def say(self, node: URIRef, term: str, value: str | float | bool) -> None:
-        """State a literal: a number with a point as xsd:double."""
+        """Add a literal; floats as xsd:double."""
         from rdflib import Literal, URIRef
 
         double = URIRef(expand("xsd:double"))
@@ -97,7 +97,7 @@ class _Writer:
             self._clause(node, f"{node}/clause/{place}", _object(clause, f"clause {place} of {where}"), entry)
 
     def _shared(self, run: URIRef, scenario: URIRef, entry: Json, where: str) -> None:
-        """State the execution of a behaviour tree that a scenario was judged from; others may have been as well."""
+        """Add the execution of a behaviour tree that a scenario was judged from, possibly together with others."""
         from urllib.parse import quote
 
         name = _field(entry, "execution", str, where)
@@ -137,7 +137,7 @@ class _Writer:
                 self.say(result, term, _field(clause, field, str, where))
 
     def _named(self, curie: str) -> Any:
-        """Return the node of a CURIE with one of the model's prefixes; of anything else, the text as an IRI."""
+        """Return the node of a CURIE with one of the model's prefixes; any other text is an IRI."""
         from rdflib import URIRef
 
         prefix, colon, local = curie.partition(":")
@@ -159,5 +159,5 @@ def _object(value: object, where: str) -> Json:
 def _field(entry: Json, name: str, kind: Any, where: str) -> Any:
     value = entry.get(name)
     if not isinstance(value, kind):
-        raise BadResults(f"'{name}' of {where} is {'missing' if value is None else 'not what it should be'}")
+        raise BadResults(f"'{name}' of {where} is {'missing' if value is None else 'not of the expected type'}")
     return value

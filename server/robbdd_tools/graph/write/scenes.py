@@ -1,4 +1,4 @@
-"""Elements, sets, compositions and scenes as triples, and what a scene has for members."""
+"""Write elements, sets, compositions and scenes as triples, and compute the members of scenes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class _Composition:
 
 @dataclass(slots=True)
 class Scenes:
-    """What was written of sets, compositions and scenes, by node; the membership of variants is made from it."""
+    """Data of written sets, compositions and scenes, by node; memberships of variants are computed from it."""
 
     sets: dict[URIRef, tuple[str, tuple[URIRef, ...]]] = field(
         default_factory=dict["URIRef", tuple[str, tuple["URIRef", ...]]]
@@ -37,7 +37,7 @@ class Scenes:
     scenes: dict[URIRef, tuple[URIRef, ...]] = field(default_factory=dict["URIRef", tuple["URIRef", ...]])
 
     def members(self, scene: URIRef) -> Members:
-        """Return the members of a scene; a composition nested in another counts by its workspace."""
+        """Return the members of a scene; a nested composition counts as its workspace."""
         found = [member for entry in self.scenes.get(scene, ()) for member in self._of_entry(entry)]
         return {kind: _unique(node for its, node in found if its == kind) for kind in ELEMENT_TYPES}
 
@@ -69,7 +69,7 @@ class Scenes:
 
 @dataclass(slots=True)
 class Memberships:
-    """Hands out membership nodes: the published IRI first; another one where that already says something else."""
+    """Assigns membership nodes: the published IRI, or another one if that is already used for other members."""
 
     sink: Sink
     _known: dict[tuple[URIRef, str], list[tuple[URIRef, tuple[URIRef, ...]]]] = field(
@@ -77,7 +77,7 @@ class Memberships:
     )
 
     def node(self, scene: URIRef, kind: str, template_scene: URIRef, members: tuple[URIRef, ...]) -> URIRef:
-        """Return the node that makes ``members`` members of a template's scene, stating it where it is new."""
+        """Return the node that makes ``members`` members of a template's scene; adds it if it is new."""
         from rdflib import URIRef
 
         known = self._known.setdefault((scene, kind), [])
@@ -101,7 +101,7 @@ class Memberships:
 
 
 def add_element_set(frame: Frame, scenes: Scenes, declared: tree.ElementSet) -> None:
-    """State ``obj set``, ``ws set`` or ``agn set`` and its members."""
+    """Add ``obj set``, ``ws set`` or ``agn set`` and its members."""
     node = frame.claimed(declared.name.text, declared.name)
     if node is None:
         return
@@ -117,7 +117,7 @@ def add_element_set(frame: Frame, scenes: Scenes, declared: tree.ElementSet) -> 
 
 
 def add_similar_set(frame: Frame, scenes: Scenes, declared: tree.SimilarSet) -> None:
-    """State a ``similar`` set and its numbered members."""
+    """Add a ``similar`` set and its numbered members."""
     node = frame.claimed(declared.name.text, declared.name)
     if node is None:
         return
@@ -135,7 +135,7 @@ def add_similar_set(frame: Frame, scenes: Scenes, declared: tree.SimilarSet) -> 
 
 
 def add_set(frame: Frame, node: URIRef, name: tree.Name, elements: Iterable[Node]) -> None:
-    """State a set with its elements, once in any order and once in the written one."""
+    """Add a set with its elements, both unordered and in written order."""
     ordered = list(elements)
     frame.sink.add_types(node, SET_TYPES, frame.at(name))
     for element in ordered:
@@ -144,7 +144,7 @@ def add_set(frame: Frame, node: URIRef, name: tree.Name, elements: Iterable[Node
 
 
 def add_composition(frame: Frame, scenes: Scenes, declared: tree.Composition) -> None:
-    """State which objects and workspaces make up a workspace."""
+    """Add the objects and workspaces of a workspace's composition."""
     node = frame.claimed(declared.name.text, declared.name)
     if node is None:
         return
@@ -163,7 +163,7 @@ def add_composition(frame: Frame, scenes: Scenes, declared: tree.Composition) ->
 
 
 def add_composition_contents(frame: Frame, scenes: Scenes, declared: tree.Composition) -> None:
-    """State the members of a composition; those of nested compositions must be known by then."""
+    """Add the members of a composition; those of nested compositions must be known."""
     node = frame.node(declared.name.text)
     composition = scenes.compositions.get(node) if node is not None else None
     if node is None or composition is None:
@@ -184,7 +184,7 @@ def add_composition_contents(frame: Frame, scenes: Scenes, declared: tree.Compos
 
 
 def add_scene(frame: Frame, scenes: Scenes, declared: tree.Scene) -> None:
-    """State a scene and, in written order, what it is put together from."""
+    """Add a scene and its entries in written order."""
     node = frame.claimed(declared.name.text, declared.name)
     if node is None:
         return
@@ -208,7 +208,7 @@ def _count(number: tree.Number) -> int:
 
 
 def _links(variation: tree.Table | tree.Product) -> Iterator[tree.Link]:
-    """Links to element sets, in the order of the text."""
+    """Yield links to element sets, in text order."""
     if isinstance(variation, tree.Table):
         pieces = [cell for row in variation.rows for cell in row.cells]
     else:

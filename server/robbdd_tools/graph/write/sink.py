@@ -1,4 +1,4 @@
-"""Takes triples with the places they come from; the only maker of nodes while a graph is built."""
+"""Collect triples with their source positions; the only maker of nodes while a graph is built."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`\ud800-\
 
 
 class Sink:
-    """A graph in the making. What cannot be a node (an IRI with a space, say) is left out, never an exception."""
+    """A graph under construction. Invalid nodes (an IRI with a space, for example) are silently left out."""
 
     def __init__(self) -> None:
         from rdflib import Graph
@@ -49,20 +49,20 @@ class Sink:
         from rdflib import Literal, URIRef
 
         if isinstance(value, str):
-            return Literal(value)  # a plain literal *is* an xsd:string; rdflib takes the two for different
+            return Literal(value)  # A plain literal *is* an xsd:string, but rdflib distinguishes them.
         kinds = {bool: "xsd:boolean", int: "xsd:integer", float: "xsd:double"}
         lexical = str(value).lower() if isinstance(value, bool) else str(value)
         return Literal(lexical, datatype=URIRef(expand(datatype or kinds[type(value)])))
 
     def claim(self, node: URIRef, location: Location) -> bool:
-        """Reserve a node for one declaration; tell whether no other one has it already."""
+        """Reserve a node for one declaration; return whether it was free."""
         first = self.claims.setdefault(node, location)
         if first != location:
             self.clashes.append((node, location, first))
         return first == location
 
     def claim_behaviour(self, node: URIRef, word: str, location: Location) -> bool:
-        """Reserve a node for a behaviour, which templates may share as long as it is the same word."""
+        """Reserve a node for a behaviour; templates may share it if the word is the same."""
         first = self.claims.setdefault(node, location)
         if self._behaviours.setdefault(node, word) == word and (first == location or node in self._behaviours):
             return True
@@ -79,12 +79,12 @@ class Sink:
             self.mark_node(node, location)
 
     def mark_node(self, node: Node, location: Location) -> None:
-        """Note where a node is declared."""
+        """Record the declaration of a node."""
         self.sources.mark([(str(node),)], location)
         self._credit(node)
 
     def begin(self, author: Key) -> None:
-        """Note that what follows is stated by another declaration."""
+        """Set the declaration that adds the following triples."""
         self._author = author
 
     def _credit(self, node: Node) -> None:
@@ -92,7 +92,7 @@ class Sink:
             self.authors.setdefault(str(node), {})[self._author] = None
 
     def add(self, node: Node, term: str, value: Node | None, location: Location | None = None) -> None:
-        """State a property of a node; a value that is no node states nothing."""
+        """Add a property of a node; ``None`` adds nothing."""
         from rdflib import URIRef
 
         if value is None:
@@ -103,16 +103,16 @@ class Sink:
             self.mark(node, term, value, location)
 
     def mark(self, node: Node, term: str, value: Node, location: Location) -> None:
-        """Note where a value of a property was written."""
+        """Record the position of a property's value."""
         key = (str(node), expand(term))
         self.sources.mark([key, (*key, str(value))], location)
 
     def mark_choice(self, variation: URIRef, variable: URIRef, value: Node, location: Location) -> None:
-        """Note where a variation gives a variable a value."""
+        """Record where a variation gives a variable a value."""
         self.sources.mark([(str(variation), str(variable), str(value))], location)
 
     def make_list(self, items: Iterable[Node | None]) -> Node:
-        """Add an RDF list of the items that are nodes and return its head."""
+        """Add an RDF list of the items that are not ``None`` and return its head."""
         from rdflib import BNode
         from rdflib.namespace import RDF
 
@@ -128,7 +128,7 @@ class Sink:
 
 
 class Frame:
-    """One declaration while it becomes triples: its sink, its place and the targets of its references."""
+    """One declaration while its triples are written: its sink, its place and the targets of its references."""
 
     def __init__(self, sink: Sink, file: FileAnalysis, placed: PlacedDeclaration) -> None:
         self.sink = sink
@@ -137,7 +137,7 @@ class Frame:
         self._placed = placed
 
     def begin(self) -> None:
-        """Tell the sink that this declaration states what follows."""
+        """Tell the sink that the following triples come from this declaration."""
         self.sink.begin((self._uri, self._placed.offset))
 
     def at(self, node: TreeNode) -> Location:
@@ -145,7 +145,7 @@ class Frame:
         return Location(self._uri, node.span.shifted(self._placed.offset))
 
     def target(self, ref: Ref) -> URIRef | None:
-        """Return the node a reference leads to, ``None`` when it leads nowhere."""
+        """Return the node of a reference, ``None`` if it is unresolved."""
         definition = self._placed.targets.get(ref)
         return None if definition is None else self.sink.iri(definition.iri)
 
@@ -155,7 +155,7 @@ class Frame:
         return None if definition is None else self.sink.iri(definition.iri)
 
     def claimed(self, path: str, name: Name) -> URIRef | None:
-        """Return the node of a name that must stand for one thing only; ``None`` if another thing has it."""
+        """Return the node of a name that must be unique; ``None`` if another declaration has it."""
         definition = self._definitions.get(path)
         location = self.at(name)
         if definition is None or definition.span != location.span:
@@ -165,5 +165,5 @@ class Frame:
 
 
 def namespace_of(node: str, name: str) -> str:
-    """Return the namespace that a node's IRI was made with."""
+    """Return the namespace of a node's IRI, given its local name."""
     return node.removesuffix(name)

@@ -1,4 +1,4 @@
-"""Where in the text each node and each statement of a graph was written."""
+"""Source positions of the nodes and statements of a graph."""
 
 from __future__ import annotations
 
@@ -19,36 +19,36 @@ class Location:
 
 @dataclass(frozen=True, slots=True)
 class SourceMap:
-    """Answers for nodes (IRIs, or the labels of blank nodes), properties (CURIEs or IRIs) and values.
+    """Positions of nodes (IRIs, or the labels of blank nodes), properties (CURIEs or IRIs) and values.
 
-    A statement that was written several times, such as a value in several rows, has several places.
+    A statement that was written several times, such as a value in several rows, has several positions.
     """
 
     places: Mapping[tuple[str, ...], tuple[Location, ...]]
 
     def node(self, node: str) -> Location | None:
-        """Return where a node is declared: its name, or its first token if it has none."""
+        """Return the position of a node's declaration: its name, or its first token if it has none."""
         return next(iter(self.places.get((node,), ())), None)
 
     def property(self, node: str, term: str) -> Location | None:
-        """Return where a property of a node was first written."""
+        """Return the first position of a node's property."""
         return next(iter(self.places.get((node, expand(term)), ())), None)
 
     def value(self, node: str, term: str, value: str) -> tuple[Location, ...]:
-        """Return every place where a value of a property of a node was written."""
+        """Return every position of a value of a node's property."""
         return self.places.get((node, expand(term), value), ())
 
 
 @dataclass(slots=True)
 class SourceMapBuilder:
-    """Collects places while a graph is built."""
+    """Collects positions while a graph is built."""
 
     _places: dict[tuple[str, ...], dict[Location, None]] = field(
         default_factory=dict[tuple[str, ...], dict[Location, None]]
     )
 
     def mark(self, keys: Iterable[tuple[str, ...]], location: Location) -> None:
-        """Note one place for several keys."""
+        """Record one position for several keys."""
         for key in keys:
             self._places.setdefault(key, {})[location] = None
 

@@ -1,4 +1,4 @@
-"""User stories, variants and their variations as triples."""
+"""Write user stories, variants and their variations as triples."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """What stories build on: the scenes, their memberships, and the task of each template."""
+    """Data that stories need: the scenes, their memberships, and the task of each template."""
 
     scenes: Scenes
     memberships: Memberships
@@ -28,7 +28,7 @@ class Known:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where a variant stands: its story's namespace, its qualified name, its own name and its node."""
+    """Identity of a variant: its story's namespace, its qualified name, its own name and its node."""
 
     namespace: str
     owner: str
@@ -36,7 +36,7 @@ class _Place:
 
 
 def add_story(frame: Frame, known: Known, story: tree.Story, position: int) -> None:
-    """State a user story; ``position`` is its place among all stories of the graph."""
+    """Add a user story; ``position`` is its index among all stories of the graph."""
     node = frame.claimed(story.name.text, story.name)
     if node is None:
         return
@@ -91,7 +91,7 @@ def _add_membership(frame: Frame, known: Known, variant: tree.Variant, node: URI
 
 
 def _add_loose_members(sink: Sink, scene: URIRef, kind: str, members: tuple[URIRef, ...]) -> None:
-    """State, as published, what a variation brings of a kind that its scene does not have at all."""
+    """Add, in the published form, the elements of a variation whose kind its scene lacks entirely."""
     _, term, ending = MEMBERSHIPS[kind]
     node = sink.iri(scene + ending)
     if node is not None:
@@ -183,7 +183,7 @@ class _VariationWriter:
         return self.frame.sink.literal(value.value)
 
     def _mark(self, variable: URIRef | None, written: tree.Node, node: Node | None) -> None:
-        """Note where a variable gets a value, for the value and for each value in a list of them."""
+        """Record the positions of a variable's value and of each value in a list."""
         if variable is None or node is None:
             return
         sink = self.frame.sink
@@ -206,7 +206,7 @@ class _VariationWriter:
         source = self.frame.target(selection.source)
         sink.add(node, "bdd:from", source, self.frame.at(selection.source))
         sink.add(node, "bdd:length", sink.literal(count, datatype), self.frame.at(selection.count))
-        # The published vocabulary has this property on combinations only.
+        # The published vocabulary has this property only on combinations.
         if kind == "comb" or selection.repeated:
             sink.add(node, "bdd:repetition-allowed", sink.literal(selection.repeated), self.frame.at(selection))
         return node

@@ -1,4 +1,4 @@
-"""Units that the language allows, in SI units; the graph holds SI units only."""
+"""Conversion of the language's units to SI units; the graph contains only SI units."""
 
 from math import pi
 
