@@ -9,7 +9,7 @@ from functools import cache
 
 METAMODELS = "https://secorolab.github.io/metamodels/"
 WORKBENCH = "https://robbdd.org/metamodels/workbench#"
-"""Namespace of terms missing in the published vocabulary: groups, free text, events in When, narrative, written order."""
+"""Namespace of terms that the published vocabulary lacks: groups, free text, events in When, narrative, order."""
 SHAPES = "https://robbdd.org/metamodels/shapes#"
 """Namespace of our SHACL shapes; a shape's local name is the diagnostic code without ``shacl-``."""
 
