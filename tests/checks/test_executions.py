@@ -204,7 +204,7 @@ def test_modules_are_read_and_never_imported(tmp_path: Path) -> None:
     assert checked(coded(tmp_path, text)) == []
     assert checked(coded(tmp_path, text, module="package.inner")) == []
     assert [one.message for one in checked(coded(tmp_path, text, module="package.other"))] == [
-        "there is no module 'package.other': put package/other.py beside this file"
+        "there is no module 'package.other': put package/other.py next to this file"
     ]
     assert not planted.exists()
 

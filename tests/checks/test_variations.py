@@ -54,7 +54,7 @@ def test_a_second_line_for_one_variable_is_one_too_many() -> None:
     check(
         story(
             LINES + "                var <fetch.part>: { <parts.bolt> }\n"
-            "//                   ^^^^^^^^^^ repeated-value 'fetch.part' has its values already\n"
+            "//                   ^^^^^^^^^^ repeated-value 'fetch.part' already has values\n"
         )
     )
 

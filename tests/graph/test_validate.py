@@ -212,13 +212,13 @@ def test_values_fit_what_their_variable_stands_for_in_every_cell() -> None:
             | <fetch.part> | <fetch.robot> | <fetch.goal> |
             |---|
             | <places.bench_ws> | <arms.panda> | <places.tray_ws> |
-//             ^^^^^^^^^^^^^^^ shacl-object-value 'places.bench_ws' is no object, but 'fetch.part'
+//             ^^^^^^^^^^^^^^^ shacl-object-value 'places.bench_ws' is not an object, but 'fetch.part'
             | <parts.bolt> | <parts.nut> | <places.tray_ws> |
-//                            ^^^^^^^^^ shacl-agent-value 'parts.nut' is no agent
+//                            ^^^^^^^^^ shacl-agent-value 'parts.nut' is not an agent
             | <parts.bolt> | <arms.panda> | 3 |
-//                                          ^ shacl-workspace-value '3' is no workspace
+//                                          ^ shacl-workspace-value '3' is not a workspace
             | <parts.bolt> | <parts.nut> | <places.tray_ws> |
-//                            ^^^^^^^^^ shacl-agent-value 'parts.nut' is no agent
+//                            ^^^^^^^^^ shacl-agent-value 'parts.nut' is not an agent
 """
         )
     )
@@ -229,11 +229,11 @@ def test_a_set_of_the_wrong_kind_is_marked_where_it_is_named() -> None:
         story(
             """
                 var <fetch.part>: ws set <places>
-//                                        ^^^^^^ shacl-object-value 'places.bench_ws' is no object
-//                                        ^^^^^^ shacl-object-value 'places.tray_ws' is no object
+//                                        ^^^^^^ shacl-object-value 'places.bench_ws' is not an object
+//                                        ^^^^^^ shacl-object-value 'places.tray_ws' is not an object
                 var <fetch.robot>: { <arms.panda>, <arms.ur10> }
                 var <fetch.goal>: { <places.tray_ws>, <parts.nut> }
-//                                                     ^^^^^^^^^ shacl-workspace-value 'parts.nut' is no workspace
+//                                                     ^^^^^^^^^ shacl-workspace-value 'parts.nut' is not a workspace
 """
         )
     )

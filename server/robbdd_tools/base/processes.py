@@ -178,7 +178,7 @@ def limit_memory(largest: int) -> None:
 
         _, most = resource.getrlimit(resource.RLIMIT_AS)
         if most == resource.RLIM_INFINITY or largest < most:
-            with suppress(OSError, ValueError):  # macOS refuses what is less than the process has already
+            with suppress(OSError, ValueError):  # macOS refuses a limit below the current use
                 resource.setrlimit(resource.RLIMIT_AS, (largest, most))
 
 

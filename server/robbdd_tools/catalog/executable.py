@@ -32,7 +32,7 @@ _KINDS = {"catalog": "catalog behaviour", "python": "Python code", "ros-action":
 class Substitution:
     """A catalog behaviour that a run executes in place of a model's implementation.
 
-    ``implementation`` is the IRI, ``stated`` what the model binds it to (``ROS action '/pick'``), ``executed`` the name
+    ``implementation`` is its IRI, ``stated`` the model's binding (``ROS action '/pick'``), ``executed`` the name
     of the catalog behaviour.
     """
 

@@ -61,7 +61,7 @@ def _problem(source: tree.PythonAttribute, folder: Path) -> tuple[tree.Name, str
     spec = find_module(module, folder)
     if spec is None:
         near = _near(module, sorted(path.stem for path in folder.glob("*.py")))
-        hint = f"; did you mean '{near[0]}'?" if near else f": put {_file(module)} beside this file"
+        hint = f"; did you mean '{near[0]}'?" if near else f": put {_file(module)} next to this file"
         return source.module, f"there is no module '{module}'{hint}", near
     found = module_names(spec)
     if found.error:

@@ -32,7 +32,7 @@ def repeated_value(site: Site) -> Iterator[Diagnostic]:
                     column.ref,
                     Severity.ERROR,
                     "repeated-value",
-                    f"'{column.ref.path}' has its values already: remove this {what} or the first one",
+                    f"'{column.ref.path}' already has values: remove this {what} or the first one",
                     (related_to(site, before, "the first values"),),
                     _removals(scenario, column.ref),
                 )

@@ -1,4 +1,4 @@
-"""Fixes of ``no-model``: a ``.scenex`` entry that gives an element of a scene a catalog model."""
+"""Fixes of ``no-model``: a ``.scenex`` entry with a catalog model for an element of a scene."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Feature templates: compiled, and rendered block by block in this process.
 
-Our own templates are rendered here; those of users in a process of their own, see ``user_template``.
+Our own templates are rendered here; users' templates in a separate process, see ``user_template``.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ BLOCKS = ("feature", "variant", "scenario", "end")
 """Blocks that a template may define; ``scenario`` is required."""
 ENDING = ".feature.jinja"
 LONGEST_MESSAGE = 2000
-"""Characters of an error message; expressions of a template can make them as long as they like."""
+"""Maximum number of characters of an error message, which a template's expressions determine."""
 
 
 class TemplateProblem(Exception):
@@ -41,17 +41,17 @@ class Sheet(Protocol):
     """A template ready to be rendered."""
 
     def has(self, block: str) -> bool:
-        """Tell whether the template has a block."""
+        """Return whether the template has a block."""
         ...
 
     def render(self, block: str, values: Mapping[str, object]) -> str:
-        """Return the text of one block, nothing when the template lacks it; raises ``TemplateProblem``."""
+        """Return the text of one block, empty if the template lacks it; raises ``TemplateProblem``."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class CompiledSheet:
-    """A template with those that it extends; a block of more than ``largest`` bytes is an error."""
+    """A compiled template with those that it extends; a block of more than ``largest`` bytes is an error."""
 
     file: str
     chain: tuple[Template, ...]
@@ -72,12 +72,12 @@ class CompiledSheet:
             return ""
         try:
             return "".join(found[0](context) if self.largest is None else _limited(found[0](context), self.largest))
-        except Exception as error:  # whatever the expressions of a template do wrong
+        except Exception as error:  # Expressions of a template can raise anything.
             raise _problem(self, error) from None
 
 
 class _TooLong(Exception):
-    """A block makes more text than it may."""
+    """A block exceeds its size limit."""
 
     def __init__(self, largest: int) -> None:
         super().__init__(f"the block makes more than {largest} bytes of text (limit template-output)")
@@ -94,7 +94,7 @@ def _limited(pieces: Iterator[str], largest: int) -> Iterator[str]:
 
 @cache
 def our_sheet(name: str = OURS[0]) -> Sheet:
-    """Return one of our templates."""
+    """Return one of the built-in templates."""
     return compiled(f"{name}{ENDING}", _our_source(f"{name}{ENDING}") or "")
 
 
@@ -104,7 +104,7 @@ def _our_source(name: str) -> str | None:
 
 
 def compiled(file: str, source: str, largest: int | None = None) -> CompiledSheet:
-    """Return a template of ours, or a user's whose blocks make ``largest`` bytes; raises ``TemplateProblem``."""
+    """Compile our template, or a user's with blocks of at most ``largest`` bytes; raises ``TemplateProblem``."""
     from jinja2 import (
         Environment,
         FunctionLoader,
@@ -120,7 +120,7 @@ def compiled(file: str, source: str, largest: int | None = None) -> CompiledShee
         text = source if name == file else _our_source(name)
         return None if text is None else (text, name, None)
 
-    # Feature files are plain text: HTML escaping would corrupt the names. Ours need no sandbox, which costs time.
+    # Feature files are plain text: HTML escaping would corrupt names. Ours need no sandbox, which is slow.
     environment = (Environment if largest is None else SandboxedEnvironment)(
         loader=FunctionLoader(load), undefined=StrictUndefined, autoescape=False, keep_trailing_newline=True
     )
@@ -154,7 +154,7 @@ def compiled(file: str, source: str, largest: int | None = None) -> CompiledShee
 
 
 def _problem(sheet: CompiledSheet, error: Exception) -> TemplateProblem:
-    """Blame the innermost line of a template on the way to an error."""
+    """Attribute an error to the innermost line of a template in its traceback."""
     templates = {template.filename: template for template in sheet.chain}
     places = [entry for entry in traceback.extract_tb(error.__traceback__) if entry.filename in templates]
     file, line = sheet.file, 0

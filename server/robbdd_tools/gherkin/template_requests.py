@@ -1,4 +1,4 @@
-"""What the process that renders a user's template is asked: see ``template_worker``."""
+"""Requests to the process that renders a user's template, see ``template_worker``."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""The process that renders one template of a user. It ends when its input ends.
+"""Process that renders one user template. It exits at the end of its input.
 
 Each line of its input is a pickled request in Base64, each line of its output the answer as JSON: ``value``, or
-``file``, ``line`` and ``message`` of a problem. A first answer says that the process is ready. The first request is
-the template, the others are blocks.
+``file``, ``line`` and ``message`` of a problem. The first answer reports that the process is ready. The first request
+is the template, the others are blocks.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from robbdd_tools.gherkin.template_requests import Request, TemplateSource, deco
 
 
 class _Worker:
-    """What the process knows between two requests."""
+    """State of the process between two requests."""
 
     def __init__(self) -> None:
         self._sheet: CompiledSheet | None = None

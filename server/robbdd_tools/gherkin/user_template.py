@@ -1,4 +1,4 @@
-"""Users' templates, each rendered in a process that is ended when a block takes too long."""
+"""Users' templates, each rendered in a process that is killed if a block takes too long."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ WORKER = "robbdd_tools.gherkin.template_worker"
 
 
 def sheet(name: str) -> Sheet:
-    """Return one of our templates by its name, or a user's by its path; raises ``TemplateProblem``."""
+    """Return a built-in template by its name, or a user's by its path; raises ``TemplateProblem``."""
     return our_sheet(name) if name in OURS else UserSheet(name)
 
 
 class UserSheet:
-    """A user's template in a process of its own, which ends with this object or at the first problem.
+    """A user's template in its own process, which ends with this object or at the first problem.
 
-    Compiling and each block have ``template-seconds`` of time. Raises ``TemplateProblem``.
+    Compiling and each block may take ``template-seconds``. Raises ``TemplateProblem``.
     """
 
     def __init__(self, file: str) -> None:
@@ -36,23 +36,23 @@ class UserSheet:
             source = load_text(Path(file))
         except UnreadableFile as error:
             known = ", ".join(OURS)
-            raise TemplateProblem(file, 0, f"{error} (templates that come along: {known})") from None
+            raise TemplateProblem(file, 0, f"{error} (built-in templates: {known})") from None
         self.file = file
         self._process = process = interpreter.start(WORKER, folder=interpreter.working_folder(), log=None)
         assert process.stdin is not None
         assert process.stdout is not None
         self._requests, self._answers = process.stdin, process.stdout
         self._end = weakref.finalize(self, _end, process, process.wait, self._requests, self._answers)
-        self._answers.readline()  # The time for its start is not the template's.
+        self._answers.readline()  # Starting the process does not count as the template's time.
         self._sent: dict[str, object] = {}
         self._blocks: list[str] = self._ask("the template", TemplateSource(file, source))
 
     def has(self, block: str) -> bool:
-        """Tell whether the template has a block."""
+        """Return whether the template has a block."""
         return block in self._blocks
 
     def render(self, block: str, values: Mapping[str, object]) -> str:
-        """Return the text of one block, nothing when the template lacks it; raises ``TemplateProblem``."""
+        """Return the text of one block, empty if the template lacks it; raises ``TemplateProblem``."""
         if not self.has(block):
             return ""
         fresh = {name: value for name, value in values.items() if self._sent.get(name) is not value}

@@ -139,7 +139,7 @@ def _clause(data: Mapping[str, Any]) -> Clause:
         case {"text": str(words)}:
             return Text(words, _time(data.get("time")), data.get("iri", ""), data.get("named", {}))
         case _:
-            raise ValueError(f"{data!r} is no clause")
+            raise ValueError(f"{data!r} is not a clause")
 
 
 def _leaf(leaf: Fluent | Text) -> dict[str, Any]:

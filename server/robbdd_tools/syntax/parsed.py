@@ -11,7 +11,7 @@ RawNode = Any
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """What the parser accepts at a position: keywords and symbols as written, rules by name."""
+    """The tokens that the parser accepts at a position: keywords and symbols as written, rules by name."""
 
     literals: frozenset[str]
     rules: frozenset[str]

@@ -51,7 +51,7 @@ def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
 
 
 def incomplete_variants(graph: Graph) -> dict[Iri, str]:
-    """Return the variants that ``read_model`` leaves out, each with what is missing."""
+    """Return the variants that ``read_model`` leaves out, each with the missing part."""
     records = Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
     reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))

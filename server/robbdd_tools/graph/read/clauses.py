@@ -96,7 +96,7 @@ class ClauseReader:
         types = records.types(behaviour)
         fitting = [word for word in load_catalog().behaviours.values() if types.issuperset(map(expand, word.rdf_types))]
         if not fitting:
-            raise Incomplete(f"{behaviour} is no behaviour that this installation knows")
+            raise Incomplete(f"{behaviour} is not a behaviour that this installation knows")
         word = max(fitting, key=lambda candidate: len(candidate.rdf_types))
         time = self.time(iri)
         if not isinstance(time, During):

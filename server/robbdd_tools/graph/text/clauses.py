@@ -130,7 +130,7 @@ class ClauseText:
         if isinstance(value, Iri):
             return self._variable(value)
         if not NAME.fullmatch(value):
-            raise Incomplete(f"'{value}' is no name")
+            raise Incomplete(f"'{value}' is not a name")
         return value
 
     def _variable(self, variable: str) -> str:
