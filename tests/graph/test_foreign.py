@@ -229,7 +229,7 @@ def test_the_network_is_asked_once_and_only_by_permission(served: tuple[str, lis
 
 @pytest.mark.parametrize(
     ("target", "words"),
-    [("file", "not allowed"), ("ftp", "no web address"), ("host", "not fetched: allow it .*--allow-host localhost")],
+    [("file", "not allowed"), ("ftp", "not a web address"), ("host", "not fetched: allow it .*--allow-host localhost")],
 )
 def test_a_redirection_leads_to_no_file_and_to_no_other_host(
     target: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -89,10 +89,10 @@ def test_the_same_results_give_the_same_bytes_in_whatever_order_their_fields_sta
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("nothing", "no JSON"),
+        ("nothing", "not JSON"),
         ("[]", "the document is not an object"),
         ('{"seed": 1, "complete": true}', "'scenarios' of the run is missing"),
-        ('{"seed": "1", "complete": true, "scenarios": []}', "'seed' of the run is not what it should be"),
+        ('{"seed": "1", "complete": true, "scenarios": []}', "'seed' of the run is not of the expected type"),
         (RESULTS.replace('"violated"', '"broken"'), "is 'broken', not one of holds, violated, unknown"),
     ],
 )
