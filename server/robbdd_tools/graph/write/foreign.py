@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def read_graph_file(document: Document, others: Sequence[Document] = ()) -> BuiltGraph:
-    """Return the graph that a document is; an empty one with a fault when it cannot be read."""
+    """Return the graph of a document; an empty one with a fault if it cannot be parsed."""
     from rdflib import Graph
 
     uri = document.uri

@@ -38,9 +38,9 @@ class Merged:
     faults: list[Diagnostic] = field(default_factory=list[Diagnostic])
 
     def add(self, document: Document, graph: Graph) -> list[tuple[Document, str]]:
-        """Add the graph of a document; returns what it imports, with the document.
+        """Add the graph of a document; returns the document with each of its imports.
 
-        Blank nodes are those of one document alone, though several may use the same labels.
+        Blank nodes are renamed per document, because several documents may use the same labels.
         """
         from rdflib import BNode, URIRef
 
@@ -58,10 +58,10 @@ class Merged:
 
 
 def merge_imports(document: Document, others: Iterable[Document] = ()) -> Merged:
-    """Return the graph of a document and of all that it imports, directly or not; raises ``UnreadableGraph``.
+    """Return the graph of a document and of all its imports, direct or indirect; raises ``UnreadableGraph``.
 
-    An import is a file by its relative path, or a web address whose path ends with that of a file in the folder of the
-    document that imports it. Nothing is fetched. The graphs of ``others`` are added as if ``document`` imported them.
+    An import is a file by its relative path, or a web address that ends with the path of a file in the folder of the
+    importing document. Nothing is fetched. The graphs of ``others`` are added as if ``document`` imported them.
     """
     from rdflib import URIRef
 
