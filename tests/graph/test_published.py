@@ -14,7 +14,7 @@ from kit import Fixture
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.graph.acceptance_model import Product
+from robbdd_tools.graph.acceptance_model import Iri, Product, Table
 from robbdd_tools.graph.rdf.serialize import parse, serialize
 from robbdd_tools.graph.rdf.vocabulary import METAMODELS
 from robbdd_tools.graph.read.acceptance import read_model
@@ -216,3 +216,52 @@ def test_values_of_published_models_are_named_by_strings(tmp_path: Path) -> None
     graph = read(write(tmp_path / "m.json", product, context=(address,))).graph
     assert "bdd:of-sets ( ( x:table ) ( x:panda x:ur10 ) )" in " ".join(serialize(graph, "ttl").split())
     assert parse(serialize(graph, "nt"), "nt")
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        ("fast", '"fast"'),
+        ("as fast as possible", '"as fast as possible"'),
+        ("10:30", '"10:30"'),
+        ("x:cup", "x:cup"),
+        ("https://example.org/x/cup", "x:cup"),
+        ("cup", "<file:///models/cup>"),
+        (2.5, "2.5e+00"),
+    ],
+)
+def test_a_string_that_names_no_node_stays_a_string(value: str | float, expected: str) -> None:
+    document = {
+        "@context": [f"{METAMODELS}acceptance-criteria/bdd/bdd.json", {"x": X}],
+        "@graph": [
+            {"@id": "x:table", "@type": "bdd:TableVariation", "rows": [["x:panda", value]]},
+            {"@id": "x:set", "@type": "bdd:Set", "elements": [value]},
+            {"@id": "cup", "@type": "env:Object"},
+        ],
+    }
+    graph = read_graph_file(Document("file:///models/m.json", 1, json.dumps(document))).graph
+    text = " ".join(serialize(graph, "ttl").split())
+    assert f"bdd:rows ( ( x:panda {expected} ) )" in text
+    assert f"bdd:elements {expected}" in text
+
+
+def test_names_below_a_stated_base_are_nodes_of_whatever_file() -> None:
+    context = [f"{METAMODELS}acceptance-criteria/bdd/bdd.json", {"@base": "https://example.org/x/"}]
+    document = {"@context": context, "@id": "values", "rows": [["cup"]]}
+    graph = read_graph_file(Document("file:///models/m.json", 1, json.dumps(document))).graph
+    assert "<https://example.org/x/cup>" in serialize(graph, "nt")
+
+
+def test_a_string_value_reaches_the_scenarios(tmp_path: Path) -> None:
+    text = FOREIGN.replace(
+        "ex:who a bdd:ScenarioVariable .", "ex:who a bdd:ScenarioVariable . ex:how a bdd:ScenarioVariable ."
+    )
+    text = text.replace("( ex:thing ex:place ex:who )", "( ex:thing ex:place ex:who ex:how )")
+    text = text.replace("( ex:cup ex:desk ex:arm )", '( ex:cup ex:desk ex:arm "as fast as possible" )')
+    path = tmp_path / "m.ttl"
+    path.write_text(text, encoding="utf-8")
+    assert [one for one in findings(path) if one.severity is Severity.ERROR] == []
+    variation = read_model(read(path).graph).stories[0].variants[0].variation
+    assert isinstance(variation, Table)
+    assert variation.rows[0][-1] == "as fast as possible"
+    assert not isinstance(variation.rows[0][-1], Iri)

@@ -6,7 +6,6 @@ import json
 import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, cast
-from urllib.parse import urljoin
 
 from robbdd_tools.base.printable import printable, printable_json, printable_terms
 from robbdd_tools.graph.rdf.canonical import canonical
@@ -15,6 +14,7 @@ from robbdd_tools.graph.rdf.json_ld import context_for, expanded
 from robbdd_tools.graph.rdf.libraries import compact, frame, json_object, triples
 from robbdd_tools.graph.rdf.lists import Lists
 from robbdd_tools.graph.rdf.prefixes import bind_prefixes, user_prefixes
+from robbdd_tools.graph.rdf.published_values import contexts_of, with_literals
 from robbdd_tools.graph.rdf.vocabulary import expand
 
 if TYPE_CHECKING:
@@ -145,9 +145,11 @@ def parse(text: str, format: str, base: str = "", loader: ContextLoader | None =
     try:
         if FORMATS[format] == "json-ld":
             document: Any = json.loads(text)
-            for subject, predicate, value in triples(document, base, loader):
+            prefixes = dict(context_prefixes(document, base, loader))
+            stated = with_literals(document, base, loader, prefixes)
+            for subject, predicate, value in triples(stated, base, loader):
                 graph.add((_node(subject), _node(predicate), _node(value)))
-            for name, namespace in context_prefixes(document, base, loader):
+            for name, namespace in prefixes.items():
                 graph.bind(name, namespace, override=True, replace=True)
         else:
             graph.parse(data=text, format=FORMATS[format], publicID=base or None)
@@ -161,18 +163,8 @@ def parse(text: str, format: str, base: str = "", loader: ContextLoader | None =
 
 def context_prefixes(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[str, str]]:
     """Yield the prefixes that the contexts of a JSON-LD document declare."""
-    waiting: list[Any] = [json_object(document).get("@context")]
-    seen: set[str] = set()
-    while waiting:
-        context = waiting.pop(0)
-        if isinstance(context, list):
-            waiting += context
-        elif isinstance(context, str):
-            url = urljoin(base, context)
-            if url not in seen:
-                seen.add(url)
-                waiting.append(json_object(loader.document(url)).get("@context"))
-        for name, definition in json_object(context).items():
+    for context in contexts_of(document, base, loader):
+        for name, definition in context.items():
             namespace = json_object(definition).get("@id") if isinstance(definition, dict) else definition
             if isinstance(namespace, str) and namespace[-1:] in {"/", "#", ":"} and not name.startswith("@"):
                 yield name, namespace
