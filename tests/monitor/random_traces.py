@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from monitor.traces import STEP, heights, trace_of
 from robbdd_tools.catalog.api import Arguments, Evidence, Kind, Predicate, Slot
 from robbdd_tools.monitor.judge import judge
+from robbdd_tools.monitor.last_iteration import LAST
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
-from robbdd_tools.monitor.trace import LAST, EventStamp, Trace
+from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.monitor.verdict import Verdict, conjunction, disjunction, negation
 
 if TYPE_CHECKING:

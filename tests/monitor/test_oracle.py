@@ -9,8 +9,8 @@ from hypothesis import given, settings
 
 from monitor.random_traces import CLAUSES, Clause, Holds, Joined, Story, by_the_monitor, stories
 from monitor.traces import STEP
+from robbdd_tools.monitor.last_iteration import LAST
 from robbdd_tools.monitor.time import After, Before, During, TimeConstraint
-from robbdd_tools.monitor.trace import LAST
 
 TOLERANCE = 1e-9
 

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from monitor.traces import STEP, still, trace_of
+from robbdd_tools.monitor.last_iteration import LAST
 from robbdd_tools.monitor.time import (
     After,
     Before,
@@ -21,7 +22,7 @@ from robbdd_tools.monitor.time import (
     occurrences,
     window,
 )
-from robbdd_tools.monitor.trace import LAST, EventStamp
+from robbdd_tools.monitor.trace import EventStamp
 
 COUNT = 21
 """Samples, from 0 s to 2 s."""

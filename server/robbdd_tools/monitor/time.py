@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from robbdd_tools.monitor.trace import LAST
+from robbdd_tools.monitor.last_iteration import LAST
 
 if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace

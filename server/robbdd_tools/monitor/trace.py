@@ -10,13 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robbdd_tools.monitor.contact import Contact
+from robbdd_tools.monitor.last_iteration import LAST
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, Outline
-
-
-LAST = -1
-"""The iteration that is the last one: a behaviour tree may execute a node again, so that its number is not known."""
 
 
 @dataclass(frozen=True, slots=True)

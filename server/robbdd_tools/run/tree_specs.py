@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 
 from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
 from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, Iri, TreeNode, Variant
+from robbdd_tools.monitor.last_iteration import LAST
 from robbdd_tools.monitor.time import After, Before
-from robbdd_tools.monitor.trace import LAST
 from robbdd_tools.protocol.specs import ScenarioSpec, SceneSpec
 from robbdd_tools.run.related import Group, Member, Relations, roots_of
 from robbdd_tools.run.seeds import scenario_seed
