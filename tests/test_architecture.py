@@ -294,7 +294,7 @@ OPENS_ITSELF = {
     "base.files": "the one that reads",
     "base.writing": "the one that writes",
     "base.locks": "keeps files of ours open",
-    "agent.moments": "adds lines to a file of its own run",
+    "agent.violation_states": "adds lines to a file of its own run",
     "base.descendants": "reads what Linux tells of processes",
     "run.agent_log": "adds to the log of a process",
     "agent.stack_dumps": "the interpreter writes there when it crashes",

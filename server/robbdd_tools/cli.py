@@ -26,7 +26,7 @@ from robbdd_tools.commands.run_arguments import (
     allow_policy,
     allow_run,
     allow_store,
-    misused,
+    argument_problem,
     policy,
     resume_options,
     run_options,
@@ -251,7 +251,7 @@ def _run(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.resume import resume
     from robbdd_tools.commands.run import run
 
-    problem = misused(options)
+    problem = argument_problem(options)
     if problem:
         return fail(problem)
     with output_may_be_lost():

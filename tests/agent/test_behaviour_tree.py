@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from robbdd_tools.agent.beginning import calls_of
-from robbdd_tools.agent.course import Course, Timing
+from robbdd_tools.agent.behaviour_run import BehaviourRun, Timing
 from robbdd_tools.agent.execution import Execution
+from robbdd_tools.agent.shared_executions import calls_of
 from robbdd_tools.agent.tree_execution import TreeRun
 from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
 from robbdd_tools.catalog.executable import Implementation, Origin
@@ -39,7 +39,7 @@ def of(node: str, root: NodeSpec, scene: object = SCENE) -> ScenarioSpec:
     return replace(scenario(HEAVY if scene is HEAVY else SCENE, events=events), tree=tree, node=node)
 
 
-def executed(spec: ScenarioSpec, course: Course | None = None) -> Execution:
+def executed(spec: ScenarioSpec, course: BehaviourRun | None = None) -> Execution:
     return Execution(spec, calls_of(spec), Timing(), course)
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from robbdd_tools.agent.channel import Channel
-from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.session import ScenarioRun
+from robbdd_tools.agent.violation_states import ViolationStates
 from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import RunMessage, ScenarioFinished
@@ -41,7 +41,7 @@ class Sent(Channel):
 
 def began(folder: Path, *steps: tuple[int, str, str], scene: SceneSpec = SCENE) -> tuple[ScenarioRun, Sent]:
     sent = Sent()
-    return ScenarioRun(0, scenario(scene), steps, sent, Moments(folder)), sent
+    return ScenarioRun(0, scenario(scene), steps, sent, ViolationStates(folder)), sent
 
 
 def test_a_given_runs_the_world_to_its_event_and_no_further(tmp_path: Path) -> None:
@@ -67,7 +67,7 @@ def limited(folder: Path, timeout: float, friction: str = "0.6") -> ScenarioRun:
     instance = SceneInstance("x:cell")
     how = ExecutionSpec("x:run", "x:run", Implementation("x:own", "catalog", "pick-place"), instance, timeout=timeout)
     spec = replace(scenario(replace(SCENE, config=config)), execution=how)
-    return ScenarioRun(0, spec, (WHEN,), Sent(), Moments(folder))
+    return ScenarioRun(0, spec, (WHEN,), Sent(), ViolationStates(folder))
 
 
 def test_a_behaviour_that_the_time_limit_stops_is_unknown(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.hover import hover
 from robbdd_tools.features.references import references
 from robbdd_tools.features.rename import rename
-from robbdd_tools.features.rename_files import concerned, import_edits
+from robbdd_tools.features.rename_files import affected_files, import_edits
 from robbdd_tools.features.semantic_tokens import coloured
 from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.features.workspace_symbols import workspace_symbols
@@ -197,7 +197,7 @@ def _project() -> Iterator[tuple[str, str]]:
         renamed = milliseconds(lambda: rename(snapshot, scene, place, "crate_ws"))
         yield f"rename in all files, project of {what}", f"{renamed:.0f} ms"
         moves = {scene: path_to_uri(folder / "cell.scene")}
-        moved = milliseconds(lambda: import_edits(concerned(model_files([path_to_uri(folder)]), moves), moves))
+        moved = milliseconds(lambda: import_edits(affected_files(model_files([path_to_uri(folder)]), moves), moves))
         yield f"imports of a moved file, project of {what}, all closed", f"{moved:.0f} ms"
 
 

@@ -43,7 +43,7 @@ def cold(text: str, scene: str = SCENE) -> list[Diagnostic]:
     """Analyse a text with nothing kept; what was kept before is there again afterwards."""
     fresh = project(scene)
     fresh.open(URI, 1, text)
-    with memo.nothing_kept():
+    with memo.without_cache():
         return fast_diagnostics(fresh.snapshot(), URI)
 
 

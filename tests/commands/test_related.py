@@ -14,9 +14,9 @@ from xml.etree import ElementTree
 import pytest
 
 from kit import EXAMPLES, schema_errors
-from robbdd_tools.agent import beginning
+from robbdd_tools.agent import shared_executions
+from robbdd_tools.agent.behaviour_run import BehaviourRun
 from robbdd_tools.agent.channel import Channel
-from robbdd_tools.agent.course import Course
 from robbdd_tools.agent.session import Session
 from robbdd_tools.monitor.verdict import Verdict
 from robbdd_tools.protocol.specs import Manifest
@@ -98,13 +98,13 @@ def judged(folder: Path, manifest: Manifest, order: list[int]) -> dict[str, Verd
 
 def test_three_stories_are_judged_from_one_simulation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     manifest = prepared(model(tmp_path), tmp_path / "run")
-    courses: list[Course] = []
+    courses: list[BehaviourRun] = []
 
-    def counted(*arguments: Any) -> Course:
-        courses.append(Course(*arguments))
+    def counted(*arguments: Any) -> BehaviourRun:
+        courses.append(BehaviourRun(*arguments))
         return courses[-1]
 
-    monkeypatch.setattr(beginning, "Course", counted)
+    monkeypatch.setattr(shared_executions, "BehaviourRun", counted)
     one = judged(tmp_path / "run", manifest, [0, 1, 2])
     assert len(manifest.scenarios) == 3
     assert len(courses) == 1

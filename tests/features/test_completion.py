@@ -240,7 +240,7 @@ def test_a_name_of_a_file_elsewhere_in_the_workspace_brings_its_import(tmp_path:
     lab = tmp_path / "cells" / "lab.scene"
     lab.write_text(SCENE, encoding="utf-8")
     uri, elsewhere, project = path_to_uri(tmp_path / "story" / "main.bdd"), Elsewhere(), Project()
-    elsewhere.look([path_to_uri(lab), path_to_uri(tmp_path / "gone.scene")])
+    elsewhere.update([path_to_uri(lab), path_to_uri(tmp_path / "gone.scene")])
     text = MODEL.replace('import "lab.scene"\n', "")
     project.open(uri, 1, text)
     at_scene = text.index("<bench_scene>") + 1
@@ -250,7 +250,7 @@ def test_a_name_of_a_file_elsewhere_in_the_workspace_brings_its_import(tmp_path:
     unknown = next(one for one in fast_diagnostics(project.snapshot(), uri) if one.code == "unknown-name")
     fixes = fixes_on_demand(project.snapshot(), uri, unknown, elsewhere)
     assert [fix.title for fix in fixes] == ["Import '../cells/lab.scene'"]
-    elsewhere.look([])
+    elsewhere.update([])
     assert complete(project.snapshot(), uri, at_scene, elsewhere) == []
 
 

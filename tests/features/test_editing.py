@@ -14,7 +14,7 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.format_range import format_on_type, format_range
 from robbdd_tools.features.layout import lay_out
 from robbdd_tools.features.rename import linked_places
-from robbdd_tools.features.rename_files import concerned, import_edits
+from robbdd_tools.features.rename_files import affected_files, import_edits
 from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.names.index import FileIndex, imports_of, index_file
 
@@ -53,7 +53,7 @@ def test_imports_follow_a_moved_file_and_a_moved_importer(tmp_path: Path) -> Non
     assert model_files([folder]) == [lab, main]
 
     def after(moves: dict[str, str]) -> str:
-        found = import_edits(concerned(model_files([folder]), moves), moves)
+        found = import_edits(affected_files(model_files([folder]), moves), moves)
         return edited(text, [edit for edit in found if edit.uri == main]).split("\n")[0]
 
     assert after({lab: f"{folder}/bench.scene"}) == 'import "bench.scene"'
@@ -74,7 +74,7 @@ def test_only_files_that_a_move_concerns_are_read_closely(tmp_path: Path) -> Non
     for name, text in {"lab.scene": SCENE, "main.bdd": MODEL, "other.bdd": MODEL.replace("lab.", "barn.")}.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     folder = path_to_uri(tmp_path)
-    (found,) = concerned(model_files([folder]), {f"{folder}/lab.scene": f"{folder}/x.scene"})
+    (found,) = affected_files(model_files([folder]), {f"{folder}/lab.scene": f"{folder}/x.scene"})
     assert found.document.uri == f"{folder}/main.bdd"
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from monitor.traces import still, trace_of
 from robbdd_tools.catalog.api import Region
-from robbdd_tools.judging.decisions import decide, is_closed, ways
+from robbdd_tools.judging.decisions import alternatives, decide, is_closed
 from robbdd_tools.judging.observation_streams import Unobserved
 from robbdd_tools.judging.parsed_sentences import read_clause
 from robbdd_tools.monitor.fault import Fault
@@ -182,7 +182,7 @@ def test_each_existential_slot_is_chosen_by_itself() -> None:
     some = "\"any of ['ball', 'cube']\" is located at \"any of ['right', 'left']\" after event \"t:e\""
     clause = read_clause(some)
     assert isinstance(clause, Fluent)
-    assert [[dict(words) for words in group] for group in ways(clause)] == [
+    assert [[dict(words) for words in group] for group in alternatives(clause)] == [
         [{"object": "ball", "workspace": "right"}],
         [{"object": "ball", "workspace": "left"}],
         [{"object": "cube", "workspace": "right"}],
@@ -193,7 +193,7 @@ def test_each_existential_slot_is_chosen_by_itself() -> None:
 def test_of_a_set_every_member_must_hold() -> None:
     clause = read_clause("\"['ball', 'cube']\" is located at \"any of ['left', 'right']\" after event \"t:e\"")
     assert isinstance(clause, Fluent)
-    assert [[(words["object"], words["workspace"]) for words in group] for group in ways(clause)] == [
+    assert [[(words["object"], words["workspace"]) for words in group] for group in alternatives(clause)] == [
         [("ball", "left"), ("cube", "left")],
         [("ball", "right"), ("cube", "right")],
     ]

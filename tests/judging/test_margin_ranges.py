@@ -12,7 +12,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.judging.decisions import ranges
 from robbdd_tools.judging.margin_ranges import margin_ranges
 from robbdd_tools.judging.parsed_sentences import read_clause
-from robbdd_tools.judging.quantities import wanting
+from robbdd_tools.judging.quantities import fluents_with_quantity
 from robbdd_tools.monitor.time import After
 from robbdd_tools.monitor.trace import EventStamp, Trace
 from robbdd_tools.protocol.clauses import AnyOf, Fluent
@@ -95,11 +95,11 @@ def test_a_quantity_is_wanted_for_every_choice_of_single_elements() -> None:
     reach = load_catalog().predicates["can-reach"]
     clause = Fluent(reach, {"agent": AnyOf(("a", "b")), "object": ("x", "y")}, After("t:e"))
     (quantity,) = reach.quantities
-    assert [dict(words) for _, words in wanting(clause, quantity)] == [
+    assert [dict(words) for _, words in fluents_with_quantity(clause, quantity)] == [
         {"agent": "a", "object": "x"},
         {"agent": "a", "object": "y"},
         {"agent": "b", "object": "x"},
         {"agent": "b", "object": "y"},
     ]
-    assert all(fluent is clause for fluent, _ in wanting(clause, quantity))
-    assert list(wanting(clause, "another quantity")) == []
+    assert all(fluent is clause for fluent, _ in fluents_with_quantity(clause, quantity))
+    assert list(fluents_with_quantity(clause, "another quantity")) == []

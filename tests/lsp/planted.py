@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from robbdd_tools.base.checkpoint import Abandoned, checkpoint
-from robbdd_tools.lsp import handlers, main, preview, reading, server, tokens
+from robbdd_tools.lsp import assistance, handlers, main, preview, server, tokens
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.importers import Importers
 from robbdd_tools.names.project import Snapshot
@@ -97,7 +97,7 @@ def watch_the_loop() -> None:
 
 
 def start() -> int:
-    plant(reading, "hover", breaking, "planted fault")
+    plant(assistance, "hover", breaking, "planted fault")
     plant(preview, "preview", breaking, "planted fault")
     plant(server, "fast_diagnostics", breaking, "planted defect")
     plant(tokens, "coloured", endless)

@@ -16,7 +16,7 @@ from pygls.exceptions import JsonRpcException
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
 from lsp_kit import CLIENTS, PATIENCE, Editor, begin_session
-from robbdd_tools.lsp.reading import STILL_READING
+from robbdd_tools.lsp.assistance import STILL_READING
 
 PLANTED = Path(__file__).with_name("planted.py")
 INTERNAL_ERROR, REQUEST_CANCELLED, CONTENT_MODIFIED = -32603, -32800, -32801

@@ -13,7 +13,7 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.graph.shapes.project_shapes import EditorShapes
 from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.shape_findings import ShapeFindings
-from robbdd_tools.lsp.worker import MOST_LEFT, Inbox, Worker
+from robbdd_tools.lsp.worker import MAX_LEFT, Inbox, Worker
 from robbdd_tools.names.project import Project
 
 MAIN = f"{FOLDER}main.bdd"
@@ -75,6 +75,6 @@ def test_one_validation_is_let_through_while_newer_ones_never_cease_to_come(monk
         texts = {f"{FOLDER}lab.scene": (1, SCENE), MAIN: (revision, MODEL.replace(FOUND, f"0.{revision + 1} seconds"))}
         return worker.answer(Request(revision, MAIN, texts, EditorShapes()))
 
-    answers = [ask(revision) for revision in range(2 * (MOST_LEFT + 1))]
+    answers = [ask(revision) for revision in range(2 * (MAX_LEFT + 1))]
     through = [answer for answer in answers if answer is not None]
-    assert [answer.revision for answer in through] == [MOST_LEFT, 2 * MOST_LEFT + 1]
+    assert [answer.revision for answer in through] == [MAX_LEFT, 2 * MAX_LEFT + 1]

@@ -17,7 +17,7 @@ from edits import PIECES, Edit
 from kit import EXAMPLES, MODEL, SCENE
 from robbdd_tools.base.document import Span
 from robbdd_tools.base.files import path_to_uri
-from robbdd_tools.checks.memo import nothing_kept
+from robbdd_tools.checks.memo import without_cache
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.outline import outline
@@ -134,6 +134,6 @@ def _compare(edited: Project, files: dict[str, str], changed: str, version: int)
     for uri, text in files.items():
         fresh.open(uri, 0, text)
     for uri in files:
-        with nothing_kept():
+        with without_cache():
             expected = known(fresh, uri)
         assert known(edited, uri) == expected

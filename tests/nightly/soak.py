@@ -113,10 +113,10 @@ def _look(session: Session, done: Soak, began: float) -> None:
     session.compare_with_check()
     done.checks += 2
     done.samples.append((time.monotonic() - began, usage(session.client.pid)))
-    print(f"{done.samples[-1][0]:6.0f} s  {done.rounds} rounds  {_told(done.samples[-1][1])}", file=sys.stderr)
+    print(f"{done.samples[-1][0]:6.0f} s  {done.rounds} rounds  {_described(done.samples[-1][1])}", file=sys.stderr)
 
 
-def _told(used: Usage) -> str:
+def _described(used: Usage) -> str:
     memory = " + ".join(f"{each / 2**20:.1f}" for each in used.memory)
     return f"{used.total / 2**20:.1f} MiB = {memory}, {used.descriptors} descriptors, {used.threads} threads"
 

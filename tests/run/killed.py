@@ -16,7 +16,7 @@ from queue import SimpleQueue
 from unittest.mock import patch
 
 from kit import write_manifest
-from robbdd_tools.base.locks import hold
+from robbdd_tools.base.locks import acquire
 from robbdd_tools.commands.execute import follow_run
 from robbdd_tools.protocol.messages import RunMessage, RunStarted
 from robbdd_tools.protocol.specs import Manifest
@@ -70,7 +70,7 @@ def main(folder: Path) -> None:
     unfinished = [run for run in store.runs() if run.began and not run.status().is_whole]
     place = unfinished[0] if unfinished else store.begin()
     if place.lock is None:
-        place = replace(place, lock=hold(place.folder / LOCK, 5.0))
+        place = replace(place, lock=acquire(place.folder / LOCK, 5.0))
         assert place.lock is not None
     else:
         write_manifest(place.folder, MANIFEST)

@@ -20,7 +20,7 @@ from robbdd_tools.protocol.run_folder import trace_file
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run import database as databases
 from robbdd_tools.run.database import DatabaseProblem, open_database, read_database
-from robbdd_tools.run.missing import missing_parts
+from robbdd_tools.run.missing_files import missing_parts
 from robbdd_tools.run.recording import OtherSimulator, Recording, pending
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import STOPPED as STOPPED_ENDING
@@ -137,7 +137,7 @@ def test_what_was_finished_is_neither_written_nor_shown_again(store: RunStore) -
     with closing(Recording(place, MANIFEST)) as recording:
         recording.resume(Policy())
         assert not any(recording.take(message) for message in execution(0))
-        assert recording.is_news(RunStarted(COUNT, "MuJoCo 4"))
+        assert recording.is_new(RunStarted(COUNT, "MuJoCo 4"))
         recording.end("cancelled", interrupted=True)
     assert place.results()["scenarios"][0]["verdict"] == "violated"
 

@@ -26,7 +26,7 @@ from robbdd_tools.protocol.messages import (
 )
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.results import RunResults
-from robbdd_tools.run.scheduler import CANCELLED, STOPPED, Policy, Scheduler, no_watcher
+from robbdd_tools.run.scheduler import CANCELLED, STOPPED, Policy, Scheduler, ignore_event
 from world.worlds import CUBE, SCENE, Steps, write_run
 
 pytestmark = [pytest.mark.physics, pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")]
@@ -60,7 +60,7 @@ def prepared(folder: Path, *scenarios: Sequence[tuple[str, str]], user: str = US
 
 
 def run(
-    folder: Path, manifest: Manifest, policy: Policy, watch: Callable[[RunMessage], None] = no_watcher
+    folder: Path, manifest: Manifest, policy: Policy, watch: Callable[[RunMessage], None] = ignore_event
 ) -> tuple[RunResults, list[RunMessage], str]:
     results, scheduler = RunResults(manifest), Scheduler(folder, manifest, policy, watch)
     messages = list(scheduler.messages())

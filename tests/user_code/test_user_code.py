@@ -14,7 +14,7 @@ import pytest
 
 from judging.test_policies import judged, moving, spec_of
 from robbdd_tools.agent.channel import Reports
-from robbdd_tools.agent.printed_output import CUT, MOST, Printed
+from robbdd_tools.agent.printed_output import CUT, MAX_CHARACTERS, Printed
 from robbdd_tools.agent.tree_execution import TreeRun
 from robbdd_tools.catalog.coordination import NodeSpec, TreeSpec
 from robbdd_tools.catalog.executable import Implementation, Origin
@@ -22,7 +22,7 @@ from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.monitor.policy import Rule
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import Output, ScenarioFinished, ScenarioStarted, decode
-from robbdd_tools.user_code.calls import MOST_FRAMES, UserCodeError, called, fault_of
+from robbdd_tools.user_code.calls import MAX_FRAMES, UserCodeError, call_user_code, fault_of
 from robbdd_tools.world.errors import SceneError, UserError
 from robbdd_tools.world.user_behaviour import AgentWorld, run_user_behaviour
 
@@ -116,7 +116,7 @@ def test_frames_of_libraries_are_told_apart_and_ours_are_left_out(tmp_path: Path
 def test_a_deep_recursion_keeps_its_ends(tmp_path: Path) -> None:
     fault = behave(tmp_path, BEHAVIOUR.replace("self.left = 2", "self.reset(world, behaviour, arguments)"))
     assert fault.exception == "RecursionError"
-    assert len(fault.frames) == MOST_FRAMES
+    assert len(fault.frames) == MAX_FRAMES
 
 
 def test_the_same_error_with_other_values_has_the_same_id(tmp_path: Path) -> None:
@@ -131,7 +131,7 @@ def test_the_same_error_with_other_values_has_the_same_id(tmp_path: Path) -> Non
 
     def fault(function: Any, key: str) -> Fault:
         with pytest.raises(UserCodeError) as caught:
-            called("code", function, {}, key)
+            call_user_code("code", function, {}, key)
         return caught.value.fault
 
     assert fault(code.look, "a").id == fault(code.look, "b").id != fault(code.other, "a").id
@@ -168,7 +168,7 @@ def test_an_error_of_a_trees_code_belongs_to_the_tree(tmp_path: Path, body: str,
     source = Implementation("https://x/tree", "python", f"{name}:tree", Origin(str(tmp_path / "m.bdd"), 2, 1))
     spec = TreeSpec("t 1", "https://x/tree", (NodeSpec("https://x/n", "n", "leaf"),), 0.5, 0.0, source)
 
-    def nothing(_: object) -> Any:
+    def nothing(*_: object) -> Any:
         raise AssertionError
 
     with pytest.raises(SceneError) as caught:
@@ -222,14 +222,14 @@ def test_of_much_that_is_printed_the_beginning_is_passed_on_and_the_next_scenari
     stream = Printed(channel, log)
     for index in (0, 1):
         channel.send(ScenarioStarted(index))
-        for _ in range(MOST // 10):
+        for _ in range(MAX_CHARACTERS // 10):
             print("x" * 99, file=stream)
         stream.finish()
         channel.send(ScenarioFinished(index, 0.0, 0.0, 0.0))
     found = read()
-    assert len(log.getvalue()) == 2 * 100 * (MOST // 10)
+    assert len(log.getvalue()) == 2 * 100 * (MAX_CHARACTERS // 10)
     for index in (0, 1):
         text = "\n".join(message.text for message in found if message.index == index)
         assert text.endswith(CUT)
         assert text.count(CUT) == 1
-        assert len(text) < MOST + 1000
+        assert len(text) < MAX_CHARACTERS + 1000

@@ -23,7 +23,7 @@ def bench(tmp_path: Path) -> Path:
 
 def test_a_sound_model_has_scenarios_and_no_error() -> None:
     model = load(PICKPLACE)
-    assert model.is_sound
+    assert model.is_valid
     assert [file.name for file in model.files] == [str(PICKPLACE)]
     assert len(model.scenarios()) == 4
 

@@ -54,7 +54,7 @@ class Falling:
         for _ in range(samples):
             for _ in range(SUBSTEPS):
                 mujoco.mj_step(self.model, self.data)
-                self.forces.look(self.data)
+                self.forces.measure(self.data)
             self.touching.append(bool(self.data.ncon))
             self.forces.record(self.data, {"arm": list(held)})
 

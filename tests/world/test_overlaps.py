@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from robbdd_tools.agent.course import Course
+from robbdd_tools.agent.behaviour_run import BehaviourRun
 from robbdd_tools.catalog.executable import (
     Body,
     Implementation,
@@ -25,7 +25,7 @@ HALF_CUBE, RADIUS = 0.01575, 0.030
 ON_TABLE = replace(SCENE, objects=(CUBE, BALL, "env:bench"), workspaces={BENCH_WS: ("env:bench",)}, contains={})
 
 
-def course(scene: SceneSpec = ON_TABLE, **places: tuple[float, float, float]) -> Course:
+def course(scene: SceneSpec = ON_TABLE, **places: tuple[float, float, float]) -> BehaviourRun:
     """Set up a scene in which cubes and balls are given places (m, world frame)."""
     links = tuple(Link(f"x:{n}.mid", "x:root", "pose", place, (1.0, 0.0, 0.0, 0.0)) for n, place in places.items())
     bodies = (Body("x:room", ("x:root",)), *(Body(f"x:{name}", (f"x:{name}.mid",)) for name in places))
@@ -39,7 +39,7 @@ def course(scene: SceneSpec = ON_TABLE, **places: tuple[float, float, float]) ->
     )
     instance = SceneInstance("x:cell", (), elements, bodies, links, (), "x:root")
     execution = ExecutionSpec("x:e", "x:e", Implementation("x:i", "catalog", "pick-place"), instance)
-    return Course(replace(scenario(scene), execution=execution), ())
+    return BehaviourRun(replace(scenario(scene), execution=execution), ())
 
 
 def test_things_that_touch_stay_where_they_are_given() -> None:

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from robbdd_tools.agent.beginning import calls_of
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.agent.moments import Moments
+from robbdd_tools.agent.shared_executions import calls_of
 from robbdd_tools.agent.video import NoVideo, write_video
+from robbdd_tools.agent.violation_states import ViolationStates
 from robbdd_tools.protocol.messages import Execute, encode
 from robbdd_tools.run.pictures import advice, back_ends
 from robbdd_tools.world.png import SIGNATURE, write_png
@@ -107,7 +107,7 @@ def test_the_moment_of_every_violated_clause_is_kept_with_the_run(tmp_path: Path
     command = [sys.executable, "-m", "robbdd_tools.agent", str(tmp_path / "run")]
     environment = {**os.environ, "MUJOCO_GL": "nonsense"}
     subprocess.run(command, check=True, capture_output=True, env=environment, input=encode(Execute(0)).encode() + b"\n")
-    (moment,) = Moments(tmp_path / "run")
+    (moment,) = ViolationStates(tmp_path / "run")
     assert (moment.index, moment.line) == (0, spec.clauses[2].line)
     simulation = Execution(spec, calls_of(spec)).simulation
     address = int(simulation.model.jnt_qposadr[simulation.model.body(CUBE).jntadr[0]])
@@ -138,7 +138,7 @@ def test_a_scenario_is_filmed_with_captions_or_the_reason_is_given(tmp_path: Pat
     (spec,) = write_run(tmp_path / "run", [Steps((("when", doing), ("then", wrong)))])
     execution = Execution(spec, calls_of(spec))
     end = execution.advance_until(lambda _: False).end
-    Moments(tmp_path / "run").keep(0, spec.clauses[1].line, end - 0.2, execution.state_at(end))
+    ViolationStates(tmp_path / "run").keep(0, spec.clauses[1].line, end - 0.2, execution.state_at(end))
     done = render(tmp_path / "run", tmp_path / "videos", "videos", MUJOCO_GL="egl")
     assert "Traceback" not in done.stderr
     if done.returncode == 3:

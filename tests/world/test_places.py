@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from robbdd_tools.agent.beginning import call_of
-from robbdd_tools.agent.course import Call
+from robbdd_tools.agent.behaviour_run import Call
 from robbdd_tools.agent.execution import Execution
+from robbdd_tools.agent.shared_executions import call_of
 from robbdd_tools.catalog.executable import Implementation, Origin
 from robbdd_tools.judging.parsed_sentences import read_step
 from robbdd_tools.protocol.clauses import BehaviourCall

@@ -30,10 +30,10 @@ def _main() -> int:
     # Execution needs no graphics: a broken graphics back end must not prevent loading the engine.
     os.environ["MUJOCO_GL"] = "disable"
     # Install the signal handlers before the slow imports.
-    from robbdd_tools.agent.orders import read_orders
+    from robbdd_tools.agent.execute_requests import read_requests
     from robbdd_tools.agent.runner import run_folder
 
-    return run_folder(sys.argv[1], read_orders(os.fdopen(orders, encoding="utf-8")), messages)
+    return run_folder(sys.argv[1], read_requests(os.fdopen(orders, encoding="utf-8")), messages)
 
 
 if __name__ == "__main__":

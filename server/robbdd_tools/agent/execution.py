@@ -7,8 +7,8 @@ from dataclasses import replace
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from robbdd_tools.agent.course import Call, Course, Timing
-from robbdd_tools.judging.quantities import wanting
+from robbdd_tools.agent.behaviour_run import BehaviourRun, Call, Timing
+from robbdd_tools.judging.quantities import fluents_with_quantity
 from robbdd_tools.monitor.time import Window, window
 from robbdd_tools.monitor.trace import Trace
 from robbdd_tools.world.engine import TICK
@@ -35,9 +35,9 @@ class Execution:
         spec: ScenarioSpec,
         calls: Sequence[Call],
         timing: Timing | None = None,
-        course: Course | None = None,
+        course: BehaviourRun | None = None,
     ) -> None:
-        self.course = course or Course(spec, calls, timing)
+        self.course = course or BehaviourRun(spec, calls, timing)
         self._events = spec.events
         self._names = _names_of(spec.events)
         self._node = spec.node
@@ -120,7 +120,7 @@ class Execution:
     def measured(self, clause: Clause, trace: Trace) -> Trace:
         """Return a trace with the configuration and the costly quantities that a clause needs."""
         began = perf_counter()
-        for fluent, arguments in wanting(clause, "reach"):
+        for fluent, arguments in fluents_with_quantity(clause, "reach"):
             agent, name = arguments["agent"], arguments["object"]
             selected = window(fluent.time, trace)
             known = agent in self.simulation.robots and name in self.simulation.world.cast.objects

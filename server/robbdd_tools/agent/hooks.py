@@ -42,7 +42,7 @@ def before_scenario(context: Any, scenario: Any) -> None:
 def after_step(context: Any, step: Any) -> None:
     """Report the outcome of a user-defined step; our own steps have already reported their verdict."""
     sources = context.session.sources
-    context.session.take_verdict(int(step.line), _verdict(step, sources))
+    context.session.set_step_verdict(int(step.line), _verdict(step, sources))
 
 
 def after_scenario(context: Any, _scenario: Any) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.agent.channel import Reports
 
-MOST = 16_000
+MAX_CHARACTERS = 16_000
 """Maximum characters of one scenario's output that are sent as messages."""
 CUT = "… the rest of the output is in the log of the run"
 
@@ -30,7 +30,7 @@ class Printed(io.TextIOBase):
         self._log = log
         self._scenario: int | None = None
         self._line = ""
-        self._left = MOST
+        self._left = MAX_CHARACTERS
 
     def writable(self) -> bool:
         """Return true."""
@@ -47,7 +47,7 @@ class Printed(io.TextIOBase):
         self._begin()
         if self._left >= 0:
             whole, end, rest = (self._line + text).rpartition("\n")
-            self._line = rest[: MOST + 1]
+            self._line = rest[: MAX_CHARACTERS + 1]
             if end:
                 self._pass_on(whole)
         return written
@@ -66,7 +66,7 @@ class Printed(io.TextIOBase):
     def _begin(self) -> None:
         """Reset the limit at the start of each scenario."""
         if self._channel.scenario != self._scenario:
-            self._scenario, self._line, self._left = self._channel.scenario, "", MOST
+            self._scenario, self._line, self._left = self._channel.scenario, "", MAX_CHARACTERS
 
     def _pass_on(self, text: str) -> None:
         shown = text if len(text) <= self._left else f"{text[: self._left]}\n{CUT}"

@@ -28,7 +28,7 @@ from robbdd_tools.world.errors import SceneError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from robbdd_tools.agent.moments import Moment
+    from robbdd_tools.agent.violation_states import ViolationState
     from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
 
 FAILED, NO_GRAPHICS = 2, 3
@@ -79,9 +79,9 @@ def _scene(manifest: Manifest, index: int, output: Path) -> Iterator[Path]:
 
 
 def _moments(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
-    from robbdd_tools.agent.moments import Moments
+    from robbdd_tools.agent.violation_states import ViolationStates
 
-    for index, moments in groupby(Moments(folder), key=lambda moment: moment.index):
+    for index, moments in groupby(ViolationStates(folder), key=lambda moment: moment.index):
         spec = manifest.scenarios[index]
         names = {clause.line: clause.name for clause in spec.clauses}
         stem = _stem(spec)
@@ -89,24 +89,24 @@ def _moments(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
 
 
 def _thumbnails(folder: Path, manifest: Manifest, output: Path, chosen: Sequence[str]) -> Iterator[Path]:
-    from robbdd_tools.agent.moments import Moments
+    from robbdd_tools.agent.violation_states import ViolationStates
 
     output.mkdir(parents=True, exist_ok=True)
     wanted = {tuple(map(int, word.split(":"))) for word in chosen}
-    moments = [moment for moment in Moments(folder) if (moment.index, moment.line) in wanted]
+    moments = [moment for moment in ViolationStates(folder) if (moment.index, moment.line) in wanted]
     for index, group in groupby(moments, key=lambda moment: moment.index):
         pictures = ((thumbnail_file(output, index, moment.line), moment) for moment in group)
         yield from _pictures(manifest.scenarios[index], pictures, small=True)
 
 
 def _videos(folder: Path, manifest: Manifest, output: Path) -> Iterator[Path]:
-    from robbdd_tools.agent.beginning import calls_of, timing_of
     from robbdd_tools.agent.execution import Execution
-    from robbdd_tools.agent.moments import Moments
+    from robbdd_tools.agent.shared_executions import calls_of, timing_of
     from robbdd_tools.agent.video import Violation, write_video
+    from robbdd_tools.agent.violation_states import ViolationStates
     from robbdd_tools.judging.scenario_clauses import clause_of
 
-    moments = list(Moments(folder))
+    moments = list(ViolationStates(folder))
     for index, spec in enumerate(manifest.scenarios):
         names = {clause.line: clause.name for clause in spec.clauses}
         clauses = [clause_of(clause, spec) for clause in spec.clauses if clause.role != "when"]
@@ -122,10 +122,12 @@ def _stem(spec: ScenarioSpec) -> str:
     return safe_stem(spec.name.rpartition(":")[2].replace(" -- ", "-"))
 
 
-def _pictures(spec: ScenarioSpec, wanted: Iterable[tuple[Path, Moment | None]], small: bool = False) -> Iterator[Path]:
+def _pictures(
+    spec: ScenarioSpec, wanted: Iterable[tuple[Path, ViolationState | None]], small: bool = False
+) -> Iterator[Path]:
     """Write pictures of one scenario: of moments, or of the initial scene; yield their paths."""
-    from robbdd_tools.agent.beginning import calls_of
     from robbdd_tools.agent.execution import Execution
+    from robbdd_tools.agent.shared_executions import calls_of
     from robbdd_tools.world.picture import Camera
     from robbdd_tools.world.png import write_png
 

@@ -27,7 +27,7 @@ from robbdd_tools.protocol.messages import (
     ScenarioFinished,
     ScenarioStarted,
     UserCodeFailed,
-    decode_order,
+    decode_request,
     never_judged,
 )
 from robbdd_tools.protocol.run_folder import OWN_STEPS
@@ -111,7 +111,7 @@ class Features:
     def ordered(self, orders: Iterable[str], userdata: dict[str, str]) -> Iterator[Any]:
         """Yield one feature per order, reduced to the ordered scenario; every order gets its report."""
         for line in orders:
-            index = decode_order(line).index
+            index = decode_request(line).index
             tree = self._manifest.scenarios[index].tree
             if self._tree is not None and self._tree != tree:
                 end_descendants()

@@ -9,10 +9,10 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from robbdd_tools.agent.beginning import Courses, call_of, calls_of, timing_of
 from robbdd_tools.agent.execution import Execution
-from robbdd_tools.agent.moments import Moments
 from robbdd_tools.agent.printed_output import finish_output
+from robbdd_tools.agent.shared_executions import SharedExecutions, call_of, calls_of, timing_of
+from robbdd_tools.agent.violation_states import ViolationStates
 from robbdd_tools.judging.decisions import NO_STEP, decide, is_closed
 from robbdd_tools.judging.margin_curves import behaviour_curves, curves, write_curves
 from robbdd_tools.judging.margin_ranges import margin_ranges
@@ -63,9 +63,9 @@ class ScenarioRun:
         spec: ScenarioSpec,
         texts: Sequence[tuple[int, str, str]],
         channel: Channel,
-        moments: Moments,
+        moments: ViolationStates,
         keep: Path | None = None,
-        courses: Courses | None = None,
+        courses: SharedExecutions | None = None,
     ) -> None:
         self._index = index
         self._spec = spec
@@ -85,7 +85,7 @@ class ScenarioRun:
         self._execution: Execution | None = None
         self._viewer: Viewer | None = None
         self._keep = keep
-        self._courses = courses or Courses()
+        self._courses = courses or SharedExecutions()
         self._verdicts: list[ClauseJudged] = []
         self._broken: SceneError | None = None
         self._faults: set[str] = set()
@@ -179,7 +179,7 @@ class ScenarioRun:
 
         return self._judged(line, text, verdict)
 
-    def take_verdict(self, line: int, verdict: Verdict) -> None:
+    def set_step_verdict(self, line: int, verdict: Verdict) -> None:
         """Record the verdict of a user's step on a clause without a verdict."""
         self._report(line, verdict)
 
@@ -196,7 +196,7 @@ class ScenarioRun:
         if self._viewer is not None:
             self._viewer.close()
         if execution is not None:
-            self._tell_ranges(execution)
+            self._report_ranges(execution)
         if execution is not None and self._keep is not None:
             self._write_trace(execution, self._keep)
         simulated = execution.simulated if execution is not None else 0.0
@@ -211,7 +211,7 @@ class ScenarioRun:
         trace = execution.complete(execution.trace)
         return unnamed_contacts(self._clauses.values(), trace, execution.regions)
 
-    def _tell_ranges(self, execution: Execution) -> None:
+    def _report_ranges(self, execution: Execution) -> None:
         """Report the margin ranges of the whole execution, to find clauses that could not have failed."""
         for line, clause in self._clauses.items():
             known = self._known.get(line)
@@ -296,8 +296,8 @@ class Session:
         self.sources = sources_in(folder, manifest.sources)
         self._folder = folder
         self._manifest = manifest
-        self._moments = Moments(folder)
-        self._courses = Courses()
+        self._moments = ViolationStates(folder)
+        self._courses = SharedExecutions()
         self._present: ScenarioRun | None = None
 
     def start(
@@ -325,10 +325,10 @@ class Session:
             raise SceneError(UNKNOWN_SCENARIO)
         return self._present
 
-    def take_verdict(self, line: int, verdict: Verdict) -> None:
+    def set_step_verdict(self, line: int, verdict: Verdict) -> None:
         """Record the verdict of a user's step on the clause of a line."""
         if self._present is not None:
-            self._present.take_verdict(line, verdict)
+            self._present.set_step_verdict(line, verdict)
 
     def finish(self) -> None:
         """End the current scenario."""

@@ -30,7 +30,7 @@ def register() -> None:
     matchers.use_step_matcher("re")
     try:
         for text in TABLES:
-            behave.step(re.escape(text))(_tell)
+            behave.step(re.escape(text))(_accept_table)
         behave.step("the scene is set up")(_set_up)
         for predicate in load_catalog().predicates.values():
             behave.step(fluent_pattern(predicate))(_judge)
@@ -54,7 +54,7 @@ def load_steps(files: Iterable[Path]) -> None:
         matchers.use_default_step_matcher()
 
 
-def _tell(_context: Any) -> None:
+def _accept_table(_context: Any) -> None:
     """Do nothing: the table is for the reader."""
 
 

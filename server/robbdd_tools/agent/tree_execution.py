@@ -16,7 +16,7 @@ from py_trees.composites import Selector, Sequence
 
 from robbdd_tools.catalog.coordination import END, START, emitter
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
+from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 from robbdd_tools.world.errors import SceneError, SimulationError, UserError
 from robbdd_tools.world.frames import at
 
@@ -158,7 +158,7 @@ class TreeRun:
         if source is None:
             return tick()
         try:
-            return called(source.name, tick)
+            return call_user_code(source.name, tick)
         except UserCodeError as error:
             if isinstance(error.__cause__, UserError | SimulationError):
                 raise error.__cause__ from None
@@ -225,7 +225,7 @@ def _made(spec: TreeSpec, leaf: Callable[[str], Behaviour]) -> Behaviour:
     place, model = at(source.origin), "" if source.origin is None else source.origin.file
     try:
         make = load_attribute(source.name, model)
-        root: object = called(source.name, make, leaf)
+        root: object = call_user_code(source.name, make, leaf)
         if not isinstance(root, Behaviour):
             message = f"'{source.name}' returned a {type(root).__name__}, not a behaviour of py_trees"
             raise refused(source.name, message, definition_of(make))

@@ -52,7 +52,7 @@ class Lock:
         self._file.close()
 
 
-def hold(path: Path, patience: float = 0.0) -> Lock | None:
+def acquire(path: Path, patience: float = 0.0) -> Lock | None:
     """Lock a file, created if missing, within ``patience`` seconds; ``None`` while another holder has the lock.
 
     Raises ``OSError``, also if the file system has no locks.

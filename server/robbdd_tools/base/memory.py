@@ -31,7 +31,7 @@ def collect_recent() -> None:
 
 
 @contextmanager
-def nothing_to_collect() -> Generator[None]:
+def freeze_garbage_collection() -> Generator[None]:
     """Turn garbage collection off while modules are loaded, and exempt the objects made meanwhile for good."""
     gc.disable()
     yield

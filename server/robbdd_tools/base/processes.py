@@ -29,7 +29,7 @@ WINDOWS_ERRORS = {
     0xC000013A: "interrupted by Ctrl-C",
 }
 """Windows exit codes of crashed processes, from ``ntstatus.h``."""
-_LEAST_ERROR = 0xC0000000
+_MIN_ERROR = 0xC0000000
 
 
 class RunningProcess(Protocol):
@@ -188,6 +188,6 @@ def describe_exit(code: int) -> str:
         known = {each.value: each.name for each in signal.Signals}
         hint = " (often: memory ran out)" if known.get(-code) == "SIGKILL" else ""
         return f"signal {known.get(-code, -code)}{hint}"
-    if code >= _LEAST_ERROR:
+    if code >= _MIN_ERROR:
         return f"code 0x{code:X} ({WINDOWS_ERRORS.get(code, 'ended by Windows')})"
     return f"code {code}"

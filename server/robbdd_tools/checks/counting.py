@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.elements import Site
     from robbdd_tools.names.types import Written
 
-MOST_SCENARIOS = 10_000
+MAX_SCENARIOS = 10_000
 """Number of scenarios of one variant above which a mistake is assumed; about one night of simulation."""
 UNCOUNTED = 10**12
 """Upper limit of a count."""
@@ -60,7 +60,7 @@ def _selections(selection: tree.Selection, size: int) -> int | None:
     length = selection.count.value
     if not isinstance(length, int) or length < 1 or not size:
         return None
-    if length > MOST_SCENARIOS:
+    if length > MAX_SCENARIOS:
         # The exact number is slow to compute and useless.
         return UNCOUNTED if selection.repeated and size > 1 else int(selection.repeated)
     return min(UNCOUNTED, SelectionRule(selection.kind, length, selection.repeated).count(size))

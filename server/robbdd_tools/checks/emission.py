@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.checks.finding import MOST_OFFERED, change, finding
+from robbdd_tools.checks.finding import MAX_OFFERED, change, finding
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
 
@@ -27,7 +27,7 @@ def emission(site: Site) -> Iterator[Diagnostic]:
         events = load_catalog().behaviours[use.action.word].events
         for one in use.emissions:
             if one.moment.text not in events:
-                near = get_close_matches(one.moment.text, events, n=MOST_OFFERED, cutoff=0.0)
+                near = get_close_matches(one.moment.text, events, n=MAX_OFFERED, cutoff=0.0)
                 message = f"'{use.action.word}' does not emit '{one.moment.text}': it emits {', '.join(events)}"
                 fixes = tuple(change(site, f"Change to '{name}'", one.moment, name) for name in near)
                 yield finding(site, one.moment, Severity.ERROR, CODE, message, fixes=fixes)

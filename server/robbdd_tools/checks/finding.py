@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.elements import Site
     from robbdd_tools.syntax.tree import Node
 
-MOST_OFFERED = 3
+MAX_OFFERED = 3
 """Maximum number of alternative names or values with a fix each."""
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def import_edit(file: FileAnalysis, path: str) -> Edit:
     """Return the edit that adds an import to a file."""
-    return below(file, (tree.Import,), f'import "{path}"')
+    return line_below(file, (tree.Import,), f'import "{path}"')
 
 
 def import_removal(file: FileAnalysis, link: ImportLink, title: str) -> Iterator[Fix]:
@@ -29,7 +29,7 @@ def import_removal(file: FileAnalysis, link: ImportLink, title: str) -> Iterator
             return
 
 
-def below(file: FileAnalysis, kinds: tuple[type[tree.Node], ...], line: str) -> Edit:
+def line_below(file: FileAnalysis, kinds: tuple[type[tree.Node], ...], line: str) -> Edit:
     """Return the edit that adds a line below the last declaration of the first of ``kinds`` that occurs."""
     document = file.document
     for kind in kinds:

@@ -7,7 +7,7 @@ from math import prod
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
-from robbdd_tools.checks.counting import MOST_SCENARIOS, UNCOUNTED, factors_of
+from robbdd_tools.checks.counting import MAX_SCENARIOS, UNCOUNTED, factors_of
 from robbdd_tools.checks.finding import finding
 from robbdd_tools.checks.template_variants import scenarios
 from robbdd_tools.syntax import tree
@@ -24,7 +24,7 @@ def many_scenarios(site: Site) -> Iterator[Diagnostic]:
         if known is None or isinstance(scenario.variant.variation, tree.Table):
             continue
         total = prod(known)
-        if total > MOST_SCENARIOS:
+        if total > MAX_SCENARIOS:
             shown = f"{total:,}" if total < UNCOUNTED else f"more than {UNCOUNTED:,}"
             factors = " × ".join(f"{count:,}" if count < UNCOUNTED else "very many" for count in known)
             message = f"this variation makes {shown} scenarios ({factors}): give fewer values, or write a table"

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 Rule = Callable[[Site], "Iterator[Diagnostic]"]
-KEPT_FILES = 256
+CACHED_FILES = 256
 _RULED = (
     tree.ElementSet,
     tree.ConstantSet,
@@ -92,7 +92,7 @@ def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...])
         entries[declaration] = entry
         for finding in entry.findings:
             yield anchors.fixed(finding, uri, placed)
-    if len(_runs) >= KEPT_FILES:
+    if len(_runs) >= CACHED_FILES:
         _runs.clear()
     _runs[uri] = _Run(scope, entries)
 
@@ -157,7 +157,7 @@ def _declared(file: FileIndex, name: str) -> Iterator[Declaration]:
 
 
 @contextmanager
-def nothing_kept() -> Generator[None]:
+def without_cache() -> Generator[None]:
     """Disable the cache inside the block, for comparison."""
     kept = dict(_runs)
     _runs.clear()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Edit, Fix, Related, Severity
 from robbdd_tools.base.document import Span
-from robbdd_tools.checks.finding import MOST_OFFERED, finding, listed
+from robbdd_tools.checks.finding import MAX_OFFERED, finding, listed
 from robbdd_tools.checks.table_edits import columns_added
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.types import variable_key
@@ -77,7 +77,7 @@ def _lines(scenario: Scenario, product: tree.Product, missing: list[Definition],
 def _columns(scenario: Scenario, table: tree.Table, missing: list[Definition]) -> Iterator[Fix]:
     """Yield fixes that add columns: one per matching value of a single variable, or the first match of several."""
     if len(missing) == 1 and missing[0].kind is SymbolKind.VARIABLE:
-        choices = [[value] for value in scenario.fitting_for(missing[0])[:MOST_OFFERED]]
+        choices = [[value] for value in scenario.fitting_for(missing[0])[:MAX_OFFERED]]
     else:
         cells = [scenario.cell_for(variable) for variable in missing]
         choices = [[cell for cell in cells if cell is not None]]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.catalog.event_names import inner_event
 from robbdd_tools.catalog.registry import load_catalog
-from robbdd_tools.checks.finding import MOST_OFFERED, change, finding
+from robbdd_tools.checks.finding import MAX_OFFERED, change, finding
 from robbdd_tools.checks.template_variants import scenarios
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.symbols import walk
@@ -82,7 +82,7 @@ def _unemitted(site: Site, node: tree.Node, emitters: _Emitters) -> Iterator[Dia
             message += (
                 f", and its behaviours emit {_listed(list(emitters.inner))}, under these names or with 'emits … as'"
             )
-        near = get_close_matches(ref.path, names, n=MOST_OFFERED, cutoff=0.0)
+        near = get_close_matches(ref.path, names, n=MAX_OFFERED, cutoff=0.0)
         fixes = tuple(change(site, f"Change to '{name}'", ref, name) for name in near)
         yield finding(site, ref, Severity.WARNING, CODE, message, fixes=fixes)
 

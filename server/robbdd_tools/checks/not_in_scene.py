@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Edit, Fix, Related, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.checks.finding import finding
-from robbdd_tools.checks.fitting import SET_WORDS
 from robbdd_tools.checks.lines import import_edit
+from robbdd_tools.checks.replacements import SET_WORDS
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.elements import Element, elements_of, scene_members
 from robbdd_tools.names.imports import import_path
@@ -41,13 +41,13 @@ def not_in_scene(site: Site) -> Iterator[Diagnostic]:
             known[key] = scene_members(site.follow(scenario.variant.scene))
         members = known[key]
         if members is not None:
-            yield from _strangers(scenario, members)
+            yield from _elements_outside(scenario, members)
 
 
-def _strangers(scenario: Scenario, members: frozenset[Element]) -> Iterator[Diagnostic]:
+def _elements_outside(scenario: Scenario, members: frozenset[Element]) -> Iterator[Diagnostic]:
     site, scene = scenario.site, scenario.variant.scene
     kinds = {element.kind for element in members}
-    listed = {element.key for element in members} | {element.key for element in _brought(scenario)}
+    listed = {element.key for element in members} | {element.key for element in _named_set_members(scenario)}
     definition = site.target(scene)
     for column in scenario.columns:
         for written in column.written:
@@ -90,7 +90,7 @@ def _extended(site: Site | None, element: Element) -> Iterator[Fix]:
     yield Fix(f"Add '{words}' to the scene '{scene.name.text}'", tuple(edits))
 
 
-def _brought(scenario: Scenario) -> Iterator[Element]:
+def _named_set_members(scenario: Scenario) -> Iterator[Element]:
     """Yield the members of element sets in the variation: naming a whole set adds it to the scene."""
     for column in scenario.columns:
         for written in column.written:

@@ -36,7 +36,7 @@ def pose(site: Site) -> Iterator[Diagnostic]:
 def _position(site: Site, written: tree.Vector | tree.Sample) -> Iterator[Diagnostic]:
     count = _count(site, written) if isinstance(written, tree.Sample) else len(numbers_of(written))
     if count not in (3, None):
-        yield _told(site, written, f"a position needs 3 numbers, not {count}")
+        yield _described(site, written, f"a position needs 3 numbers, not {count}")
 
 
 def _orientation(site: Site, written: tree.Vector | tree.EulerAngles | tree.Axes | tree.Sample) -> Iterator[Diagnostic]:
@@ -44,16 +44,16 @@ def _orientation(site: Site, written: tree.Vector | tree.EulerAngles | tree.Axes
         case tree.Sample():
             count = _count(site, written)
             if count not in (3, 4, None):
-                yield _told(site, written, f"an orientation needs 3 angles or a rotation, not {count} numbers")
+                yield _described(site, written, f"an orientation needs 3 angles or a rotation, not {count} numbers")
         case _ if rotation_of(written) is not None:
             return
         case tree.Vector():
-            yield _told(site, written, "this is not a rotation: a quaternion has 4 numbers, not all of them 0")
+            yield _described(site, written, "this is not a rotation: a quaternion has 4 numbers, not all of them 0")
         case tree.EulerAngles():
-            yield _told(site, written.angles, "this is not a rotation: it has 3 angles")
+            yield _described(site, written.angles, "this is not a rotation: it has 3 angles")
         case tree.Axes():
             text = "these axes are not a rotation: they must be of length 1, at right angles and right-handed"
-            yield _told(site, written, text)
+            yield _described(site, written, text)
 
 
 def _count(site: Site, sample: tree.Sample) -> int | None:
@@ -63,5 +63,5 @@ def _count(site: Site, sample: tree.Sample) -> int | None:
     return drawn(declared.law) if isinstance(declared, tree.Distribution) else None
 
 
-def _told(site: Site, node: tree.Node, text: str) -> Diagnostic:
+def _described(site: Site, node: tree.Node, text: str) -> Diagnostic:
     return finding(site, node, Severity.WARNING, CODE, text)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration
 
 CODE = "python-source"
-LEAST_ALIKE = 0.6
+MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
 
 
@@ -74,7 +74,7 @@ def _problem(source: tree.PythonAttribute, folder: Path) -> tuple[tree.Name, str
 
 
 def _near(name: str, known: Iterable[str]) -> list[str]:
-    return get_close_matches(name, list(known), n=3, cutoff=LEAST_ALIKE)
+    return get_close_matches(name, list(known), n=3, cutoff=MIN_ALIKE)
 
 
 def _file(module: str) -> str:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 CODE = "setting"
 _SHARED = frozenset({"position_range", "seed"})
 """Configurations that both agents and objects have."""
-LEAST_ALIKE = 0.6
+MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
 
 
@@ -60,7 +60,7 @@ def _uses(clauses: Clauses) -> Iterator[_Use]:
 
 
 def _unknown(site: Site, name: tree.Name) -> Diagnostic:
-    close = get_close_matches(name.text, SETTINGS, n=3, cutoff=LEAST_ALIKE)
+    close = get_close_matches(name.text, SETTINGS, n=3, cutoff=MIN_ALIKE)
     message = f"there is no configuration '{name.text}'"
     message += f"; did you mean '{close[0]}'?" if close else f"; the known ones are {', '.join(SETTINGS)}"
     fixes = tuple(change(site, f"Change to '{found}'", name, found) for found in close)

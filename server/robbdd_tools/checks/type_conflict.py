@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.checks.finding import article, finding, related_to
-from robbdd_tools.checks.fitting import other_values, other_variables, variables_with_kinds
+from robbdd_tools.checks.replacements import other_values, other_variables, variables_with_kinds
 from robbdd_tools.checks.template_variants import Column, Scenario, scenarios
 from robbdd_tools.names.elements import Site, elements_of
 from robbdd_tools.names.types import kind_words, narrowed, uses_by_variable, variable_key, written_elements

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.graph_results import graph_with_results
-from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.models import valid_model
 from robbdd_tools.commands.output import fail, print_document
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def print_graph(path: Path, more: Sequence[Path], form: str, results: str | None
     """
     from robbdd_tools.graph.rdf.serialize import UnwritableGraph, serialize
 
-    model = sound_model(path, more)
+    model = valid_model(path, more)
     if model is None:
         return FAILED
     built = graph_with_results(model, path, results)

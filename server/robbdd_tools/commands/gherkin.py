@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.chosen_scenarios import selection
-from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.models import valid_model
 from robbdd_tools.commands.output import fail, print_line
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def write_gherkin(options: GherkinOptions) -> int:
     from robbdd_tools.gherkin.user_template import sheet
     from robbdd_tools.graph.rdf.serialize import serialize
 
-    file = sound_model(options.path, options.more)
+    file = valid_model(options.path, options.more)
     if file is None:
         return FAILED
     built, model = file.graph, file.acceptance
@@ -72,10 +72,10 @@ def _write(plan: FeaturePlan, total: int | None, options: GherkinOptions, json_l
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     from robbdd_tools.commands.terminal import terminal
-    from robbdd_tools.run.prepare import bring_steps, lay_out, write_surroundings
+    from robbdd_tools.run.prepare import copy_steps, lay_out, write_surroundings
 
     write_surroundings(options.folder, options.path.stem, json_ld)
-    bring_steps(str(options.path), options.folder)
+    copy_steps(str(options.path), options.folder)
     console = terminal(stderr=True)
     columns = (TextColumn("writing"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:

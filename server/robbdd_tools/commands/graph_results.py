@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import Unreadable, read_text
 from robbdd_tools.commands.output import print_note
-from robbdd_tools.commands.runs import say_unfinished
+from robbdd_tools.commands.runs import print_unfinished
 from robbdd_tools.run.store import LATEST, NoSuchRun, store_beside
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def graph_with_results(model: ModelFile, path: Path, results: str | None) -> Bui
         if results == LATEST or not file.exists():
             run = store_beside(path).find(results)
             file, text = run.folder, json.dumps(run.results())
-            say_unfinished(run, run.status())
+            print_unfinished(run, run.status())
         else:
             text = read_text(file)
         if isinstance(text, Unreadable):

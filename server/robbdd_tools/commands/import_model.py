@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, OK
-from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.models import valid_model
 from robbdd_tools.commands.output import fail, print_line, print_note
 from robbdd_tools.names.project import Project
 
@@ -34,7 +34,7 @@ def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
     present = [file for file in (output, scene) if file.exists()]
     if present and not overwrite:
         return fail(f"{present[0]} exists already; --force replaces it")
-    model = sound_model(path)
+    model = valid_model(path)
     if model is None:
         return FAILED
     graph = model.graph.graph

@@ -11,8 +11,8 @@ from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.commands import FAILED, FINDINGS, OK, signal_code
 from robbdd_tools.commands.execute import follow
-from robbdd_tools.commands.run import Outputs, guarded
-from robbdd_tools.commands.runs import say_unfinished
+from robbdd_tools.commands.run import Outputs, report_problems
+from robbdd_tools.commands.runs import print_unfinished
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.workbench.judging import Judgement
 from robbdd_tools.workbench.model import load_all
@@ -31,7 +31,7 @@ class JudgeOptions:
 
 def judge(options: JudgeOptions) -> int:
     """Print the verdicts of a model's clauses on stored traces; return the exit code as ``robbdd run``."""
-    return guarded(Outputs(report=options.report), viewer=False, work=lambda: _judge(options))
+    return report_problems(Outputs(report=options.report), viewer=False, work=lambda: _judge(options))
 
 
 def _judge(options: JudgeOptions) -> int:
@@ -39,7 +39,7 @@ def _judge(options: JudgeOptions) -> int:
     status = place.status()
     model = load_all(options.paths)
     _ = model.runnable
-    say_unfinished(place, status)
+    print_unfinished(place, status)
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
         judgement = Judgement(place, model, Path(folder))
         ended_by = follow(judgement)

@@ -19,7 +19,7 @@ HOSTS = "context-hosts"
 HOSTS_FORM = 'a list of host names, such as ["example.org"]'
 
 
-def sound_model(path: Path, more: Sequence[Path] = ()) -> ModelFile | None:
+def valid_model(path: Path, more: Sequence[Path] = ()) -> ModelFile | None:
     """Load one model for a command that needs it free of errors; print its errors and return ``None`` if it has any.
 
     ``more`` are further graph files of the model.

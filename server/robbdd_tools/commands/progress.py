@@ -45,9 +45,9 @@ BESIDE = len("  ✔   +1000.0 mm  at 10.00 s")
 """Columns of a clause's sign, margin and instant."""
 NARROWEST = 10
 """Minimum columns of a sentence, however narrow the terminal."""
-MOST_PRINTED = 100
+MAX_PRINTED = 100
 """Maximum lines shown of users' code output in one scenario."""
-MOST_CONTACTS = 5
+MAX_CONTACTS = 5
 """Maximum contacts shown for one scenario."""
 INDENT = (0, 0, 0, 6)
 """Padding of a reason, which is indented below its clauses."""
@@ -138,10 +138,10 @@ class Display:
 
     def _output(self, lines: Sequence[str]) -> None:
         """Print the output of users' code, visibly separate from ours."""
-        for line in lines[:MOST_PRINTED]:
+        for line in lines[:MAX_PRINTED]:
             self._console.print(plain(f"  │ {line}"))
-        if len(lines) > MOST_PRINTED:
-            more = _counted(len(lines) - MOST_PRINTED, "more line")
+        if len(lines) > MAX_PRINTED:
+            more = _counted(len(lines) - MAX_PRINTED, "more line")
             self._console.print(Text(f"  │ … {more} in the log of the run"))
 
     def broken(self, reason: str) -> None:
@@ -211,10 +211,10 @@ class Display:
                 reason = plain(words, STYLES[Outcome(judged.verdict)])
                 self._console.print(Padding(reason, INDENT) if self._drawn else Text("      ").append(reason))
         contacts = () if scenario.finished is None else scenario.finished.contacts
-        for contact in contacts[:MOST_CONTACTS]:
+        for contact in contacts[:MAX_CONTACTS]:
             self._console.print(plain(f"  contact: {contact_words(contact)}", STYLES[Outcome.UNKNOWN]))
-        if len(contacts) > MOST_CONTACTS:
-            more = _counted(len(contacts) - MOST_CONTACTS, "more contact")
+        if len(contacts) > MAX_CONTACTS:
+            more = _counted(len(contacts) - MAX_CONTACTS, "more contact")
             self._console.print(plain(f"  … {more} in the results of the run", STYLES[Outcome.UNKNOWN]))
 
 

@@ -13,7 +13,7 @@ from robbdd_tools.base.files import Unreadable, read_text
 from robbdd_tools.base.printable import printable, printable_json
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.graph_results import graph_with_results
-from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.models import valid_model
 from robbdd_tools.commands.output import fail, print_document, print_line, print_note
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
     if source is None:
         return FAILED
     place, asked = source
-    model = sound_model(path)
+    model = valid_model(path)
     if model is None:
         return FAILED
     built = graph_with_results(model, path, results)

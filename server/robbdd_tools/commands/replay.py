@@ -10,8 +10,8 @@ from pathlib import Path
 from robbdd_tools.commands import FINDINGS, OK, signal_code
 from robbdd_tools.commands.execute import follow
 from robbdd_tools.commands.output import print_line, print_note
-from robbdd_tools.commands.run import Outputs, guarded
-from robbdd_tools.commands.runs import say_unfinished
+from robbdd_tools.commands.run import Outputs, report_problems
+from robbdd_tools.commands.runs import print_unfinished
 from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.workbench.replaying import Replay
 from robbdd_tools.workbench.stored import store_at
@@ -33,7 +33,7 @@ class ReplayOptions:
 
 def replay(options: ReplayOptions) -> int:
     """Print for each scenario whether its trace is identical; return 0 if all are, else 1."""
-    return guarded(Outputs(), viewer=False, work=lambda: _replay(options))
+    return report_problems(Outputs(), viewer=False, work=lambda: _replay(options))
 
 
 def _replay(options: ReplayOptions) -> int:
@@ -41,7 +41,7 @@ def _replay(options: ReplayOptions) -> int:
     record, status = place.record(), place.status()
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
         replay = Replay(place, Path(folder), options.policy, options.names, force=options.force)
-        say_unfinished(place, status)
+        print_unfinished(place, status)
         ended_by = follow(replay, replay.total)
         if ended_by:
             return signal_code(ended_by)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.commands.execute import follow_run
 from robbdd_tools.commands.output import print_note
-from robbdd_tools.commands.run import Outputs, conclude, guarded, seen
+from robbdd_tools.commands.run import Outputs, conclude, report_problems, viewed_policy
 from robbdd_tools.workbench.resuming import resume as resumed
 from robbdd_tools.workbench.resuming import stored_policy, unfinished_run
 from robbdd_tools.workbench.stored import store_at
@@ -36,7 +36,7 @@ class ResumeOptions:
 
 def resume(options: ResumeOptions) -> int:
     """Execute the open scenarios of a run; return the exit code as ``robbdd run``."""
-    return guarded(options.outputs, viewer=options.viewer, work=lambda: _resume(options))
+    return report_problems(options.outputs, viewer=options.viewer, work=lambda: _resume(options))
 
 
 def _resume(options: ResumeOptions) -> int:
@@ -52,4 +52,4 @@ def _policy(options: ResumeOptions, status: RunStatus) -> Policy:
     policy = stored_policy(status)
     policy = replace(policy, stop_on_failure=options.stop_on_failure or policy.stop_on_failure)
     policy = policy if options.timeout is None else replace(policy, timeout=options.timeout)
-    return seen(policy if options.jobs is None else replace(policy, jobs=options.jobs), viewer=options.viewer)
+    return viewed_policy(policy if options.jobs is None else replace(policy, jobs=options.jobs), viewer=options.viewer)

@@ -16,10 +16,10 @@ from robbdd_tools.commands.chosen_scenarios import print_coverage
 from robbdd_tools.commands.execute import follow_run
 from robbdd_tools.commands.models import print_findings
 from robbdd_tools.commands.output import fail, print_line, print_note
-from robbdd_tools.commands.runs import say_unfinished
+from robbdd_tools.commands.runs import print_unfinished
 from robbdd_tools.monitor.verdict import Cause, Outcome
 from robbdd_tools.protocol.messages import VIEWER
-from robbdd_tools.run.pictures import NoPictures, no_display, render_moments, render_videos
+from robbdd_tools.run.pictures import NoPictures, no_display, render_videos, render_violations
 from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.workbench.folder import Keeping, new_folder
 from robbdd_tools.workbench.model import ModelErrors, load_all
@@ -61,10 +61,10 @@ class RunOptions:
 
 def run(options: RunOptions) -> int:
     """Run models; return the exit code."""
-    return guarded(options.outputs, viewer=options.viewer, work=lambda: _run(options))
+    return report_problems(options.outputs, viewer=options.viewer, work=lambda: _run(options))
 
 
-def guarded(outputs: Outputs, *, viewer: bool, work: Callable[[], int]) -> int:
+def report_problems(outputs: Outputs, *, viewer: bool, work: Callable[[], int]) -> int:
     """Do the work of a run; print why it failed, if so, and return the exit code."""
     problem = _unwritable(outputs) or (no_display() if viewer else "")
     if problem:
@@ -83,7 +83,7 @@ def guarded(outputs: Outputs, *, viewer: bool, work: Callable[[], int]) -> int:
         return fail(f"{error.filename or outputs.keeping.folder or outputs.report}: {error.strerror or error}")
 
 
-def seen(policy: Policy, *, viewer: bool) -> Policy:
+def viewed_policy(policy: Policy, *, viewer: bool) -> Policy:
     """Return the policy for a run shown in the viewer, one scenario after another, if ``viewer``."""
     if not viewer:
         return policy
@@ -116,7 +116,7 @@ def _run(options: RunOptions) -> int:
     if options.rerun_failed:
         _ = model.runnable
         last = last_run(store_at(path, options.outputs.keeping.store), path)
-        say_unfinished(last, last.status())
+        print_unfinished(last, last.status())
         failed = failed_in(last)
         own = failed.seed if selection.seed is None else selection.seed
         selection = replace(
@@ -132,7 +132,7 @@ def _run(options: RunOptions) -> int:
     place = new_folder(path, options.outputs.keeping)
     if place.remark:
         print_note(f"robbdd: {place.remark}")
-    policy = seen(options.policy, viewer=options.viewer)
+    policy = viewed_policy(options.policy, viewer=options.viewer)
     with Run.begin(plan, place.place, policy, repeat=repeat, on_close=place.remove) as run:
         ended_by = follow_run(run)
         return conclude(run, options.outputs, ended_by)
@@ -158,7 +158,7 @@ def _report(results: RunResults, outputs: Outputs) -> None:
 def _record(folder: Path, target: Path) -> None:
     """Write the pictures; failures do not affect verdicts."""
     for render, what, of in (
-        (render_moments, "picture", "violated clauses"),
+        (render_violations, "picture", "violated clauses"),
         (render_videos, "moving picture", "scenarios"),
     ):
         try:

@@ -46,7 +46,7 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     allow_store(outputs)
 
 
-def misused(options: argparse.Namespace) -> str:
+def argument_problem(options: argparse.Namespace) -> str:
     """Return a message about conflicting arguments; empty if there is none."""
     if options.resume is None:
         return "" if options.path is not None else "name a model or a folder to run, or --resume a run"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.commands import OK
 from robbdd_tools.commands.output import print_line, print_note
 from robbdd_tools.monitor.verdict import Outcome
-from robbdd_tools.run.missing import missing_parts
+from robbdd_tools.run.missing_files import missing_parts
 from robbdd_tools.run.store import NoSuchRun, StoredRun
 from robbdd_tools.workbench.stored import store_at
 
@@ -28,7 +28,7 @@ def list_runs(path: Path, store: Path | None) -> int:
     return OK
 
 
-def say_unfinished(run: StoredRun, status: RunStatus) -> None:
+def print_unfinished(run: StoredRun, status: RunStatus) -> None:
     """Print the progress of an unfinished run to standard error."""
     if status.words():
         print_note(f"robbdd: run {run.number or run.folder}: {status.words()}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from robbdd_tools.commands import FAILED, OK
-from robbdd_tools.commands.models import sound_model
+from robbdd_tools.commands.models import valid_model
 from robbdd_tools.commands.output import fail, print_document, print_line
 
 
@@ -16,7 +16,7 @@ def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> 
     """
     from robbdd_tools.gherkin.skeleton import add_steps, free_patterns, patterns, skeleton
 
-    file = sound_model(path)
+    file = valid_model(path)
     if file is None:
         return FAILED
     model = file.acceptance

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.commands import OK
 from robbdd_tools.commands.output import fail, print_line
-from robbdd_tools.commands.run import Outputs, guarded
+from robbdd_tools.commands.run import Outputs, report_problems
 from robbdd_tools.run.pictures import NoPictures, render_scene
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.model import load
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def view(path: Path, name: str | None, seed: int | None, output: Path | None) -> int:
     """Write the picture of the first scenario, or of the one called ``name``; return the exit code."""
-    return guarded(Outputs(), viewer=False, work=lambda: _view(path, name, seed, output))
+    return report_problems(Outputs(), viewer=False, work=lambda: _view(path, name, seed, output))
 
 
 def _view(path: Path, name: str | None, seed: int | None, output: Path | None) -> int:

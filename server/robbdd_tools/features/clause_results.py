@@ -22,9 +22,9 @@ SIGNS = {"holds": "✔", "violated": "✗", "unknown": "?", "undefined": "?"}
 STALE, VACUOUS = "(stale)", "(vacuous)"
 _CHANGED = "The text has changed since this was judged: run it again."
 _BADNESS = ("violated", "undefined", "unknown", "holds")
-MOST_LINES = 20
+MAX_LINES = 20
 """Maximum number of variations in a tooltip."""
-MOST_LINES_OF_FAILURES = 5
+MAX_LINES_OF_FAILURES = 5
 """Maximum number of variations in a diagnostic."""
 
 
@@ -52,7 +52,7 @@ class ResultHint:
         """The full text, shortened if there are many variations."""
         remarks = [_CHANGED] * self.stale + [f"It proves little: {self.vacuous}."] * bool(self.vacuous)
         remarks += self.substitutions
-        return "\n".join((*remarks, *_shortened(self.lines, MOST_LINES)))
+        return "\n".join((*remarks, *_shortened(self.lines, MAX_LINES)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,11 +148,11 @@ def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brie
         failing = [judged for judged in hint.failing if not judged[1].fault]
         if failing and not hint.stale:
             lines_of_failures = list(map(_line, failing))
-            lines = lines_of_failures[:1] if brief else _shortened(lines_of_failures, MOST_LINES_OF_FAILURES)
+            lines = lines_of_failures[:1] if brief else _shortened(lines_of_failures, MAX_LINES_OF_FAILURES)
             severity = Severity.ERROR if hint.outcome == "violated" else Severity.WARNING
             related = tuple(
                 Related(uri, rows[scenario.variant, scenario.row], _line((scenario, judgement)))
-                for scenario, judgement in failing[:MOST_LINES_OF_FAILURES]
+                for scenario, judgement in failing[:MAX_LINES_OF_FAILURES]
                 if (scenario.variant, scenario.row) in rows
             )
             message = "\n".join((hint.label, *lines))

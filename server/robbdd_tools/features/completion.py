@@ -14,7 +14,7 @@ from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.catalog.settings import SETTINGS
 from robbdd_tools.checks.lines import import_edit
 from robbdd_tools.features.cursor import Cursor, cursor_at
-from robbdd_tools.features.quoted import quoted
+from robbdd_tools.features.quoted_completion import quoted
 from robbdd_tools.features.snippets import declaration_snippets
 from robbdd_tools.features.unimported import Elsewhere, beside, loaded
 from robbdd_tools.features.value_types import fits, kinds_in_text, may_be, scene_wanted, slot_wanted, values_wanted
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
-MOST_BROKEN_LINES = 50
+MAX_BROKEN_LINES = 50
 """Maximum number of unparsable lines skipped before a cursor."""
-MOST_TO_IMPORT = 300
+MAX_TO_IMPORT = 300
 """Maximum number of proposed names that need an import; loaded files and files in the same folder come first."""
 _CONFIGURED = re.compile(r"\bhas\s+config\s+\Z")
 _EMITTED = re.compile(r"\bemits\s+\Z")
@@ -100,7 +100,7 @@ def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | N
 
 def _expected(language: str, before: str) -> tuple[str, Expectation | None]:
     """Return the expectation after a text, and the parsed text: unparsable lines are blanked."""
-    for _ in range(MOST_BROKEN_LINES):
+    for _ in range(MAX_BROKEN_LINES):
         parsed = parse_chunk(language, before)
         if isinstance(parsed, Parsed):
             # After a whole declaration another one starts, whose first words may already be typed.
@@ -185,7 +185,7 @@ class _Names:
                 if fits(self.snapshot, definition, wanted, members):
                     yield self._proposal(name, definition.kind, (definition.uri, definition.symbol.path), bracket, rank)
             if role != "Namespace" and members is None:
-                yield from islice(self._to_import(role, known, bracket, wanted), MOST_TO_IMPORT)
+                yield from islice(self._to_import(role, known, bracket, wanted), MAX_TO_IMPORT)
 
     def _in_scope(self, role: str) -> Iterator[tuple[str, Definition, int]]:
         scope = self.snapshot.scope(self.file.document.uri)

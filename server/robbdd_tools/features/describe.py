@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 _ENDS = {"sequence": "fails", "selector": "succeeds"}
 """Kind of a behaviour tree's composite → the result of a child that ends it."""
-MOST_LISTED = 8
+MAX_LISTED = 8
 """Maximum number of listed members, results or places."""
 _QUOTED = {
     SymbolKind.COMPOSITION,
@@ -159,10 +159,10 @@ def _contents(site: Site, definition: Definition) -> Iterator[str]:
             yield from _tree_node(site, definition)
         case SymbolKind.TEMPLATE:
             variants = list(variants_of(site.snapshot, definition))
-            for scenario in variants[:MOST_LISTED]:
+            for scenario in variants[:MAX_LISTED]:
                 yield f"`{scenario.variant.name.text}`: {_count(scenario)}"
-            if len(variants) > MOST_LISTED:
-                yield f"… and {len(variants) - MOST_LISTED:,} more"
+            if len(variants) > MAX_LISTED:
+                yield f"… and {len(variants) - MAX_LISTED:,} more"
         case SymbolKind.OBJECT_SET | SymbolKind.WORKSPACE_SET | SymbolKind.AGENT_SET | SymbolKind.CONSTANT_SET:
             yield from _members(elements_of(site))
         case SymbolKind.SCENE:
@@ -240,7 +240,7 @@ def _results(snapshot: Snapshot, definition: Definition, findings: Findings) -> 
 def result_words(hint: ResultHint) -> str:
     """Return the last results of a clause as a list in Markdown."""
     age = "Last results, before the text was edited" if hint.stale else "Last results"
-    lines = [f"- {literal(line)}" for line in hint.lines[:MOST_LISTED]]
+    lines = [f"- {literal(line)}" for line in hint.lines[:MAX_LISTED]]
     vacuous = [f"- it proves little: {literal(hint.vacuous)}"] if hint.vacuous else []
     substituted = [f"- {literal(words)}" for words in hint.substitutions]
     return f"{age}:\n\n" + "\n".join((*lines, *vacuous, *substituted))
@@ -254,12 +254,12 @@ def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Ite
     yield f"- {code(variant.definition.symbol.name)}: {rate.label}"
     yield from (f"  - {literal(words)}" for words in substitutions(findings.variants[variant.iri]))
     failed = [scenario for scenario in findings.variants[variant.iri] if scenario.outcome != "holds"]
-    for scenario in failed[:MOST_LISTED]:
+    for scenario in failed[:MAX_LISTED]:
         judged = sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)
         words = ", ".join(f"{one.name} {one.said}" for one in judged if one.outcome != "holds")
         yield f"  - {literal(f'{scenario.values}: {words}')}"
-    if len(failed) > MOST_LISTED:
-        yield f"  - … and {len(failed) - MOST_LISTED} more"
+    if len(failed) > MAX_LISTED:
+        yield f"  - … and {len(failed) - MAX_LISTED} more"
 
 
 def _used(snapshot: Snapshot, definition: Definition) -> Iterator[str]:
@@ -276,8 +276,8 @@ def _used(snapshot: Snapshot, definition: Definition) -> Iterator[str]:
 
 
 def _listed(names: list[str]) -> str:
-    more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
-    return f"{', '.join(names[:MOST_LISTED])}{more}"
+    more = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
+    return f"{', '.join(names[:MAX_LISTED])}{more}"
 
 
 def _name(uri: str) -> str:

@@ -48,7 +48,7 @@ def executions_of(snapshot: Snapshot, uri: str) -> Iterator[PlacedExecution]:
             yield PlacedExecution(found, found.iri, site, node, variant)
 
 
-def what_matters(execution: PlacedExecution) -> list[Site]:
+def relevant_declarations(execution: PlacedExecution) -> list[Site]:
     """Return its declaration and those that it depends on in files of these kinds, directly or indirectly, in order."""
     site = execution.site
     found = {(site.uri, site.placed.offset): site}

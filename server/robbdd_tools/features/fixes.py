@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix
 from robbdd_tools.base.document import Span
-from robbdd_tools.checks.lines import below, import_edit, line_end
+from robbdd_tools.checks.lines import import_edit, line_below, line_end
 from robbdd_tools.features.unimported import Importable, loaded
 from robbdd_tools.names.elements import Site
 from robbdd_tools.names.resolve import candidates
@@ -82,7 +82,7 @@ def _declarations(
     namespace = placed.declaration.symbols[0].namespace if placed.declaration.symbols else None
     argument = "" if namespace == FILE_NAMESPACE else f"(ns={namespace}) "
     if role in ("Event", "Task") and "." not in path and namespace is not None:
-        edit = below(file, (tree.Event, tree.Task, tree.Namespace, tree.Import), f"{role} {argument}{path}")
+        edit = line_below(file, (tree.Event, tree.Task, tree.Namespace, tree.Import), f"{role} {argument}{path}")
         yield Fix(f"Declare the {role.lower()} '{path}'", (edit,))
     if role in ("Variable", "AnySet"):
         owner, _, name = path.rpartition(".")

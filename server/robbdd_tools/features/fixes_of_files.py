@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix, NewFile
 from robbdd_tools.base.files import path_to_uri, uri_to_path
-from robbdd_tools.checks.finding import MOST_OFFERED
+from robbdd_tools.checks.finding import MAX_OFFERED
 from robbdd_tools.checks.lines import import_removal
-from robbdd_tools.features.quoted import MODEL_ENDINGS
+from robbdd_tools.features.quoted_completion import MODEL_ENDINGS
 from robbdd_tools.features.workspace_files import files_near, model_files_near
 from robbdd_tools.names.imports import IMPORTABLE, import_path, reached
 from robbdd_tools.names.index import FileIndex, language_of
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis, ImportLink
     from robbdd_tools.names.project import Snapshot
 
-LEAST_ALIKE = 0.6
+MIN_ALIKE = 0.6
 """Minimum similarity of a suggested file name."""
 _EMPTY_MODELS: Mapping[str, str] = {
     "mjcf": '<mujoco model="{name}">\n  <worldbody/>\n</mujoco>\n',
@@ -120,7 +120,7 @@ def _alike(written: str, uri: str, files: Iterable[str]) -> Iterator[str]:
     """Yield the paths, relative to a file, of files with names similar to the written one."""
     paths = sorted(path for found in files if (path := import_path(uri, found)) is not None)
     stems = list(dict.fromkeys(map(_stem, paths)))
-    for stem in get_close_matches(_stem(written), stems, n=MOST_OFFERED, cutoff=LEAST_ALIKE):
+    for stem in get_close_matches(_stem(written), stems, n=MAX_OFFERED, cutoff=MIN_ALIKE):
         yield from (path for path in paths if _stem(path) == stem and path != written)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Edit, Fix
-from robbdd_tools.checks.finding import MOST_OFFERED, change, removal
+from robbdd_tools.checks.finding import MAX_OFFERED, change, removal
 from robbdd_tools.checks.table_edits import column_removed
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.features.fixes import imports_of, reference_at
@@ -76,7 +76,7 @@ def _another_end(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic)
             names = _visible(snapshot, file, "Event")
             behind = (names[names.index(start) + 1 :] + names[: names.index(start)]) if start in names else names
             fitting = [name for name in behind if name != start and (name, start) not in ordered]
-            for name in fitting[:MOST_OFFERED]:
+            for name in fitting[:MAX_OFFERED]:
                 yield change(site, f"End with '{name}'", during.end, name)
 
 
@@ -100,7 +100,7 @@ def _another_set(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic)
             scope = snapshot.scope(site.uri)
             visible = scope.visible(ROLE_KINDS["AnySet"], written[1].scopes if written is not None else ())
             fitting = [name for name, found in visible.items() if _has_only(snapshot, scope.define(*found), kinds)]
-            for name in [name for name in fitting if name != use.bound.in_set.path][:MOST_OFFERED]:
+            for name in [name for name in fitting if name != use.bound.in_set.path][:MAX_OFFERED]:
                 yield change(site, f"Change the set to '{name}'", use.bound.in_set, name)
 
 

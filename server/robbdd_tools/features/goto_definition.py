@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.cursor import cursor_at
-from robbdd_tools.names.parts import find_path, parts_of
+from robbdd_tools.names.name_parts import find_path, parts_of
 
 if TYPE_CHECKING:
     from robbdd_tools.names.analysis import FileAnalysis

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.ask.structure import Node
     from robbdd_tools.names.project import Snapshot
 
-MOST_DRAWN = 600
+MAX_DRAWN = 600
 """Maximum number of nodes in one picture; more are unreadable and slow."""
 
 
@@ -33,7 +33,7 @@ class GraphPicture:
 
 
 def graph_picture(
-    snapshot: Snapshot, uri: str, offset: int | None = None, before: str = "", most: int = MOST_DRAWN
+    snapshot: Snapshot, uri: str, offset: int | None = None, before: str = "", most: int = MAX_DRAWN
 ) -> GraphPicture:
     """Draw the graph of a file without errors.
 

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.files import FileState, file_state, read_text
-from robbdd_tools.features.workspace_files import MOST_FILES
+from robbdd_tools.features.workspace_files import MAX_FILES
 from robbdd_tools.names.imports import import_uri, reached
 
 # May match too much (in comments), never too little: candidates are parsed later.
@@ -55,7 +55,7 @@ def imports_on_disk(uri: str) -> frozenset[str]:
     return frozenset() if state is None else _imports_of(state)
 
 
-@lru_cache(maxsize=MOST_FILES)
+@lru_cache(maxsize=MAX_FILES)
 def _imports_of(state: FileState) -> frozenset[str]:
     text = read_text(state.path)
     found = _IMPORT.finditer(text) if isinstance(text, str) else ()

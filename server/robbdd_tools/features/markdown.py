@@ -10,7 +10,7 @@ _WEB_LINK = re.compile(r"<https?://[^\s<>`]*>")
 """A link whose text is its address; clients do not follow it by themselves."""
 _MARKUP = re.compile(r"[\\`*\[\]<>&~|]|!(?=\[)|^\s*[#=+-](?=\s|[=-])", re.MULTILINE)
 """Start of a link, a picture, HTML, an entity, emphasis, a table, a fence, a heading or a list."""
-MOST_LINES = 10
+MAX_LINES = 10
 """Maximum number of lines shown."""
 
 
@@ -50,7 +50,7 @@ def code_block(text: str, language: str) -> str:
     """Return the first lines of a text as a code block of a language (``bdd``, ``scenex`` …), dedented."""
     first, *rest = text.rstrip().splitlines()
     lines = [first, *textwrap.dedent("\n".join(rest)).splitlines()] if rest else [first]
-    shown = lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], "…"]
+    shown = lines if len(lines) <= MAX_LINES else [*lines[: MAX_LINES - 1], "…"]
     name = "robbdd" if language == "bdd" else f"robbdd-{language}"
     fence = "`" * _longer_than_runs(text, 3)
     return "\n".join((f"{fence}{name}", *shown, fence))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _VARIABLES = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
 MODULE = "policies"
 """Module of the evaluator, next to the ``.bddx``; its function is named after the clause."""
-MOST_WORDS = 4
+MAX_WORDS = 4
 """Maximum number of words of a text that form the name of its clause."""
 
 
@@ -92,7 +92,7 @@ def _observed(site: Site, found: Unjudged, owner: str) -> list[str]:
 
 
 def _free_name(site: Site, owner: str, text: str) -> str:
-    words = re.findall(r"[a-z0-9]+", text.lower())[:MOST_WORDS]
+    words = re.findall(r"[a-z0-9]+", text.lower())[:MAX_WORDS]
     base = "-".join(words) or "clause"
     base = base if base[0].isalpha() else f"clause-{base}"
     name, number = base, 2

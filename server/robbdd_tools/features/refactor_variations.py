@@ -20,7 +20,7 @@ from robbdd_tools.syntax.declaration import SymbolKind
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
-MOST_ROWS = 500
+MAX_ROWS = 500
 """Maximum number of rows for which a table is offered."""
 
 
@@ -46,8 +46,8 @@ def _as_table(scenario: Scenario) -> Iterator[Fix]:
         return
     columns = [_choices(scenario.site, line.choices) for line in variation.assignments]
     known = [column for column in columns if column is not None]
-    rows = list(islice(product(*known), MOST_ROWS + 1))
-    if len(known) == len(columns) and 0 < len(rows) <= MOST_ROWS:
+    rows = list(islice(product(*known), MAX_ROWS + 1))
+    if len(known) == len(columns) and 0 < len(rows) <= MAX_ROWS:
         header = [line.variable.path for line in variation.assignments]
         yield _replaced(scenario, "Write the product as a table", _table(scenario, header, rows))
 
@@ -84,8 +84,8 @@ def _filled(scenario: Scenario) -> Iterator[Fix]:
         written = [_text(site, row.cells[position]) for row in variation.rows if position < len(row.cells)]
         columns.append(list(dict.fromkeys(scenario.fitting_for(column.variable) or written)))
     rows = [tuple(_text(site, cell) for cell in row.cells) for row in variation.rows]
-    new = [row for row in islice(product(*columns), MOST_ROWS + 1) if row not in rows]
-    if new and len(rows) + len(new) <= MOST_ROWS:
+    new = [row for row in islice(product(*columns), MAX_ROWS + 1) if row not in rows]
+    if new and len(rows) + len(new) <= MAX_ROWS:
         header = [variable.path for variable in variation.header]
         title = f"Fill the table from the scene ({len(new)} more row{'' if len(new) == 1 else 's'})"
         yield _replaced(scenario, title, _table(scenario, header, [*rows, *new]))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.goto_definition import symbol_at
-from robbdd_tools.names.parts import parts_of
+from robbdd_tools.names.name_parts import parts_of
 from robbdd_tools.names.types import columns_of
 from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree

@@ -21,7 +21,7 @@ class ImportLines:
     imports: tuple[ImportPath, ...]
 
 
-def concerned(files: Iterable[str], moves: Mapping[str, str]) -> Iterator[ImportLines]:
+def affected_files(files: Iterable[str], moves: Mapping[str, str]) -> Iterator[ImportLines]:
     """Yield the model files, as on disk, that move or directly import a moved file."""
     for uri in files:
         imported = imports_on_disk(uri)

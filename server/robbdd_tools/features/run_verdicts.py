@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.catalog.executable import Substitution
-from robbdd_tools.features.executions import executions_of, what_matters
+from robbdd_tools.features.executions import executions_of, relevant_declarations
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.names.clause_places import clauses_in
 from robbdd_tools.names.variant_places import variants_of
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.variant_places import PlacedVariant
 
 _TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|//[^\n]*|\s+|.", re.DOTALL)
-MOST_DIGESTS = 20_000
+MAX_DIGESTS = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,7 +234,7 @@ def variant_digest(snapshot: Snapshot, variant: PlacedVariant) -> str:
 
 def execution_digest(snapshot: Snapshot, execution: PlacedExecution) -> str:
     """Return the digest of an execution, of its dependencies, and of its variant."""
-    own = (digest(snapshot, site.uri, site.placed.span) for site in what_matters(execution))
+    own = (digest(snapshot, site.uri, site.placed.span) for site in relevant_declarations(execution))
     return " ".join((*own, variant_digest(snapshot, execution.variant)))
 
 
@@ -246,7 +246,7 @@ def _digest(text: str) -> str:
     key = hashlib.sha256(_bytes(text)).digest()
     found = _digests.get(key)
     if found is None:
-        if len(_digests) >= MOST_DIGESTS:
+        if len(_digests) >= MAX_DIGESTS:
             _digests.clear()
         tokens = (match[0] for match in _TOKEN.finditer(text))
         words = ("" if token.startswith("//") or token.isspace() else token for token in tokens)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration, Reference
 
 COMMENT, STRING, NUMBER, KEYWORD = "comment", "string", "number", "keyword"
-KEPT_COMMENTS = 200
+CACHED_COMMENTS = 200
 NAME = "name"
 """A used name; only its definition determines its concept, so no final token has this one."""
 PREDICATE, ACTION, TIME, ARGUMENT, CODE = "predicate", "action", "time constraint", "argument", "python"
@@ -277,7 +277,7 @@ def _keywords(language: str) -> frozenset[str]:
     return frozenset(re.findall(r"'([^\W\d][^']*)'", grammar_text(language)))
 
 
-@lru_cache(maxsize=KEPT_COMMENTS)
+@lru_cache(maxsize=CACHED_COMMENTS)
 def _between(text: str) -> Coloured:
     """Return the tokens of the comments between two declarations."""
     found = re.finditer(r"//[^\n]*", text)

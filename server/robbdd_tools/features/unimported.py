@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Kinds = Mapping[str, "tuple[SymbolKind, ...]"]
 """Qualified name → kinds of its declarations."""
-MOST_NEIGHBOURS = 200
+MAX_NEIGHBOURS = 200
 """Maximum number of model files in one folder that are searched for a name."""
 
 
@@ -38,7 +38,7 @@ class Elsewhere:
     def __init__(self) -> None:
         self._known: dict[str, tuple[FileState, Kinds]] = {}
 
-    def look(self, uris: Iterable[str]) -> None:
+    def update(self, uris: Iterable[str]) -> None:
         """Use exactly these files; only changed ones are read."""
         found = dict.fromkeys(uris)
         for uri in found:
@@ -88,7 +88,7 @@ def _beside(uri: str) -> list[str]:
         entries = sorted(entry for entry in path.parent.iterdir() if language_of(entry.name))
     except OSError:
         return []
-    return [path_to_uri(entry) for entry in entries[:MOST_NEIGHBOURS]]
+    return [path_to_uri(entry) for entry in entries[:MAX_NEIGHBOURS]]
 
 
 def file_on_disk(uri: str) -> FileIndex | None:
@@ -97,7 +97,7 @@ def file_on_disk(uri: str) -> FileIndex | None:
     return None if state is None else _index_of(state)
 
 
-@lru_cache(maxsize=MOST_NEIGHBOURS)
+@lru_cache(maxsize=MAX_NEIGHBOURS)
 def _index_of(state: FileState) -> FileIndex | None:
     text = read_text(state.path)
     return index_file(Document(state.uri, 0, text)) if isinstance(text, str) else None

@@ -11,9 +11,9 @@ from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.base.limits import SCANNED_DEPTH, SCANNED_ENTRIES
 from robbdd_tools.names.index import language_of
 
-MOST_FILES = 5_000
+MAX_FILES = 5_000
 """Maximum number of model files per workspace."""
-MOST_FOLDERS = 200
+MAX_FOLDERS = 200
 """Maximum number of folders searched around a file outside of the workspace's folders."""
 _PASSED_OVER = frozenset({"node_modules", "__pycache__", "build", "dist"})
 
@@ -25,20 +25,20 @@ def model_files(folders: Iterable[str]) -> list[str]:
         path = uri_to_path(folder)
         for uri in _below(path, language_of) if path is not None else ():
             found.setdefault(uri)
-            if len(found) == MOST_FILES:
+            if len(found) == MAX_FILES:
                 return sorted(found)
     return sorted(found)
 
 
 def model_files_near(uri: str) -> list[str]:
-    """Return the model files in a file's folder and below, in up to ``MOST_FOLDERS`` folders, sorted."""
+    """Return the model files in a file's folder and below, in up to ``MAX_FOLDERS`` folders, sorted."""
     return files_near(uri, language_of)
 
 
 def files_near(uri: str, wanted: Callable[[str], object]) -> list[str]:
     """Return the files with wanted names in a file's folder and below, see ``model_files_near``."""
     path = uri_to_path(uri)
-    return sorted(_below(path.parent, wanted, MOST_FOLDERS)) if path is not None else []
+    return sorted(_below(path.parent, wanted, MAX_FOLDERS)) if path is not None else []
 
 
 def _below(folder: Path, wanted: Callable[[str], object], most_folders: int | None = None) -> Iterator[str]:

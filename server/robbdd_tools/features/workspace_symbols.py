@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.checkpoint import checkpoint
 from robbdd_tools.base.files import FileState, file_state
 from robbdd_tools.features.unimported import file_on_disk
-from robbdd_tools.features.workspace_files import MOST_FILES, model_files
+from robbdd_tools.features.workspace_files import MAX_FILES, model_files
 from robbdd_tools.names.index import FileIndex
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def _paths(uri: str) -> tuple[str, ...]:
     return () if state is None else _paths_of(state)
 
 
-@lru_cache(maxsize=MOST_FILES)
+@lru_cache(maxsize=MAX_FILES)
 def _paths_of(state: FileState) -> tuple[str, ...]:
     index = file_on_disk(state.uri)
     return () if index is None else tuple(index.names.entries)

@@ -16,7 +16,7 @@ from robbdd_tools.graph.acceptance_model import Cell, Product, Table
 if TYPE_CHECKING:
     from robbdd_tools.gherkin.where import Condition
 
-MOST_COMBINATIONS = 100_000
+MAX_COMBINATIONS = 100_000
 """Maximum number of combinations to cover in a product; such an array takes some minutes."""
 
 Row = tuple[int, ...]
@@ -105,10 +105,10 @@ def _space(variation: Product | Table) -> _Space:
 def _refuse_too_many(variation: Product, strength: int) -> None:
     sizes = [size_of(choices) for choices in variation.choices]
     number = _combinations_of(sizes, strength)
-    if max(number, *sizes, 0) > MOST_COMBINATIONS:
+    if max(number, *sizes, 0) > MAX_COMBINATIONS:
         largest = sizes.index(max(sizes))
         raise TooManyCombinations(
-            f"covering the combinations of {strength} variables is possible for up to {MOST_COMBINATIONS} of them and "
+            f"covering the combinations of {strength} variables is possible for up to {MAX_COMBINATIONS} of them and "
             f"not for {number}: variable '{variable_name(variation.variables[largest])}' has {sizes[largest]} values"
         )
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.write.source_map import SourceMap
     from robbdd_tools.names.project import Snapshot
 
-MOST_SHOWN = 50
+MAX_SHOWN = 50
 """Maximum number of scenarios in a preview by default."""
 
 
@@ -42,7 +42,7 @@ class Preview:
     total: int
 
 
-def preview(snapshot: Snapshot, uri: str, variant: str | None = None, most: int = MOST_SHOWN) -> Preview:
+def preview(snapshot: Snapshot, uri: str, variant: str | None = None, most: int = MAX_SHOWN) -> Preview:
     """Return the features of a file without errors, or of one ``variant``, with at most ``most`` scenarios."""
     from robbdd_tools.graph.read.acceptance import read_model
     from robbdd_tools.graph.write.build import build_graph

@@ -93,7 +93,7 @@ def sentence(statement: stated.Statement, *, within: bool = False) -> str:
         case stated.Fluent(predicate, arguments, time):
             return f"{filled(predicate.sentence, arguments)} {_time_words(time)}"
         case stated.Text(words, time):
-            shown = text.guarded(words) if within else words
+            shown = text.in_group(words) if within else words
             return shown if time is None else f"{shown} {_time_words(time)}"
         case stated.Junction("not", operands):
             return f"not ( {sentence(operands[0], within=True)} )"

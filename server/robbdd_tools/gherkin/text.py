@@ -43,7 +43,7 @@ def set_inside_quotes(elements: Iterable[str]) -> str:
     return _quotable(str(list(elements)))
 
 
-def guarded(text: str) -> str:
+def in_group(text: str) -> str:
     """Escape the result of ``free`` for use within ``( … )``, so that it does not close, open or split the group."""
     return _GROUPING.sub(lambda match: match[0] if match[1] else f"\\{match[0]}", text)
 

@@ -31,7 +31,7 @@ _TOKEN = re.compile(
     r"""|(?P<word>[^\s()=!<>"']+)|(?P<end>$))"""
 )
 _BARE_VALUE = re.compile(r"\s*([^\s()\"'][^\s()]*)")
-MOST_NESTED = 100
+MAX_NESTED = 100
 """Maximum nesting of parentheses and negations in one expression."""
 _NUMBERS: Mapping[str, Callable[[float, float], bool]] = {
     "<": lambda a, b: a < b,
@@ -195,7 +195,7 @@ class _Parser:
         token = self._next()
         if token.text in ("not", "(") and token.kind != "quoted":
             self._depth += 1
-            if self._depth > MOST_NESTED:
+            if self._depth > MAX_NESTED:
                 raise WhereError(token.column, "the expression is nested too deeply")
         if token.kind == "word" and token.text == "not":
             return Combination("not", (self._negation(),))

@@ -68,7 +68,7 @@ def is_closed(clause: Clause, trace: Trace, events: AbstractSet[str]) -> bool:
     return all(_closed(fluent, trace, events) for fluent in fluents_of(clause))
 
 
-def ways(fluent: Fluent) -> Iterator[Iterator[Arguments]]:
+def alternatives(fluent: Fluent) -> Iterator[Iterator[Arguments]]:
     """Yield the alternatives under which a fluent holds, each with the arguments that must all satisfy it."""
     slots = fluent.predicate.slots
     some = [slot for slot in slots if isinstance(fluent.arguments[slot.name], AnyOf)]
@@ -87,7 +87,7 @@ def _fluent(fluent: Fluent, trace: Trace, regions: Regions, events: AbstractSet[
     if silent and fluent.predicate.evaluate is not None:
         return unknown(f"nothing in the scenario emits event {silent[0]}", Cause.NO_EMITTER)
     return disjunction(
-        conjunction(_judged(fluent, arguments, trace, regions) for arguments in group) for group in ways(fluent)
+        conjunction(_judged(fluent, arguments, trace, regions) for arguments in group) for group in alternatives(fluent)
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.catalog.coordination import END, START, emitter
-from robbdd_tools.judging.decisions import ways
+from robbdd_tools.judging.decisions import alternatives
 from robbdd_tools.monitor.curve import Curve, curve
 from robbdd_tools.monitor.judge import WindowEvidence
 from robbdd_tools.monitor.time import Window
@@ -74,7 +74,7 @@ def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tu
 
 def _curve(fluent: Fluent, trace: Trace, regions: Regions, negated: bool) -> Curve:
     predicate = fluent.predicate
-    every = [list(group) for group in ways(fluent)]
+    every = [list(group) for group in alternatives(fluent)]
 
     def margins(rows: Window) -> FloatArray | None:
         if predicate.evaluate is None:

@@ -13,7 +13,7 @@ from robbdd_tools.judging.observation_streams import Stream, Unobserved
 from robbdd_tools.monitor.time import After, Before, TimeConstraint
 from robbdd_tools.protocol.clauses import Fluent, Junction
 from robbdd_tools.protocol.specs import plain_name
-from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
+from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Arguments, Evidence, FloatArray
@@ -90,7 +90,7 @@ class Judge:
         arguments = {**{plain_name(variable): value for variable, value in self.spec.values.items()}, **self.own}
         try:
             evaluate = load_attribute(name, self.spec.model)
-            return _as_margins(name, evaluate, called(name, evaluate, evidence, arguments), len(evidence.times))
+            return _as_margins(name, evaluate, call_user_code(name, evaluate, evidence, arguments), len(evidence.times))
         except UserCodeError as error:
             raise UserCodeError(str(error), replace(error.fault, origin=self.policy.iri)) from error
 

@@ -8,7 +8,7 @@ from itertools import product
 from robbdd_tools.protocol.clauses import AnyOf, Clause, Filler, Fluent, fluents_of
 
 
-def wanting(clause: Clause, quantity: str) -> Iterator[tuple[Fluent, Mapping[str, str]]]:
+def fluents_with_quantity(clause: Clause, quantity: str) -> Iterator[tuple[Fluent, Mapping[str, str]]]:
     """Yield the fluents that need a quantity, once for each assignment of single elements to their slots."""
     for fluent in fluents_of(clause):
         if quantity in fluent.predicate.quantities:

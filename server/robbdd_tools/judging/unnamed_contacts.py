@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.predicates.does_not_collide import DOES_NOT_COLLIDE
-from robbdd_tools.judging.decisions import ways
+from robbdd_tools.judging.decisions import alternatives
 from robbdd_tools.protocol.clauses import Clause, fluents_of
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def unnamed_contacts(clauses: Iterable[Clause], trace: Trace, regions: Regions) 
     for fluent in (fluent for clause in clauses for fluent in fluents_of(clause)):
         if fluent.predicate.name != DOES_NOT_COLLIDE.name:
             continue
-        for arguments in (arguments for group in ways(fluent) for arguments in group):
+        for arguments in (arguments for group in alternatives(fluent) for arguments in group):
             agent, target = str(arguments["agent"]), str(arguments["target"])
             carriers = [carrier for carrier, _ in regions.get(target, ())]
             named |= {(agent, carrier) for carrier in carriers or [target]}

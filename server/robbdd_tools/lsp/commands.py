@@ -109,13 +109,13 @@ async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
     """Write the features of a model, with their line maps, to ``features/`` in its folder; return their URIs."""
     path = uri_to_path(uri)
     if path is None:
-        ls.tell("save the model first: its features are written to its folder")
+        ls.warn("save the model first: its features are written to its folder")
         return []
     try:
         plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
         written = await asyncio.to_thread(write_features, plan, path.parent / "features")
     except (RobbddError, OSError) as error:
-        ls.tell(reason(error))
+        ls.warn(reason(error))
         return []
     return [path_to_uri(file) for file in written]
 
@@ -124,16 +124,16 @@ async def _write_steps(ls: RobbddServer, uri: str) -> list[str]:
     """Add functions for clauses that the catalog cannot judge to a file in the model's folder; return its URI."""
     path = uri_to_path(uri)
     if path is None:
-        ls.tell("save the model first: its steps are written to its folder")
+        ls.warn("save the model first: its steps are written to its folder")
         return []
     target = steps_file(path)
     try:
         plan = await ls.in_background(lambda snapshot: feature_plan(snapshot, uri))
         await asyncio.to_thread(add_steps, free_patterns(plan.model), target, path.name)
     except SyntaxError as error:
-        ls.tell(f"{target}:{error.lineno or 1}: {error.msg}: fix the file first")
+        ls.warn(f"{target}:{error.lineno or 1}: {error.msg}: fix the file first")
         return []
     except (RobbddError, OSError, UnicodeDecodeError) as error:
-        ls.tell(f"{target}: {reason(error)}")
+        ls.warn(f"{target}: {reason(error)}")
         return []
     return [path_to_uri(target)]

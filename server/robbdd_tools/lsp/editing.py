@@ -14,7 +14,7 @@ from robbdd_tools.features.refactor_clauses import extracted_clauses
 from robbdd_tools.features.refactor_declarations import modernised, split_scene
 from robbdd_tools.features.refactor_variations import variation_refactorings
 from robbdd_tools.features.rename import linked_places
-from robbdd_tools.features.rename_files import ImportLines, concerned, import_edits
+from robbdd_tools.features.rename_files import ImportLines, affected_files, import_edits
 from robbdd_tools.features.workspace_files import model_files
 from robbdd_tools.lsp.convert import document_of
 from robbdd_tools.lsp.server import RobbddServer
@@ -112,7 +112,7 @@ def _register_moves(server: RobbddServer) -> None:
         moves = {file.old_uri: file.new_uri for file in params.files}
         roots = [folder.uri for folder in ls.workspace.folders.values()]
 
-        on_disk = await asyncio.to_thread(lambda: list(concerned(model_files(roots), moves)))
+        on_disk = await asyncio.to_thread(lambda: list(affected_files(model_files(roots), moves)))
 
         def find(snapshot: Snapshot) -> types.WorkspaceEdit | None:
             files: dict[str, FileIndex | ImportLines] = {file.document.uri: file for file in on_disk}

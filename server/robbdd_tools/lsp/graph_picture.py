@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.features.graph_picture import MOST_DRAWN, GraphPicture, graph_picture
+from robbdd_tools.features.graph_picture import MAX_DRAWN, GraphPicture, graph_picture
 from robbdd_tools.lsp.convert import Converter, document_of
-from robbdd_tools.lsp.last_good import LastGood
+from robbdd_tools.lsp.last_valid import LastValid
 from robbdd_tools.lsp.parameters import Parameters
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ NOTHING: dict[str, Any] = {"svg": "", "nodes": [], "places": [], "shown": 0, "to
 
 def register_graph(server: RobbddServer) -> None:
     """Add the request to a server."""
-    kept = LastGood()
+    kept = LastValid()
     server.when_closed.append(kept.forget)
 
     @server.feature(GRAPH)
@@ -45,7 +45,7 @@ def _drawn(snapshot: Snapshot, convert: Converter, asked: Parameters) -> dict[st
     position = asked.optional_position("position")
     offset = None if position is None else convert.offset(document_of(snapshot, uri), position)
     before = asked.optional_text("iri") or ""
-    most = asked.optional_number("most") or MOST_DRAWN
+    most = asked.optional_number("most") or MAX_DRAWN
     return _answer(snapshot, convert, graph_picture(snapshot, uri, offset, before, most))
 
 

@@ -9,26 +9,26 @@ from lsprotocol import types
 
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.fixes_on_demand import fixes_on_demand
+from robbdd_tools.lsp.assistance import register_assistance
 from robbdd_tools.lsp.client_settings import follow_settings, register_settings
 from robbdd_tools.lsp.commands import register_commands, step_fixes
 from robbdd_tools.lsp.convert import Converter, document_of
+from robbdd_tools.lsp.definitions import register_definitions
 from robbdd_tools.lsp.editing import edit_of, refactorings, register_editing
 from robbdd_tools.lsp.graph_picture import register_graph
 from robbdd_tools.lsp.lenses import register_lenses, source_actions
 from robbdd_tools.lsp.navigation import register_navigation
 from robbdd_tools.lsp.preview import register_preview
 from robbdd_tools.lsp.projects import register_projects
-from robbdd_tools.lsp.pull import can_pull, register_pull
-from robbdd_tools.lsp.reading import register_reading
+from robbdd_tools.lsp.pull_diagnostics import can_pull, register_pull
 from robbdd_tools.lsp.server import RobbddServer
 from robbdd_tools.lsp.stored_runs import register_stored_runs
 from robbdd_tools.lsp.test_results import register_test_results
-from robbdd_tools.lsp.tests import register_tests
+from robbdd_tools.lsp.test_tree import register_tests
 from robbdd_tools.lsp.tokens import register_tokens
-from robbdd_tools.lsp.trust import distrust
+from robbdd_tools.lsp.trust import forbid_user_code
 from robbdd_tools.lsp.user_errors import register_user_errors
 from robbdd_tools.lsp.watching import register_watching, watch_files
-from robbdd_tools.lsp.ways import register_ways
 from robbdd_tools.names.project import Snapshot
 
 
@@ -36,7 +36,7 @@ def create_server() -> RobbddServer:
     """Return a server with all its methods registered."""
     server = RobbddServer()
     _register_documents(server)
-    register_reading(server)
+    register_assistance(server)
     register_editing(server)
     _register_actions(server)
     register_commands(server)
@@ -46,7 +46,7 @@ def create_server() -> RobbddServer:
     register_user_errors(server)
     register_navigation(server)
     register_tokens(server)
-    register_ways(server)
+    register_definitions(server)
     register_preview(server)
     register_graph(server)
     register_stored_runs(server)
@@ -65,7 +65,7 @@ def _register_documents(server: RobbddServer) -> None:
         ls.shows_replays = able.get("replay") is True
         ls.trusted = able.get("trusted") is not False
         if not ls.trusted:
-            distrust()
+            forbid_user_code()
         # All methods registered so far are announced to the client.
         if can_pull(params.capabilities):
             register_pull(ls)
@@ -78,7 +78,7 @@ def _register_documents(server: RobbddServer) -> None:
         ls.requests.repeated = frozenset(stale.retry_on_content_modified if stale is not None else ())
         ls.spawn(watch_files(ls))
         ls.spawn(follow_settings(ls))
-        ls.survey.look()
+        ls.survey.schedule()
         await ls.stored_verdicts.load()
 
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)

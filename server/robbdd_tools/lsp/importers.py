@@ -99,7 +99,7 @@ class Importers:
         """Load the files on disk that import open ones, and publish what changes through them."""
         await self._publish_after(self._begin())
 
-    def begin_looking(self) -> None:
+    def queue_search(self) -> None:
         """Start ``look_around`` in the background; requests go first."""
         self._server.spawn(self._publish_after(self._begin()))
 
@@ -118,4 +118,4 @@ class Importers:
             for uri in self._server.opened():
                 await self._server.publish(uri)
         files = await asyncio.to_thread(model_files, list(self._server.workspace.folders))
-        await self._server.analyse(lambda _: self.elsewhere.look(files), urgent=False)
+        await self._server.analyse(lambda _: self.elsewhere.update(files), urgent=False)

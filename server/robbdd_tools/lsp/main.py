@@ -35,9 +35,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         parser.error(f"the log cannot be written to {options.log_file}: {error.strerror or error}")
 
-    from robbdd_tools.base.memory import collect_rarely, nothing_to_collect
+    from robbdd_tools.base.memory import collect_rarely, freeze_garbage_collection
 
-    with nothing_to_collect():
+    with freeze_garbage_collection():
         from robbdd_tools.lsp.handlers import create_server
 
         server = create_server()

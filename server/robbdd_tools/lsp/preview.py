@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robbdd_tools.gherkin.preview import MOST_SHOWN, Preview, preview
+from robbdd_tools.gherkin.preview import MAX_SHOWN, Preview, preview
 from robbdd_tools.lsp.convert import Converter, document_of
-from robbdd_tools.lsp.last_good import LastGood
+from robbdd_tools.lsp.last_valid import LastValid
 from robbdd_tools.lsp.parameters import Parameters
 
 if TYPE_CHECKING:
@@ -27,14 +27,14 @@ class Previews:
     """Makes previews and keeps the last good one of each document and scenario."""
 
     def __init__(self) -> None:
-        self._kept = LastGood()
+        self._kept = LastValid()
         self.forget = self._kept.forget
 
     def show(self, snapshot: Snapshot, convert: Converter, asked: Parameters) -> dict[str, Any]:
         """Return the answer to a request; for a text with errors, the last preview without errors."""
         uri = asked.text("uri")
         scenario = asked.optional_text("scenario")
-        most = asked.optional_number("most") or MOST_SHOWN
+        most = asked.optional_number("most") or MAX_SHOWN
         made, problem = self._kept.of(
             snapshot, uri, scenario, lambda: _answer(snapshot, convert, preview(snapshot, uri, scenario, most))
         )

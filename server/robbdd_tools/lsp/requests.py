@@ -41,12 +41,12 @@ class Requests:
                 waiting.outdated = True
                 waiting.task.cancel()
 
-    def guarded(self, method: str, handler: Handler) -> Handler:
+    def with_logged_errors(self, method: str, handler: Handler) -> Handler:
         """Return a handler whose errors are logged with their context; the client gets a one-sentence message."""
         if inspect.iscoroutinefunction(handler):
 
             @wraps(handler)
-            async def guarded(*arguments: Any) -> Any:
+            async def with_logged_errors(*arguments: Any) -> Any:
                 waiting = _Waiting(method, _uri(arguments), asyncio.current_task())
                 self._waiting.add(waiting)
                 try:
@@ -59,7 +59,7 @@ class Requests:
                 finally:
                     self._waiting.discard(waiting)
 
-            return guarded
+            return with_logged_errors
 
         @wraps(handler)
         def guarded_at_once(*arguments: Any) -> Any:

@@ -11,16 +11,16 @@ from urllib.parse import quote
 
 from robbdd_tools.base.files import file_state, load_bytes, path_to_uri
 from robbdd_tools.protocol.run_folder import thumbnail_file
+from robbdd_tools.run.json_documents import NoTrace, stored_curves
 from robbdd_tools.run.pictures import NoPictures, render_thumbnails
 from robbdd_tools.run.plot import plot
-from robbdd_tools.run.shown import NoTrace, kept_curves
 from robbdd_tools.run.store import NoSuchRun
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from robbdd_tools.features.run_verdicts import Judged, JudgedScenario
-    from robbdd_tools.lsp.stores import Stores
+    from robbdd_tools.lsp.run_stores import Stores
     from robbdd_tools.run.store import RunStore, StoredRun
 
 REPLAY = "robbdd.showReplay"
@@ -28,7 +28,7 @@ REPLAY = "robbdd.showReplay"
 THUMBNAILS = "thumbnails"
 LARGEST = 60_000
 """Maximum bytes of an embedded picture; clients read a hundred thousand characters of a text."""
-MOST = 8
+MAX_PICTURES = 8
 """Maximum number of clauses of a run whose worst violation is pictured."""
 _LOG = logging.getLogger(__name__)
 
@@ -38,7 +38,7 @@ def pictures_of(stores: Stores, judged: Judged) -> str:
     scenario, judgement = judged
     try:
         run = _run_of(stores.of(scenario.model), scenario)
-        kept = kept_curves(run, scenario.index)
+        kept = stored_curves(run, scenario.index)
     except (NoSuchRun, NoTrace):
         return ""
     if kept.get("scenario") != [scenario.variant, scenario.variation]:
@@ -75,14 +75,14 @@ def _data(kind: str, data: bytes) -> str:
 
 
 def picture_violations(run: StoredRun, scenarios: Iterable[JudgedScenario]) -> None:
-    """Render a thumbnail of the worst violation of each of the first ``MOST`` clauses, if rendering works."""
+    """Render a thumbnail of the worst violation of each of the first ``MAX_PICTURES`` clauses, if rendering works."""
     worst: dict[str, tuple[float, int, int]] = {}
     for scenario in scenarios:
         for iri, judgement in scenario.clauses.items():
             if judgement.outcome == "violated":
                 found = (judgement.rank, scenario.index, judgement.line)
                 worst[iri] = min(found, worst.get(iri, found))
-    chosen = sorted({(index, line) for _, index, line in worst.values()})[:MOST]
+    chosen = sorted({(index, line) for _, index, line in worst.values()})[:MAX_PICTURES]
     try:
         if chosen:
             render_thumbnails(run.folder, run.folder / THUMBNAILS, chosen)

@@ -57,7 +57,7 @@ class RunFollower:
         finally:
             self._progress.end(self._outcome())
         if self._run.problem:
-            self._ls.tell(self._run.problem)
+            self._ls.warn(self._run.problem)
         self._ls.show_results(uris)
         await self._ls.show_changed()
         await self._ls.stored_verdicts.save()

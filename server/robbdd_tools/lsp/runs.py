@@ -14,7 +14,7 @@ from robbdd_tools.lsp.run_follower import RunFollower
 from robbdd_tools.lsp.run_options import RunOptions
 from robbdd_tools.lsp.run_request import RunText, plan_run
 from robbdd_tools.lsp.trust import refuse_run
-from robbdd_tools.run.pictures import NoPictures, render_moments
+from robbdd_tools.run.pictures import NoPictures, render_violations
 from robbdd_tools.workbench.rerun import NothingFailed
 from robbdd_tools.workbench.run import begin_run
 
@@ -67,14 +67,14 @@ async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
     )
     place, remark = await asyncio.to_thread(ls.stores.begin, options.uri)
     if remark:
-        ls.tell(remark)
+        ls.warn(remark)
     run = await asyncio.to_thread(begin_run, planned.plan, place, repeat=planned.repeat, jobs=options.jobs)
     return run, planned.text
 
 
 def _refused(ls: RobbddServer, problem: str, *, momentary: bool = False) -> dict[str, Any]:
     """Show why nothing was run; a ``momentary`` reason is unrelated to the scenarios."""
-    ls.tell(problem)
+    ls.warn(problem)
     return {"problem": problem, "momentary": True} if momentary else {"problem": problem}
 
 
@@ -82,8 +82,8 @@ async def _record(ls: RobbddServer, place: StoredRun) -> list[str]:
     """Render the violations of a run into its folder; return the pictures' URIs."""
     pictures = place.folder / PICTURES
     try:
-        await asyncio.to_thread(render_moments, place.folder, pictures)
+        await asyncio.to_thread(render_violations, place.folder, pictures)
     except NoPictures as error:
-        ls.tell(f"there are no pictures: {error}")
+        ls.warn(f"there are no pictures: {error}")
         return []
     return [path_to_uri(path) for path in sorted(pictures.glob("*.png"))]

@@ -26,16 +26,16 @@ from robbdd_tools.lsp.client_settings import Settings
 from robbdd_tools.lsp.convert import Converter, document_of
 from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.importers import Importers
-from robbdd_tools.lsp.newest import Newest
+from robbdd_tools.lsp.latest_wins import LatestWins
 from robbdd_tools.lsp.protocol import Protocol
 from robbdd_tools.lsp.refresh import COLOURS, DIAGNOSTICS, GATHERING, HINTS, LENSES, SETTLING, Refreshes
 from robbdd_tools.lsp.requests import Handler, Requests, log_background_error
+from robbdd_tools.lsp.run_stores import Stores
 from robbdd_tools.lsp.shape_findings import ShapeFindings
 from robbdd_tools.lsp.shapes import ShapeValidator
 from robbdd_tools.lsp.stored_verdicts import StoredVerdicts
-from robbdd_tools.lsp.stores import Stores
-from robbdd_tools.lsp.survey import Survey
 from robbdd_tools.lsp.user_errors import UserErrors, model_errors
+from robbdd_tools.lsp.workspace_diagnostics import WorkspaceDiagnostics
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 
@@ -87,21 +87,21 @@ class RobbddServer(LanguageServer):
         """Whether the client pulls diagnostics; otherwise they are published, never both."""
         self.refreshes = Refreshes(self)
         self.importers = Importers(self)
-        self.survey = Survey(self)
+        self.survey = WorkspaceDiagnostics(self)
         self.user_errors = UserErrors(self)
         self._tasks: set[asyncio.Task[None]] = set()
-        self._publishing = Newest(self.spawn)
+        self._publishing = LatestWins(self.spawn)
         self._changed: dict[str, None] = {}
 
     def feature(self, feature_name: str, options: Any | None = None) -> Callable[[Handler], Handler]:
         """Register a method's handler; its errors are caught."""
         register = super().feature(feature_name, options)
-        return lambda handler: register(self.requests.guarded(feature_name, handler))
+        return lambda handler: register(self.requests.with_logged_errors(feature_name, handler))
 
     def command(self, command_name: str) -> Callable[[Handler], Handler]:
         """Register a command; its errors are caught."""
         register = super().command(command_name)
-        return lambda handler: register(self.requests.guarded(command_name, handler))
+        return lambda handler: register(self.requests.with_logged_errors(command_name, handler))
 
     def report_server_error(self, error: Exception, source: Any) -> None:
         """Log an error that no request waits for; handlers have already logged theirs with context."""
@@ -128,7 +128,7 @@ class RobbddServer(LanguageServer):
         is_new = uri not in self._opened
         self._opened.setdefault(uri)
         if is_new:
-            self.importers.begin_looking()
+            self.importers.queue_search()
             self.spawn(self.stored_verdicts.look_beside(uri))
         self.requests.text_changed(uri)
         try:
@@ -137,7 +137,7 @@ class RobbddServer(LanguageServer):
             # A newer text arrived before this one was parsed.
             return
         await self.publish(uri)
-        self.survey.look([uri])
+        self.survey.schedule([uri])
         await self.user_errors.refresh()
 
     async def text_closed(self, uri: str) -> None:
@@ -168,7 +168,7 @@ class RobbddServer(LanguageServer):
 
     async def settings_changed(self, files: Sequence[str] | None = None) -> None:
         """Check all documents again after a change of settings, or only those affected by changed ``files``."""
-        self.survey.look(files)
+        self.survey.schedule(files)
         await self.user_errors.refresh()
         for uri in list(self._opened):
             await self.publish(uri)
@@ -249,7 +249,7 @@ class RobbddServer(LanguageServer):
             paths = [path for path in paths if file is not None and file.is_relative_to(path)]
         return sorted(paths, key=lambda path: -len(path.parts))
 
-    def tell(self, message: str) -> None:
+    def warn(self, message: str) -> None:
         """Show the user why something was not done."""
         self.window_show_message(types.ShowMessageParams(type=types.MessageType.Error, message=message))
 

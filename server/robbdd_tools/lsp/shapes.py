@@ -17,7 +17,7 @@ from robbdd_tools.lsp.requests import log_background_error
 
 PAUSE = 0.02
 """Seconds in which successive edits, as from several cursors, are combined."""
-MOST_DEATHS = 2
+MAX_DEATHS = 2
 """Deaths of the process over the same file after which the file is skipped until it changes."""
 # Not "-m": the messages' classes must have the same module name in both processes.
 _WORKER = "from robbdd_tools.lsp.worker import main; main"
@@ -143,7 +143,7 @@ class ShapeValidator:
         self._work_on("")
         self._deaths[guilty] = self._deaths.get(guilty, 0) + 1
         _LOG.warning("the validation process ended unexpectedly and is started again")
-        if self._deaths[guilty] >= MOST_DEATHS:
+        if self._deaths[guilty] >= MAX_DEATHS:
             # A process that dies before it begins any file would never answer.
             for uri in [guilty] if guilty else list(self._open):
                 self._give_up(uri, "the validation process ended over it")

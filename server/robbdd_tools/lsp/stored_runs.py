@@ -19,7 +19,7 @@ from robbdd_tools.lsp.document_models import feature_plan
 from robbdd_tools.lsp.locations import places_of
 from robbdd_tools.lsp.parameters import Parameters
 from robbdd_tools.names.variant_places import variants_of
-from robbdd_tools.run.shown import NoTrace, find_trace, scenarios, shown_trace, summary
+from robbdd_tools.run.json_documents import NoTrace, find_trace, scenarios, summary, trace_document
 from robbdd_tools.run.store import NoSuchRun, RunStore
 
 if TYPE_CHECKING:
@@ -76,18 +76,18 @@ def _trace(store: RunStore, asked: Parameters) -> dict[str, Any]:
         run, index = find_trace(store, word, asked.others("variant", "variation", "execution", "repetition"))
     else:
         run = store.find(word or "latest")
-    return {**shown_trace(run, index), "model": path_to_uri(run.model())}
+    return {**trace_document(run, index), "model": path_to_uri(run.model())}
 
 
 def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: int) -> set[tuple[str, str]] | None:
     """Return a scenario's current statements from the first file with its variant; ``None`` if that file has errors."""
-    from robbdd_tools.gherkin.stated import stated
+    from robbdd_tools.gherkin.statements import statements
 
     for uri in files:
         known = (file.document.uri for file in snapshot.closure(uri))
         if any(placed.iri == variant for name in known for placed in variants_of(snapshot, name)):
             try:
-                return stated(feature_plan(snapshot, uri).model, variant, variation)
+                return statements(feature_plan(snapshot, uri).model, variant, variation)
             except RobbddError:
                 return None
     return set()

@@ -13,7 +13,7 @@ from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.features.run_verdicts import JudgedScenario, Results
 from robbdd_tools.lsp.judged_scenarios import judged_scenario, judgement
-from robbdd_tools.lsp.kept_results import load_results, save_results
+from robbdd_tools.lsp.saved_results import load_results, save_results
 from robbdd_tools.run.store import RunStore, store_beside
 from robbdd_tools.run.stored_results import RUNNING
 from robbdd_tools.workbench.judged_text import read_texts
@@ -64,7 +64,7 @@ class StoredVerdicts:
         ls.show_results(ls.opened())
         models = dict.fromkeys(scenario.model for scenario in kept.scenarios)
         paths = [*ls.folders(), *filter(None, map(uri_to_path, models))]
-        await self.look([*map(store_beside, paths), *(RunStore(Path(store)) for store in kept.seen)])
+        await self.refresh([*map(store_beside, paths), *(RunStore(Path(store)) for store in kept.seen)])
 
     async def loaded(self) -> None:
         """Wait until the results of earlier runs are loaded."""
@@ -75,9 +75,9 @@ class StoredVerdicts:
         await self.loaded()
         paths = filter(None, map(uri_to_path, uris))
         stores = {store.folder: store for store in map(store_beside, paths)}
-        await self.look([store for folder, store in stores.items() if folder not in self._known])
+        await self.refresh([store for folder, store in stores.items() if folder not in self._known])
 
-    async def look(self, stores: Iterable[RunStore]) -> None:
+    async def refresh(self, stores: Iterable[RunStore]) -> None:
         """Show the verdicts of runs that have ended since the stores were last read."""
         ls = self._server
         async with self._reading:

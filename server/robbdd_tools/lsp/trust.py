@@ -23,7 +23,7 @@ _SEARCHED = 100
 """Maximum scenarios searched for code: those of one execution share theirs, and a refusal must be quick."""
 
 
-def distrust() -> None:
+def forbid_user_code() -> None:
     """Forbid all processes started from here to import users' code."""
     os.environ[NO_USER_CODE] = UNTRUSTED
 

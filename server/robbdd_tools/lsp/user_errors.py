@@ -47,7 +47,7 @@ class UserErrors:
         found = await self._server.in_background(lambda snapshot: _everywhere(snapshot, convert, scenarios), *models)
         if found != self._elsewhere:
             self._elsewhere = found
-            self._server.survey.tell_soon()
+            self._server.survey.publish_soon()
 
     async def code_changed(self) -> None:
         """Show the errors of code that is unchanged since its execution."""

@@ -35,7 +35,7 @@ def register_watching(server: RobbddServer) -> None:
         changed = [uri for uri in every if not uri.endswith((f"/{RESULTS}", ".py"))]
         if ended := [path for uri in every if uri.endswith(f"/{RESULTS}") and (path := uri_to_path(uri)) is not None]:
             ls.refreshes.want(LENSES)
-            ls.spawn(ls.stored_verdicts.look(RunStore(path.parent.parent) for path in ended))
+            ls.spawn(ls.stored_verdicts.refresh(RunStore(path.parent.parent) for path in ended))
         if any(uri.endswith(".py") for uri in every):
             await ls.user_errors.code_changed()
         if changed:
@@ -44,7 +44,7 @@ def register_watching(server: RobbddServer) -> None:
     @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     async def folders(ls: RobbddServer, _: types.DidChangeWorkspaceFoldersParams) -> None:
         await read_settings(ls)
-        ls.survey.look()
+        ls.survey.schedule()
         await ls.importers.look_around()
         await ls.stored_verdicts.load()
 

@@ -17,7 +17,7 @@ from robbdd_tools.graph.shapes.incremental import Superseded, Validation
 from robbdd_tools.lsp.framing import LENGTH, Answer, Begun, Forget, Request, frame
 from robbdd_tools.names.project import Project, Snapshot
 
-MOST_LEFT = 8
+MAX_LEFT = 8
 """Validations of a file in a row that may be abandoned for a newer one; then one finishes even during typing."""
 
 
@@ -40,7 +40,7 @@ class Inbox:
             self._changed.wait_for(lambda: self._waiting or self._ended)
             return None if self._ended else self._waiting.pop(next(iter(self._waiting)))
 
-    def has_news_of(self, uri: str) -> bool:
+    def has_newer(self, uri: str) -> bool:
         """Return whether work on a file is outdated."""
         return self._ended or uri in self._waiting
 
@@ -82,7 +82,7 @@ class Worker:
         left = self.left.pop(request.uri, 0)
 
         def is_superseded() -> bool:
-            return left < MOST_LEFT and self.inbox.has_news_of(request.uri)
+            return left < MAX_LEFT and self.inbox.has_newer(request.uri)
 
         try:
             snapshot = self.project.snapshot()

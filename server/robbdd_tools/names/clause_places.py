@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.names.project import Snapshot
 
-MOST_NESTED = 100
+MAX_NESTED = 100
 """Maximum nesting depth; deeper clauses are in no graph."""
 
 
@@ -61,7 +61,7 @@ class _Walk:
         if body.for_all is not None:
             inner = f"{path}.all"
             yield self._placed("forall", inner, body.for_all, "for all")
-            if inner.count(".") <= MOST_NESTED:
+            if inner.count(".") <= MAX_NESTED:
                 yield from self.body(body.for_all.body, inner)
         yield from self.top(body.then, "then", path)
 
@@ -76,7 +76,7 @@ class _Walk:
             yield self._placed("when-evt", f"{path}.when.{index}", occurrence, "event")
 
     def _each(self, parts: Sequence[tree.Expression], path: str) -> Iterator[PlacedClause]:
-        if path.count(".") <= MOST_NESTED:
+        if path.count(".") <= MAX_NESTED:
             for index, part in enumerate(parts):
                 yield from self._clause(tree.bare(part), f"{path}.{index}")
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.syntax import tree
-from robbdd_tools.syntax.symbols import MOST_COPIES
+from robbdd_tools.syntax.symbols import MAX_COPIES
 
 if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
@@ -106,7 +106,7 @@ def elements_of(site: Site | None) -> tuple[Element, ...] | None:
             return _members(site.uri, declared.kind, declared.name.text, names)
         case tree.SimilarSet():
             count = declared.count.value if isinstance(declared.count.value, int) else 0
-            names = [f"{declared.base.text}{number}" for number in range(min(count, MOST_COPIES))]
+            names = [f"{declared.base.text}{number}" for number in range(min(count, MAX_COPIES))]
             return _members(site.uri, declared.kind, declared.name.text, names)
         case tree.ConstantSet():
             found = [element_of(site, value) for value in declared.values]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 ELEMENT_ROLES = frozenset({"Element", "Object", "Workspace", "Agent"})
 ROLES = ELEMENT_ROLES | {"Frame", "Body", "Joint", "Tree", "Fluent"}
 """Roles of references that may resolve through another name."""
-MOST_PATHS = 50
+MAX_PATHS = 50
 """Maximum number of paths tried for one reference: trees that contain one another must not loop for ever."""
 _PARTS = frozenset({SymbolKind.BODY, SymbolKind.FRAME, SymbolKind.POSE, SymbolKind.JOINT})
 
@@ -33,7 +33,7 @@ def paths_through(files: Sequence[FileIndex], paths: Iterable[str]) -> list[str]
     found: dict[str, None] = {}
     for path in waiting:
         for other in _rewritten(files, path):
-            if other not in found and len(found) < MOST_PATHS:
+            if other not in found and len(found) < MAX_PATHS:
                 found[other] = None
                 waiting.append(other)
     return list(found)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from robbdd_tools.syntax.declaration import Declaration, Reference
     from robbdd_tools.syntax.tree import Ref
 
-KEPT_TABLES = 4
+CACHED_TABLES = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +211,7 @@ def candidates(reference: Reference) -> tuple[str, ...]:
 _Lookups = dict[tuple[str, str, tuple[str, ...]], tuple[tuple[str, ...], Target | None, Target | None]]
 
 
-@lru_cache(maxsize=KEPT_TABLES)
+@lru_cache(maxsize=CACHED_TABLES)
 def _known_lookups(_: tuple[NameTable, ...]) -> _Lookups:
     """Return the lookup cache of some tables, by role, path and scopes; valid as long as no name changes."""
     return {}

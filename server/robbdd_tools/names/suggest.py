@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from robbdd_tools.names.name_table import NameTable
     from robbdd_tools.syntax.declaration import SymbolKind
 
-MOST = 3
-KEPT_TABLES = 4
-LEAST_ALIKE = 60.0
+MAX_OFFERED = 3
+CACHED_TABLES = 4
+MIN_ALIKE = 60.0
 """Minimum similarity of a suggestion, per cent (normalised insertions and deletions)."""
 
 
@@ -34,7 +34,7 @@ def closest(
 _Answer = tuple[tuple[str, ...], bool]
 
 
-@lru_cache(maxsize=KEPT_TABLES)
+@lru_cache(maxsize=CACHED_TABLES)
 def _known_answers(_: tuple[NameTable, ...]) -> dict[tuple[tuple[SymbolKind, ...], tuple[str, ...], str], _Answer]:
     return {}
 
@@ -50,5 +50,5 @@ def _closest(
         for known, found in table.kinds.items():
             if not set(found).isdisjoint(kinds):
                 names.setdefault(shortened(known, scopes) if position == 0 else known)
-    near = process.extract(path, sorted(names), scorer=ratio, limit=MOST, score_cutoff=LEAST_ALIKE)
+    near = process.extract(path, sorted(names), scorer=ratio, limit=MAX_OFFERED, score_cutoff=MIN_ALIKE)
     return tuple(name for name, _, _ in near), bool(names)

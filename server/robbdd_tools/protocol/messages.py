@@ -207,7 +207,7 @@ def decode(line: str) -> RunMessage:
         raise ValueError(f"not a run message: {line[:200]!r}") from error
 
 
-def decode_order(line: str) -> Execute:
+def decode_request(line: str) -> Execute:
     """Return the order of a line; raises ``ValueError`` if it is invalid."""
     match json.loads(line):
         case {"type": "Execute", "index": int(index)}:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.base.locks import hold
+from robbdd_tools.base.locks import acquire
 from robbdd_tools.workbench.folder import RunFolder, new_folder
 from robbdd_tools.workbench.on_demand import Executed, OnDemand, end_run
 from robbdd_tools.workbench.plan import Plan
@@ -129,7 +129,7 @@ class Executor:
 
     def _begin(self) -> OnDemand:
         place = self._open_place()
-        lock = None if self._lock is None else hold(self._lock, PATIENCE)
+        lock = None if self._lock is None else acquire(self._lock, PATIENCE)
         try:
             if lock is None and self._lock is not None:
                 raise RobbddError(f"another process has been preparing {place.folder} for {PATIENCE:g} s")

@@ -35,7 +35,7 @@ class AgentWorker:
     judged: set[int] = field(default_factory=set[int])
     shared_outputs: int = 0
 
-    def employ(self, task: Iterable[int]) -> None:
+    def assign(self, task: Iterable[int]) -> None:
         """Assign scenarios to execute one after the other."""
         self.following = deque(task)
         self.index = index = self.following.popleft()
@@ -48,7 +48,7 @@ class AgentWorker:
         """Continue with the following scenario, or mark the worker idle."""
         self.index, self.deadline, self.started = None, inf, False
         if self.following:
-            self.employ(self.following)
+            self.assign(self.following)
 
     def expire(self) -> None:
         """End the worker because it missed its deadline."""

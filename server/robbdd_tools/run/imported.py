@@ -177,13 +177,13 @@ def _case(story: str, case: ElementTree.Element) -> ImportedScenario | None:
     named = _CASE.fullmatch(case.get("name", ""))
     if named is None:
         return None
-    clauses = tuple(map(_told, _CLAUSE.finditer(case.findtext("system-out", ""))))
+    clauses = tuple(map(_described, _CLAUSE.finditer(case.findtext("system-out", ""))))
     values, seconds = named["values"] or "", _seconds(case.get("time"))
     execution = case.get("classname", "").partition(".")[2]
     return ImportedScenario("", story, named["variant"], int(named["number"]), values, seconds, clauses, execution)
 
 
-def _told(found: re.Match[str]) -> ImportedClause:
+def _described(found: re.Match[str]) -> ImportedClause:
     verdict = next(str(outcome) for outcome, sign in SIGNS.items() if sign == found["sign"])
     measured = _MARGIN.match(found["said"])
     said = f"{found['sign']}{found['said']}"

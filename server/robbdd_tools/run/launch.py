@@ -29,7 +29,7 @@ MESSAGE_BEGIN = '{"type": '
 """First characters of every message of ``encode``. Inside a string, its quotes would be escaped."""
 LONGEST = 1024 * 1024
 """Maximum bytes of a line on the message channel."""
-MOST_STRANGE = 20
+MAX_STRANGE_LINES = 20
 """Number of stray lines, which are not messages, that a run reports for each process."""
 PATIENCE = 0.2
 """Seconds that agents have to stop by themselves."""
@@ -89,7 +89,7 @@ class Agent:
                 yield _decoded(line)
             except ValueError as error:
                 strange += 1
-                if strange <= MOST_STRANGE:
+                if strange <= MAX_STRANGE_LINES:
                     yield LogLine("warning", str(error))
         self._process.wait()
         self.crash = take_crash(self._base, self._work)

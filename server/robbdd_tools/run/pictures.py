@@ -51,7 +51,7 @@ def render_scene(folder: Path, index: int, output: Path) -> None:
     _render(folder, str(index), output)
 
 
-def render_moments(folder: Path, output: Path) -> int:
+def render_violations(folder: Path, output: Path) -> int:
     """Render the moment of every violated clause into a folder and return the count; raises ``NoPictures``."""
     return len(_render(folder, MOMENTS, output))
 

@@ -16,7 +16,7 @@ from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Iri,
 from robbdd_tools.protocol.manifest_file import written_manifest
 from robbdd_tools.protocol.run_folder import OWN_STEPS
 from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
-from robbdd_tools.run.related import Relations
+from robbdd_tools.run.related_scenarios import Relations
 from robbdd_tools.run.scenario_specs import SpecWriter
 
 DEFAULT_SEED = 1
@@ -89,12 +89,12 @@ def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Pa
         executions = request.chosen_executions()
         parts += _parts(plan, request.name, request.seed, executions, below, request.repeat, request.only)
         steps = f"model_{number}_steps.py" if len(requests) > 1 else MODEL_STEPS
-        sources |= bring_steps(request.name, folder, steps)
+        sources |= copy_steps(request.name, folder, steps)
     head = Manifest(name, seed, (), traces, sources)
     return replace(head, scenarios=tuple(_written(parts, head, folder)))
 
 
-def bring_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, str]:
+def copy_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, str]:
     """Copy the user-written steps of a model (path or URI), if any, into ``folder``. Raises ``OSError``.
 
     Returns a map of the copy's path in the folder to the original's.

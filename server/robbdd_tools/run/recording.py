@@ -108,7 +108,7 @@ class Recording:
     def take(self, message: RunMessage) -> bool:
         """Store a message; a finished execution is committed on return.
 
-        Returns ``is_news(message)``. Raises ``OtherSimulator`` if a resumed run uses another simulator.
+        Returns ``is_new(message)``. Raises ``OtherSimulator`` if a resumed run uses another simulator.
         """
         match message:
             case RunStarted():
@@ -126,9 +126,9 @@ class Recording:
                     self._write(message, judged)
             case _:
                 pass
-        return self.is_news(message)
+        return self.is_new(message)
 
-    def is_news(self, message: RunMessage) -> bool:
+    def is_new(self, message: RunMessage) -> bool:
         """Return whether a message is about an execution that was unfinished when the run was resumed."""
         return getattr(message, "index", None) not in self._done
 
@@ -270,7 +270,7 @@ def first_failure(results: RunResults) -> int | None:
     return None
 
 
-def why(error: OSError) -> str:
+def failure_reason(error: OSError) -> str:
     """Return why no further results of a run can be kept."""
     reason = str(error) if isinstance(error, DatabaseProblem) else f"{error.filename}: {error.strerror or error}"
     return f"results cannot be kept any more: {reason}"

@@ -34,7 +34,7 @@ from robbdd_tools.protocol.clauses import BehaviourCall, EventOccurrence, leaves
 from robbdd_tools.protocol.clauses import Junction as StatedJunction
 from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, ScenarioSpec, SceneSpec
 from robbdd_tools.run.iterations import behaviour_scopes, iterations_of
-from robbdd_tools.run.related import Linked, Relations
+from robbdd_tools.run.related_scenarios import Linked, Relations
 from robbdd_tools.run.seeds import scenario_seed
 from robbdd_tools.run.tree_specs import TreeSpecWriter
 

@@ -39,8 +39,8 @@ from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.agent_log import LIMIT
 from robbdd_tools.run.agent_worker import GRACE, AgentWorker
 from robbdd_tools.run.launch import Agent, stop
-from robbdd_tools.run.misfit import misfit
-from robbdd_tools.run.order import InOrder
+from robbdd_tools.run.message_check import misfit
+from robbdd_tools.run.message_order import OrderedMessages
 
 TIMEOUT = 300.0
 """Default wall time of a scenario, s."""
@@ -86,7 +86,7 @@ def _before(index: int, task: Iterable[int]) -> tuple[int, ...]:
 Event = tuple[AgentWorker, RunMessage | None]
 
 
-def no_watcher(_: RunMessage) -> None:
+def ignore_event(_: RunMessage) -> None:
     """Ignore the message."""
 
 
@@ -106,7 +106,7 @@ class Scheduler:
         folder: Path,
         manifest: Manifest,
         policy: Policy | None = None,
-        watch: Callable[[RunMessage], None] = no_watcher,
+        watch: Callable[[RunMessage], None] = ignore_event,
         indices: Sequence[int] | None = None,
         first_agent: int = 1,
     ) -> None:
@@ -119,7 +119,7 @@ class Scheduler:
         self._indices = range(len(self._specs)) if indices is None else indices
         self._waiting = deque(_tasks(manifest, self._indices))
         self._workers: list[AgentWorker] = []
-        self._order = InOrder(self._indices)
+        self._order = OrderedMessages(self._indices)
         self._agent_numbers = count(first_agent)
         self._wasted = 0
         self._greeted = False
@@ -145,7 +145,7 @@ class Scheduler:
         If they end without ``ScenarioFinished``, the scenario is unfinished and ``ending`` is the reason. Raises
         ``OSError``.
         """
-        self._order = InOrder([index])
+        self._order = OrderedMessages([index])
         self._waiting.clear()
         self._waiting.append((index,))
         yield from self._until_done()
@@ -195,7 +195,7 @@ class Scheduler:
         idle = [worker for worker in self._workers if worker.index is None]
         while self._waiting and (idle or len(self._workers) < self._policy.jobs):
             worker = idle.pop() if idle else self._launch()
-            worker.employ(self._waiting.popleft())
+            worker.assign(self._waiting.popleft())
 
     def _launch(self) -> AgentWorker:
         policy, number = self._policy, next(self._agent_numbers)

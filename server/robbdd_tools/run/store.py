@@ -22,13 +22,14 @@ from typing import Any, cast
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import full_path, load_text
 from robbdd_tools.base.limits import RESULT_SIZE
-from robbdd_tools.base.locks import Lock, hold, is_held
+from robbdd_tools.base.locks import Lock, acquire, is_held
 from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.database import LOG, NAME, DatabaseProblem
 from robbdd_tools.run.results import RunResults
+from robbdd_tools.run.store_maintenance import make_ready, remove_runs
 from robbdd_tools.run.stored_results import (
     FINISHED,
     INTERRUPTED,
@@ -37,7 +38,6 @@ from robbdd_tools.run.stored_results import (
     read_results,
     read_status,
 )
-from robbdd_tools.run.upkeep import make_ready, remove_runs
 
 MARKS = ("pyproject.toml", "robbdd.toml", ".git")
 """Files or folders that mark a project's root."""
@@ -211,7 +211,7 @@ def begin_in(folder: Path, *, kept: bool = True) -> StoredRun:
     """Create a folder for a single run and remove the contents of an earlier one; raises ``OSError``."""
     folder.mkdir(parents=True, exist_ok=True)
     run = run_in(folder, kept=kept)
-    lock = hold(folder / LOCK)
+    lock = acquire(folder / LOCK)
     if lock is None:
         raise OSError(errno.EBUSY, "another run is writing to it", str(folder))
     for name in ("traces", "margins", "moments", "features"):
@@ -241,7 +241,7 @@ class RunStore:
         ignore = self.database.parent / ".gitignore"
         if not ignore.exists():
             replace_file(ignore, "*\n")
-        guard = hold(self.folder / LOCK, PATIENCE)
+        guard = acquire(self.folder / LOCK, PATIENCE)
         if guard is None:
             raise OSError(errno.EBUSY, "another run is beginning", str(self.folder))
         try:
@@ -249,7 +249,7 @@ class RunStore:
             runs = self.runs()
             run = self._run(runs[-1].number + 1 if runs else 1)
             run.folder.mkdir()
-            run = replace(run, lock=hold(run.folder / LOCK), remark=remark)
+            run = replace(run, lock=acquire(run.folder / LOCK), remark=remark)
             self._prune(runs)
             return run
         finally:
@@ -315,7 +315,7 @@ def project_root(path: Path) -> Path:
     return next((folder for folder in (here, *here.parents) if any((folder / mark).exists() for mark in MARKS)), here)
 
 
-def origin(model: Path, folder: Path) -> str:
+def relative_model_path(model: Path, folder: Path) -> str:
     """Return a model's path relative to its run folder, so that both can be moved together."""
     return Path(os.path.relpath(model, folder)).as_posix()
 

@@ -10,7 +10,7 @@ from robbdd_tools.graph.acceptance_model import AcceptanceModel, Cell, Clause, I
 from robbdd_tools.monitor.last_iteration import LAST
 from robbdd_tools.monitor.time import After, Before
 from robbdd_tools.protocol.specs import ScenarioSpec, SceneSpec
-from robbdd_tools.run.related import Group, Member, Relations, roots_of
+from robbdd_tools.run.related_scenarios import Group, Member, Relations, roots_of
 from robbdd_tools.run.seeds import scenario_seed
 
 LEAD = 0.5

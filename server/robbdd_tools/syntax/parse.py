@@ -12,7 +12,7 @@ from robbdd_tools.syntax.salvage import salvage, with_lost
 from robbdd_tools.syntax.story import cut_story, forget_scenarios, quotes_braces, read_story
 from robbdd_tools.syntax.symbols import references, symbols
 
-KEPT_LETTERS = 100_000
+CACHED_LETTERS = 100_000
 """Characters of text whose declarations stay cached while unused; a declaration takes about 100 bytes per character."""
 LANGUAGES = ("bdd", "scene", "scenex", "ktree", "bddx")
 
@@ -31,7 +31,7 @@ class _Kept:
     def put(self, key: tuple[str, str], declaration: Declaration) -> None:
         self._in_use[key] = self._latest[key] = declaration
         self._letters += len(declaration.text)
-        while self._letters > KEPT_LETTERS and len(self._latest) > 1:
+        while self._letters > CACHED_LETTERS and len(self._latest) > 1:
             _, oldest = self._latest.popitem(last=False)
             self._letters -= len(oldest.text)
 

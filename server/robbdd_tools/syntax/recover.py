@@ -18,8 +18,8 @@ from robbdd_tools.base.document import Span
 from robbdd_tools.syntax.chunk import parse_chunk
 from robbdd_tools.syntax.parsed import Expectation, Parsed, Rejected
 
-MOST_FAULTS = 12
-MOST_PARSES = 48
+MAX_FAULTS = 12
+MAX_PARSES = 48
 """Maximum number of attempts per chunk: an editor needs a chunk's errors on each keystroke inside it."""
 ALIKE = 0.6
 """Similarity ratio from which a word counts as a misspelt keyword."""
@@ -62,8 +62,8 @@ class Recovered:
 def recover(language: str, text: str, first: Rejected) -> Recovered:
     """Repair a rejected chunk; user text never raises."""
     faults: list[Fault] = []
-    repaired, result, left, shadow = text, first, MOST_PARSES, -1
-    while len(faults) < MOST_FAULTS:
+    repaired, result, left, shadow = text, first, MAX_PARSES, -1
+    while len(faults) < MAX_FAULTS:
         # An error in text that an earlier repair changed is the same error, or a consequence of it.
         if result.offset > shadow:
             faults.append(Fault(result, None))

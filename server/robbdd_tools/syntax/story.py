@@ -23,8 +23,8 @@ from robbdd_tools.syntax.recover import HOLE
 from robbdd_tools.syntax.salvage import salvage, salvage_scenario, with_lost
 from robbdd_tools.syntax.symbols import references, symbols, variant_symbols
 
-KEPT_FRAMES = 100
-KEPT_LETTERS = 30_000
+CACHED_FRAMES = 100
+CACHED_LETTERS = 30_000
 """Characters of scenarios that are kept in addition to the story parsed last, whatever its length."""
 STAND_IN = f"Scenario {HOLE}{{template:<{HOLE}>scene:<{HOLE}>variation:var<{HOLE}>:{{}}}}\n"
 _NAME = r"[^\W\d][\w\-]*"
@@ -139,7 +139,7 @@ class _Kept:
 
     def begin(self) -> None:
         """Start a story: scenarios that it does not use may be evicted."""
-        if self._letters > KEPT_LETTERS:
+        if self._letters > CACHED_LETTERS:
             self._older, self._latest, self._letters = self._latest, {}, 0
 
     def get(self, key: Key) -> tuple[Placed, ...]:
@@ -198,7 +198,7 @@ def _variants(scenarios: Iterable[Placed]) -> InPlace[tree.Variant]:
     return InPlace(((offset, (root,)) for offset, root in trees if isinstance(root, tree.Variant)), moved_node)
 
 
-@lru_cache(maxsize=KEPT_FRAMES)
+@lru_cache(maxsize=CACHED_FRAMES)
 def _frame(head: str, tail: str) -> _Frame:
     text = head + STAND_IN + tail
     piece = read_piece("bdd", text)

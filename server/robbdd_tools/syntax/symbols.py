@@ -12,7 +12,7 @@ from robbdd_tools.syntax.move import InPlace
 from robbdd_tools.syntax.recover import HOLE
 from robbdd_tools.syntax.scene_tree import field_names
 
-MOST_COPIES = 10_000
+MAX_COPIES = 10_000
 """Maximum number of named members of a ``similar`` set; a larger count is a typing error."""
 
 _SETS = {
@@ -64,7 +64,7 @@ def _parts(root: tree.DeclarationTree, path: str, namespace: str) -> Iterator[Sy
                 yield _symbol(path, member.name, SymbolKind(root.kind), member.span, namespace)
         case tree.SimilarSet():
             count = root.count.value if isinstance(root.count.value, int) else 0
-            for index in range(min(count, MOST_COPIES)):
+            for index in range(min(count, MAX_COPIES)):
                 name = f"{root.base.text}{index}"
                 kind = SymbolKind(root.kind)
                 yield Symbol(f"{path}.{name}", name, kind, root.base.span, root.span, namespace)

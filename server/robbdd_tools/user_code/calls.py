@@ -15,9 +15,9 @@ from robbdd_tools.protocol.fault_places import is_library, is_ours, with_digest
 from robbdd_tools.user_code import call_note
 from robbdd_tools.user_code.modules import NotImported, folder_of, refuse_hidden, search
 
-MOST_FRAMES = 20
+MAX_FRAMES = 20
 """Maximum frames of a fault; of a deeper recursion, the outermost and the innermost are kept."""
-MOST_WORDS = 2000
+MAX_WORDS = 2000
 """Maximum characters of an exception's message in a fault."""
 
 
@@ -42,7 +42,7 @@ def load_attribute(name: str, model: str) -> Callable[..., Any]:
             refuse_hidden(module_name.partition(".")[0], folder)
     except NotImported as error:
         raise refused(name, str(error), (Frame(str(error.file), 1),) if error.file else ()) from None
-    module = called(name, importlib.import_module, module_name)
+    module = call_user_code(name, importlib.import_module, module_name)
     found = getattr(module, attribute, None)
     if not callable(found):
         message = f"the Python module {module_name} has no function '{attribute}'"
@@ -51,7 +51,7 @@ def load_attribute(name: str, model: str) -> Callable[..., Any]:
     return found
 
 
-def called(name: str, code: Callable[..., Any], *arguments: Any) -> Any:
+def call_user_code(name: str, code: Callable[..., Any], *arguments: Any) -> Any:
     """Return the result of users' code; raises ``UserCodeError`` with file and line for any exception.
 
     Standard error is redirected to the same place as its ``print`` output.
@@ -84,9 +84,9 @@ def fault_of(error: BaseException, name: str, code: object = None) -> Fault:
     """Describe an exception raised by ``code``, called ``name``."""
     words = error.msg if isinstance(error, SyntaxError) else str(error)
     frames = tuple(_frames(error)) or tuple(frame for frame in definition_of(code) if not is_ours(frame.file))
-    if len(frames) > MOST_FRAMES:
-        frames = (*frames[: MOST_FRAMES // 2], *frames[-MOST_FRAMES // 2 :])
-    return with_digest(Fault(type(error).__name__, encodable(str(words)[:MOST_WORDS]), name, frames))
+    if len(frames) > MAX_FRAMES:
+        frames = (*frames[: MAX_FRAMES // 2], *frames[-MAX_FRAMES // 2 :])
+    return with_digest(Fault(type(error).__name__, encodable(str(words)[:MAX_WORDS]), name, frames))
 
 
 def _frames(error: BaseException) -> Iterator[Frame]:

@@ -14,7 +14,7 @@ from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.printable import printable_json
 from robbdd_tools.base.writing import replace_file
 from robbdd_tools.features.run_verdicts import Digests, digests_of
-from robbdd_tools.run.store import origin
+from robbdd_tools.run.store import relative_model_path
 
 if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
@@ -81,7 +81,7 @@ def read_texts(folder: Path) -> JudgedTexts:
 
 def _stored(text: JudgedText, folder: Path) -> _Stored:
     path = uri_to_path(text.uri)
-    place = text.uri if path is None else origin(path, folder)
+    place = text.uri if path is None else relative_model_path(path, folder)
     rows: dict[str, dict[str, str]] = {}
     for (variant, number), digest in text.digests.rows.items():
         rows.setdefault(variant, {})[str(number)] = digest

@@ -15,7 +15,7 @@ from robbdd_tools.protocol.manifest_file import STORED_RESULTS
 from robbdd_tools.protocol.messages import LogLine, ScenarioStarted, UserCodeFailed
 from robbdd_tools.protocol.specs import scenario_key
 from robbdd_tools.run.launch import Agent, stop
-from robbdd_tools.run.misfit import misfit
+from robbdd_tools.run.message_check import misfit
 from robbdd_tools.run.results import RunResults, finished_in
 from robbdd_tools.run.scheduler import CANCELLED
 from robbdd_tools.run.user_code import refuse_user_code

@@ -114,7 +114,7 @@ class Model:
         return tuple(found)
 
     @property
-    def is_sound(self) -> bool:
+    def is_valid(self) -> bool:
         """Whether there is no error, so that the model can be run."""
         return not any(finding.is_error for finding in self.diagnostics)
 

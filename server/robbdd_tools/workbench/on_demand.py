@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import ClauseJudged, LogLine, Output, UserCodeFailed
-from robbdd_tools.run.recording import OtherSimulator, Recording, why
+from robbdd_tools.run.recording import OtherSimulator, Recording, failure_reason
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import Policy, Scheduler
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_result
@@ -127,7 +127,7 @@ class OnDemand:
         except OtherSimulator as error:
             self._problem = str(error)
         except OSError as error:
-            self._problem = why(error)
+            self._problem = failure_reason(error)
         if self._problem:
             raise CannotRecord(self._problem)
         self._leave_unknown(index)

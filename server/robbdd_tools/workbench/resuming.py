@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools import __version__
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import load_bytes
-from robbdd_tools.base.locks import hold
+from robbdd_tools.base.locks import acquire
 from robbdd_tools.base.step_files import steps_file
 from robbdd_tools.run.prepare import FEATURES, MODEL_STEPS
 from robbdd_tools.run.recording import Recording, pending
@@ -59,7 +59,7 @@ def resume(place: StoredRun, policy: Callable[[RunStatus], Policy] | None = None
 
     Raises ``CannotResume``, ``NoSuchRun`` and ``OSError``.
     """
-    lock = hold(place.folder / LOCK, LOCK_PATIENCE)
+    lock = acquire(place.folder / LOCK, LOCK_PATIENCE)
     if lock is None:
         raise CannotResume(f"run {_name(place)} is in progress")
     try:

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Self
 
 from robbdd_tools import __version__
 from robbdd_tools.protocol.messages import ScenarioFinished
-from robbdd_tools.run.recording import OtherSimulator, Recording, why
+from robbdd_tools.run.recording import OtherSimulator, Recording, failure_reason
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.scheduler import CANCELLED, Policy, Scheduler
-from robbdd_tools.run.store import RunRecord, origin, shown_path
+from robbdd_tools.run.store import RunRecord, relative_model_path, shown_path
 from robbdd_tools.run.used_files import digests, prepared_digest
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_result, execution_results
@@ -108,7 +108,7 @@ class Run(Recorded):
         """Yield the messages of the run in the manifest's order, each after ``progress`` has applied it."""
         try:
             for message in self._scheduler.messages():
-                if self._recording.is_news(message):
+                if self._recording.is_new(message):
                     self.progress.apply(message)
                     yield message
             self.ending = self._reason or self._scheduler.ending
@@ -118,7 +118,7 @@ class Run(Recorded):
         except OtherSimulator as error:
             self.ending = self.problem = str(error)
         except OSError as error:
-            self.ending = self.problem = why(error)
+            self.ending = self.problem = failure_reason(error)
         finally:
             self._conclude()
 
@@ -201,7 +201,7 @@ class Run(Recorded):
         try:
             self.progress = self._recording.end(self.ending, interrupted=bool(self._reason))
         except OSError as error:
-            self.problem = self.problem or why(error)
+            self.problem = self.problem or failure_reason(error)
             # An execution that could not be stored is executed again when the run is resumed.
             self.progress.drop_unfinished()
             self.progress.close(self.problem)
@@ -241,7 +241,9 @@ def begin_recording(
     recording = Recording(place, manifest)
     try:
         record = _record(plan, place.folder, manifest, plan.selection.seed if seed is None else seed)
-        record = replace(record, models=tuple(origin(model, place.folder) for model in models or plan.models))
+        record = replace(
+            record, models=tuple(relative_model_path(model, place.folder) for model in models or plan.models)
+        )
         recording.begin(record, policy, prepared_digest(place.folder))
         place.write_record(record)
         write_texts(plan.texts, place.folder)
@@ -254,6 +256,6 @@ def begin_recording(
 def _record(plan: Plan, folder: Path, manifest: Manifest, user_seed: int | None) -> RunRecord:
     """Return the record of a run; a model without a file is recorded by name."""
     path = plan.path
-    shown, start = (plan.name, plan.name) if path is None else (shown_path(path), origin(path, folder))
+    shown, start = (plan.name, plan.name) if path is None else (shown_path(path), relative_model_path(path, folder))
     files = digests(manifest, folder)
     return RunRecord(shown, start, plan.digest, manifest.seed, __version__, files=files, user_seed=user_seed)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 CLOSE = 5e-5
 """Remaining pose error (m and rad) at which a solution is accepted."""
 ROUNDS = 60
-LEAST_DAMPING, DAMPING = 1e-6, 0.01
+MIN_DAMPING, DAMPING = 1e-6, 0.01
 """Damping of the least squares: a minimum, and a share of the squared pose error.
 
 It fades near the goal, because damping lets the pull towards the posture leak into the pose.
@@ -115,7 +115,7 @@ class Arm:
     def _step(self, jacobian: FloatArray, gap: FloatArray, homewards: FloatArray) -> FloatArray:
         """Return one step of damped least squares with a pull (n,) in the null space of the Jacobian (6, n)."""
         square = jacobian @ jacobian.T
-        square.flat[::7] += LEAST_DAMPING + DAMPING * float(gap @ gap)
+        square.flat[::7] += MIN_DAMPING + DAMPING * float(gap @ gap)
         pull = POSTURE * homewards
         # Six equations: the engine's own solver takes a fraction of the time of a general one.
         mujoco.mju_cholFactor(square, 0.0)

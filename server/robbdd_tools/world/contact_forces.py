@@ -58,7 +58,7 @@ class ContactForces:
         self._supports: set[tuple[str, str]] = set()
         self._hold(frozenset())
 
-    def look(self, data: Any) -> None:
+    def measure(self, data: Any) -> None:
         """Measure after one step of the engine."""
         if not data.ncon:
             return

@@ -42,7 +42,7 @@ class Hand(Protocol):
         """Stay in place."""
         ...
 
-    def feels(self, name: str) -> bool:
+    def senses_object(self, name: str) -> bool:
         """Whether the gripping faces hold an object."""
         ...
 
@@ -87,7 +87,7 @@ class Fingers(Gripper):
         for _ in range(int((hand.control - closed) / (CLOSING * TICK)) + PATIENCE):
             hand.control = max(closed, hand.control - CLOSING * TICK)
             yield from hand.wait(1)
-            held = held + 1 if hand.feels(name) else 0
+            held = held + 1 if hand.senses_object(name) else 0
             if held == self._firm:
                 hand.control = closed
                 yield from hand.wait(self._firm)
@@ -113,9 +113,11 @@ class Cup(Gripper):
         yield from hand.move(replace(at, height=at.height + STANDOFF), self._robot.approach_speed)
         hand.control = self._robot.gripper_closed
         lowest = replace(at, height=at.height - PRESS)
-        yield from hand.move(lowest, min(DESCENT, self._robot.approach_speed or DESCENT), lambda: hand.feels(name))
+        yield from hand.move(
+            lowest, min(DESCENT, self._robot.approach_speed or DESCENT), lambda: hand.senses_object(name)
+        )
         yield from hand.wait(self._firm)
-        if not hand.feels(name):
+        if not hand.senses_object(name):
             raise BehaviourError(f"suction cup found no hold on {name} at {hand.time:.2f} s")
 
     def release(self, hand: Hand) -> Step:

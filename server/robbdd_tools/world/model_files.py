@@ -13,7 +13,7 @@ import numpy as np
 from robbdd_tools.base.interpreter import started_in
 from robbdd_tools.base.model_includes import unusable
 from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
-from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
+from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
 from robbdd_tools.world.extent import bounds_of
@@ -95,7 +95,7 @@ def _from_code(source: ModelSource) -> Any:
     model = "" if source.origin is None else source.origin.file
     try:
         make = load_attribute(source.name, model)
-        made = called(source.name, make)
+        made = call_user_code(source.name, make)
         try:
             if isinstance(made, str) and made.lstrip().startswith("<"):
                 return mujoco.MjSpec.from_string(made)

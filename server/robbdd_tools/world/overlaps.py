@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 TOLERATED = 1e-3
 """Depth (m) that a resting contact may have (docs/simulation.md)."""
-MOST = 3
+MAX_NAMED = 3
 """Maximum overlaps named in one message."""
 
 
@@ -34,7 +34,7 @@ def refuse_overlaps(simulation: Simulation) -> None:
     if depths:
         deepest = sorted(depths, key=lambda pair: -depths[pair])
         named = [f"'{one}' and '{other}' overlap by {1000 * depths[one, other]:.0f} mm" for one, other in deepest]
-        more = [f"{len(named) - MOST} more pairs overlap"] if len(named) > MOST else []
+        more = [f"{len(named) - MAX_NAMED} more pairs overlap"] if len(named) > MAX_NAMED else []
         origins = (world.cast.origin(name) for name in deepest[0])
         place = at(next((origin for origin in origins if origin is not None), None))
-        raise SceneError(f"{place}{'; '.join(named[:MOST] + more)}: nothing may overlap at the start")
+        raise SceneError(f"{place}{'; '.join(named[:MAX_NAMED] + more)}: nothing may overlap at the start")

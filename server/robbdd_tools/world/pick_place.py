@@ -201,7 +201,7 @@ class PickPlace:
         """Simulated time, s."""
         return self._simulation.time
 
-    def feels(self, name: str) -> bool:
+    def senses_object(self, name: str) -> bool:
         """Whether the gripping faces hold an object."""
         return self._simulation.holds(self._robot.name, name)
 
@@ -226,7 +226,7 @@ class PickPlace:
             yield
             if until is not None and until():
                 return
-            missing = 0 if self._held is None or self.feels(self._held) else missing + 1
+            missing = 0 if self._held is None or self.senses_object(self._held) else missing + 1
             if missing == SLIPPED:
                 raise BehaviourError(f"gripper lost {self._held} at {self.time:.2f} s")
 

@@ -170,7 +170,7 @@ class Simulation:
         began = perf_counter()
         for _ in range(SUBSTEPS):
             mujoco.mj_step(self.model, self.data)
-            self.forces.look(self.data)
+            self.forces.measure(self.data)
         self.belts.set_back(self.data)
         self.stepping += perf_counter() - began
         # A target that is not moved stays in place.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from robbdd_tools.catalog.own_behaviour import BehaviourFailed, UserBehaviour
-from robbdd_tools.user_code.calls import UserCodeError, called, definition_of, load_attribute, refused
+from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 from robbdd_tools.world.arm_kinematics import arm_of
 from robbdd_tools.world.errors import BehaviourError, UserError
 from robbdd_tools.world.frames import at
@@ -103,8 +103,8 @@ def run_user_behaviour(
     name = implementation.name
     model = "" if implementation.origin is None else implementation.origin.file
     try:
-        own: UserBehaviour = called(name, load_attribute(name, model))
-        called(name, own.reset, world, behaviour, arguments)
+        own: UserBehaviour = call_user_code(name, load_attribute(name, model))
+        call_user_code(name, own.reset, world, behaviour, arguments)
         while not _is_over(name, own):
             yield
     except UserCodeError as error:
@@ -116,7 +116,7 @@ def run_user_behaviour(
 
 def _is_over(name: str, own: UserBehaviour) -> bool:
     """Execute the behaviour's next tick. ``None`` means that it continues; other non-boolean answers are refused."""
-    answer: Any = called(name, own.step)
+    answer: Any = call_user_code(name, own.step)
     if answer is None or isinstance(answer, bool | np.bool_):
         return bool(cast(Any, answer))
     message = f"{name}.step must return True or False, not {answer!r:.60}"

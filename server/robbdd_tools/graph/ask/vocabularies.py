@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from rdflib import Graph
     from rdflib.term import Node
 
-LEAST_ALIKE = 0.6
+MIN_ALIKE = 0.6
 """Minimum similarity of a suggestion."""
-MOST_KNOWN = 5000
+MAX_KNOWN = 5000
 """Maximum number of terms searched for a suggestion; more would take seconds."""
 Pattern = tuple[Any, Any, Any]
 
@@ -90,7 +90,7 @@ def unknown_terms(graph: Graph, asked: list[Pattern], prefixes: Mapping[str, str
 def _remark(term: Node, known: set[Node], prefixes: Mapping[str, str], text: str) -> str:
     name = shortened(str(term), prefixes)
     line = text[: _place(name, str(term), text)].count("\n") + 1
-    near = get_close_matches(name, _names(known, prefixes), n=1, cutoff=LEAST_ALIKE)
+    near = get_close_matches(name, _names(known, prefixes), n=1, cutoff=MIN_ALIKE)
     hint = f"; did you mean '{near[0]}'?" if near else ""
     return f"line {line}: '{name}' occurs in no triple{hint}"
 
@@ -99,7 +99,7 @@ def _names(known: set[Node], prefixes: Mapping[str, str]) -> list[str]:
     from rdflib import URIRef
 
     iris = sorted(str(term) for term in known if isinstance(term, URIRef))
-    return [shortened(iri, prefixes) for iri in iris[:MOST_KNOWN]]
+    return [shortened(iri, prefixes) for iri in iris[:MAX_KNOWN]]
 
 
 def _place(name: str, iri: str, text: str) -> int:

@@ -117,7 +117,7 @@ class FindingWriter:
     def _is_doubtful(self, location: Location) -> bool:
         return any(
             location.uri == extent.uri and extent.span.start <= location.span.start < extent.span.end
-            for extent in self.built.doubtful
+            for extent in self.built.unreliable_declarations
         )
 
     def _related(self, result: Result, location: Location) -> Iterator[Related]:

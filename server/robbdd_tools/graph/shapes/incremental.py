@@ -98,7 +98,7 @@ class Validation:
         """Drop the cached findings of declarations whose neighbourhood changed."""
         now = {around.identity(entry): entry for entry in around.reached}
         changed = [entry for identity, entry in now.items() if not self._holds(around, identity, entry)]
-        outdated = {around.identity(entry) for entry in around.touched_by(changed)}
+        outdated = {around.identity(entry) for entry in around.dependents_of(changed)}
         self._kept = {
             identity: kept for identity, kept in self._kept.items() if identity in now and identity not in outdated
         }

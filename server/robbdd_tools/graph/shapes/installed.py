@@ -23,11 +23,11 @@ def load_shapes() -> Graph:
     for name in SHAPE_FILES:
         shapes.parse(data_file("metamodels", f"shapes/{name}.ttl"), format="turtle")
     add_word_shapes(shapes)
-    aim_property_shapes(shapes)
+    assign_targets(shapes)
     return shapes
 
 
-def aim_property_shapes(shapes: Graph) -> None:
+def assign_targets(shapes: Graph) -> None:
     """Move targets from node shapes to their property shapes, which is equivalent.
 
     pyshacl evaluates a nested shape separately for each focus node, but a shape with targets once for all of them; this

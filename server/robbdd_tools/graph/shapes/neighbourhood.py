@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from robbdd_tools.graph.write.declarations import Key, Reached, Uses, reach
+from robbdd_tools.graph.write.declarations import Key, Reached, Uses, reachable_declarations
 from robbdd_tools.graph.write.identities import identities
 from robbdd_tools.syntax import tree
 
@@ -26,7 +26,7 @@ class Neighbourhoods:
 
     def __init__(self, snapshot: Snapshot, uri: str) -> None:
         self.uses = Uses(snapshot.closure(uri))
-        self.reached = reach(self.uses)
+        self.reached = reachable_declarations(self.uses)
         self.known = identities(snapshot, self.reached)
         self._by_key = {entry.key: entry for entry in self.reached}
         self._identities = dict(self._identified())
@@ -60,7 +60,7 @@ class Neighbourhoods:
                     waiting.append(other)
         return tuple(entry for entry in self.reached if entry.key in found)
 
-    def touched_by(self, changed: Iterable[Reached]) -> list[Reached]:
+    def dependents_of(self, changed: Iterable[Reached]) -> list[Reached]:
         """Return some declarations with all their dependents."""
         waiting = list(changed)
         if not waiting:

@@ -14,7 +14,7 @@ from robbdd_tools.graph.write.behaviour_trees import add_behaviour_tree
 from robbdd_tools.graph.write.built import BuiltGraph as BuiltGraph
 from robbdd_tools.graph.write.built import Clash
 from robbdd_tools.graph.write.clauses import ClauseWriter, add_time
-from robbdd_tools.graph.write.declarations import Reached, Uses, doubtful, reach
+from robbdd_tools.graph.write.declarations import Reached, Uses, reachable_declarations, unreliable_declarations
 from robbdd_tools.graph.write.executions import add_execution
 from robbdd_tools.graph.write.foreign import read_graph_file
 from robbdd_tools.graph.write.foreign_imports import graph_format
@@ -55,7 +55,7 @@ def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
     if file is not None:
         return read_graph_file(file.document, [snapshot.document(other) for other in snapshot.joined.get(uri, ())])
     uses = Uses(snapshot.closure(uri))
-    reached = reach(uses)
+    reached = reachable_declarations(uses)
     return build_declarations(uri, uses, reached, identities(snapshot, reached))
 
 
@@ -71,7 +71,7 @@ def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: 
     _add_foundations(sink, reached)
     bind_prefixes(sink.graph, _add_prefixes(sink, reached))
     clashes = tuple(Clash(str(node), location, first) for node, location, first in sink.clashes)
-    uncertain = doubtful(uses, reached, [clash.location for clash in clashes])
+    uncertain = unreliable_declarations(uses, reached, [clash.location for clash in clashes])
     return BuiltGraph(
         uri,
         sink.graph,

@@ -27,8 +27,8 @@ class Clash:
 class BuiltGraph:
     """A graph with its metadata.
 
-    ``names`` maps an IRI to its qualified name in the text (a CURIE for a parsed graph); ``doubtful`` are the extents
-    of declarations that have an error or use one that has; ``doubtful_nodes`` are the nodes that these declare.
+    ``names`` maps an IRI to its qualified name in the text (a CURIE for a parsed graph). ``unreliable_declarations``
+    are the extents of declarations that have an error or use one that has; ``doubtful_nodes`` are the nodes that these declare.
     ``faults`` are why a graph file could not be read; ``is_read`` marks a graph file, whose findings have to name their
     node. ``authors`` are the declarations (document and offset) that describe a node.
     """
@@ -38,7 +38,7 @@ class BuiltGraph:
     sources: SourceMap
     names: Mapping[str, str]
     clashes: tuple[Clash, ...]
-    doubtful: tuple[Location, ...]
+    unreliable_declarations: tuple[Location, ...]
     doubtful_nodes: frozenset[str]
     faults: tuple[Diagnostic, ...] = ()
     is_read: bool = False

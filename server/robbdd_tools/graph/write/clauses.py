@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.catalog.api import Slot
 
-MOST_NESTED = 100
+MAX_NESTED = 100
 """Maximum nesting of parentheses; deeper ones are left out to protect the stack."""
 
 
@@ -74,7 +74,7 @@ class ClauseWriter:
         return nodes
 
     def _each(self, expressions: Iterable[tree.Expression], role: str, path: str) -> list[Node]:
-        if path.count(".") > MOST_NESTED:
+        if path.count(".") > MAX_NESTED:
             return []
         written = [
             self._clause(tree.bare(expression), role, f"{path}.{index}") for index, expression in enumerate(expressions)
@@ -153,7 +153,7 @@ class ClauseWriter:
 
     def _for_all(self, for_all: tree.ForAll, path: str) -> list[Node]:
         node = self._generated("forall", path)
-        if node is None or path.count(".") > MOST_NESTED:
+        if node is None or path.count(".") > MAX_NESTED:
             return []
         self._start(node, ["bdd:ForAll"], "when", self.frame.at(for_all.variable))
         self._quantified(node, for_all.variable, for_all.in_set)

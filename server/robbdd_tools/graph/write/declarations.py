@@ -98,7 +98,7 @@ class Uses:
         return first < len(starts) and starts[first] < span.end
 
 
-def reach(uses: Uses) -> tuple[Reached, ...]:
+def reachable_declarations(uses: Uses) -> tuple[Reached, ...]:
     """Return all declarations of the first file and those reachable from them, imports before their importers."""
     every = tuple(uses)
     waiting = [entry for entry in every if entry.own]
@@ -111,7 +111,9 @@ def reach(uses: Uses) -> tuple[Reached, ...]:
     return tuple(entry for entry in every if entry.key in found)
 
 
-def doubtful(uses: Uses, reached: Sequence[Reached], left_out: Iterable[Location]) -> tuple[Reached, ...]:
+def unreliable_declarations(
+    uses: Uses, reached: Sequence[Reached], left_out: Iterable[Location]
+) -> tuple[Reached, ...]:
     """Return the declarations whose further findings are not reliable.
 
     These are the ones with an error or an omitted part, and users of an incomplete declaration: a broken one, or a set,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from robbdd_tools.base.document import Document
 
-MOST_NAMED = 3
+MAX_NAMED = 3
 """Maximum number of terms in a message."""
 
 
@@ -68,7 +68,7 @@ def _vocabulary() -> dict[str, set[str]]:
 
 def _unknown(document: Document, namespace: str, own: str, terms: list[str]) -> Diagnostic:
     places = list(_places(document.text, namespace))
-    named = ", ".join(f"'{term}'" for term in terms[:MOST_NAMED]) + (" …" if len(terms) > MOST_NAMED else "")
+    named = ", ".join(f"'{term}'" for term in terms[:MAX_NAMED]) + (" …" if len(terms) > MAX_NAMED else "")
     message = f"the namespace <{namespace}> is unknown, so its terms are ignored ({named}); did you mean <{own}>?"
     fixes: tuple[Fix, ...] = ()
     if places:

@@ -89,10 +89,10 @@ def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
             declarers = repeated.setdefault(iri, [Declarer(other.key, one.symbol, one.says)])
             declarers.append(Declarer(entry.key, named.symbol, named.says))
         starts[entry.key] = tuple(own)
-    return _sorted_out(Identities(names, starts), repeated)
+    return _resolved(Identities(names, starts), repeated)
 
 
-def _sorted_out(found: Identities, repeated: Mapping[str, list[Declarer]]) -> Identities:
+def _resolved(found: Identities, repeated: Mapping[str, list[Declarer]]) -> Identities:
     """Separate shared from contested nodes; a declaration that loses its name to another may be left out entirely."""
     for iri, declarers in repeated.items():
         agreed = {declarer.says for declarer in declarers}
@@ -107,13 +107,13 @@ def _sorted_out(found: Identities, repeated: Mapping[str, list[Declarer]]) -> Id
 def _named(declaration: Declaration) -> tuple[_Named, ...]:
     words = dict(_behaviours(declaration.tree.body)) if isinstance(declaration.tree, tree.Template) else {}
     return tuple(
-        _Named(symbol, local_name(symbol), _says(symbol, words))
+        _Named(symbol, local_name(symbol), _states(symbol, words))
         for symbol in declaration.symbols
         if symbol.namespace is not None
     )
 
 
-def _says(symbol: Symbol, words: Mapping[str, str]) -> str | None:
+def _states(symbol: Symbol, words: Mapping[str, str]) -> str | None:
     if symbol.kind in VARIABLES:
         return str(symbol.kind)
     return words.get(symbol.name) if symbol.kind is SymbolKind.BEHAVIOUR else None

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.write.sink import Frame
 
 Owner = tree.KinematicTree | tree.Graph
-MOST_STEPS = 50
+MAX_STEPS = 50
 """Maximum number of trees through which a name is resolved: trees that contain one another must not loop for ever."""
 
 
@@ -40,7 +40,7 @@ class Trees:
         return None
 
     def _found(self, path: str) -> str | None:
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_STEPS):
             owner = next((name for name in _prefixes(path) if name in self.owners), None)
             if owner is None:
                 return None

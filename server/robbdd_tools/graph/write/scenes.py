@@ -57,7 +57,7 @@ class Scenes:
             elif nested is not None and nested.workspace is not None:
                 yield "workspace", nested.workspace
 
-    def brought_in(self, frame: Frame, variation: tree.Table | tree.Product) -> Members:
+    def named_set_members(self, frame: Frame, variation: tree.Table | tree.Product) -> Members:
         """Return the members of the element sets that a variation names (``obj set <…>``)."""
         links = (frame.target(link.reference) for link in _links(variation))
         found = [self.sets[link] for link in links if link is not None and link in self.sets]

@@ -80,7 +80,7 @@ def _add_membership(frame: Frame, known: Known, variant: tree.Variant, node: URI
     if scene is None or template_scene is None:
         return
     own = known.scenes.members(scene)
-    brought = known.scenes.brought_in(frame, variant.variation)
+    brought = known.scenes.named_set_members(frame, variant.variation)
     for kind in ELEMENT_TYPES:
         if own[kind]:
             members = tuple(dict.fromkeys([*own[kind], *brought[kind]]))

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from robbdd_tools.names.project import Snapshot
 
 TESTS = "robbdd/tests"
-MOST = 10_000
+MAX_SCENARIOS = 10_000
 """Maximum number of scenarios in one answer unless fewer are requested."""
 
 
@@ -50,7 +50,7 @@ def register_tests(server: RobbddServer) -> None:
         if variant is None:
             return await ls.in_background(lambda snapshot: _stories(snapshot, ls.convert, uri), uri)
         first = max(1, asked.optional_number("first") or 1)
-        most = min(MOST, asked.optional_number("most") or MOST)
+        most = min(MAX_SCENARIOS, asked.optional_number("most") or MAX_SCENARIOS)
         return await ls.in_background(lambda snapshot: _scenarios(snapshot, ls.convert, uri, variant, first, most), uri)
 
 
@@ -78,7 +78,9 @@ def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]
         variant, count = one.variant, number_of_scenarios(one.variant)
         return {
             **_declared("execution", one.iri, one.definition),
-            "detail": " · ".join(part for part in (variant.definition.symbol.path, *_ways(one, count)) if part),
+            "detail": " · ".join(
+                part for part in (variant.definition.symbol.path, *_execution_words(one, count)) if part
+            ),
             "variant": variant.iri,
             "count": count,
             "digest": execution_digest(snapshot, one),
@@ -106,7 +108,7 @@ def _counted(count: int | None, word: str) -> str:
     return "" if count is None else f"{count:,} {word}{'' if count == 1 else 's'}"
 
 
-def _ways(execution: PlacedExecution, count: int | None) -> Iterator[str]:
+def _execution_words(execution: PlacedExecution, count: int | None) -> Iterator[str]:
     """Yield the settings of an execution, apart from its variant, as text."""
     node = execution.node
     yield _counted(count, "scenario")

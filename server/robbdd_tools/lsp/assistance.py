@@ -21,7 +21,7 @@ from robbdd_tools.names.project import Snapshot
 STILL_READING = "*(so far: files that may use it are still being read)*"
 
 
-def register_reading(server: RobbddServer) -> None:
+def register_assistance(server: RobbddServer) -> None:
     """Add the methods to a server."""
     _register_completion(server)
     _register_hover(server)

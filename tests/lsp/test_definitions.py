@@ -1,4 +1,4 @@
-"""Ways from one place to others, over the wire."""
+"""Navigation from one place to another, over the wire."""
 
 from __future__ import annotations
 

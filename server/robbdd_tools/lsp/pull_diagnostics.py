@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from robbdd_tools.lsp.refresh import DIAGNOSTICS, is_refreshed
-from robbdd_tools.lsp.survey import NOTHING, Findings, Survey
+from robbdd_tools.lsp.workspace_diagnostics import NOTHING, Findings, WorkspaceDiagnostics
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -60,7 +60,9 @@ def _report(found: list[types.Diagnostic], previous: str | None) -> types.Docume
     return types.RelatedFullDocumentDiagnosticReport(items=found, result_id=now)
 
 
-def _changes(survey: Survey, known: Mapping[str, str]) -> list[types.WorkspaceFullDocumentDiagnosticReport]:
+def _changes(
+    survey: WorkspaceDiagnostics, known: Mapping[str, str]
+) -> list[types.WorkspaceFullDocumentDiagnosticReport]:
     """Return the files whose diagnostics differ from those that the client has."""
     findings = survey.findings()
     gone = {uri: NOTHING for uri in known if uri not in findings}

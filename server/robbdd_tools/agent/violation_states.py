@@ -18,7 +18,7 @@ FOLDER = "moments"
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class ViolationState:
     """A violation: scenario number, feature line of the clause, time (s), the engine's joint positions."""
 
     index: int
@@ -27,7 +27,7 @@ class Moment:
     state: tuple[float, ...]
 
 
-class Moments:
+class ViolationStates:
     """The violations of a run folder: one file per scenario with one JSON object per line, in order of detection.
 
     Several agent processes may work in one folder, each on its own scenarios.
@@ -42,18 +42,18 @@ class Moments:
 
     def keep(self, index: int, line: int, at: float, state: FloatArray) -> None:
         """Add a violation; raises ``OSError``."""
-        moment = Moment(index, line, at, tuple(state.tolist()))
+        moment = ViolationState(index, line, at, tuple(state.tolist()))
         self._folder.mkdir(exist_ok=True)
         with self._file(index).open("a", encoding="utf-8") as file:
             file.write(json.dumps(asdict(moment)) + "\n")
 
-    def __iter__(self) -> Iterator[Moment]:
+    def __iter__(self) -> Iterator[ViolationState]:
         """Yield all, scenario by scenario; raises ``OSError`` or ``ValueError`` if a file cannot be read."""
         for path in sorted(self._folder.glob("*.jsonl")):
             for line in load_text(path, RESULT_SIZE).splitlines():
                 try:
                     fields = json.loads(line)
-                    yield Moment(fields["index"], fields["line"], fields["at"], tuple(fields["state"]))
+                    yield ViolationState(fields["index"], fields["line"], fields["at"], tuple(fields["state"]))
                 except (KeyError, TypeError) as error:
                     raise ValueError(f"{path} does not contain moments") from error
 

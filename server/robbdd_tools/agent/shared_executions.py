@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from robbdd_tools.agent.course import TIMEOUT, Call, Course, Timing
+from robbdd_tools.agent.behaviour_run import TIMEOUT, BehaviourRun, Call, Timing
 from robbdd_tools.catalog.api import Kind
 from robbdd_tools.judging.scenario_clauses import behaviour_calls
 from robbdd_tools.monitor.time import After, Before
@@ -21,19 +21,19 @@ KEPT = 8
 """Number of courses kept for further scenarios. A dropped course is simulated again, bit-identical."""
 
 
-class Courses:
+class SharedExecutions:
     """Courses shared by several scenarios: one for each execution of a behaviour tree."""
 
     def __init__(self) -> None:
-        self._kept: dict[str, Course] = {}
+        self._kept: dict[str, BehaviourRun] = {}
         self.left_out: set[str] = set()
         """Elements already reported as left out."""
 
-    def course(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing) -> Course:
+    def course(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing) -> BehaviourRun:
         """Return the course of a scenario, a new one unless it shares one; raises ``SceneError``."""
         if spec.tree is None:
-            return Course(spec, calls, timing)
-        course = self._kept.pop(spec.tree.name, None) or Course(spec, calls, timing)
+            return BehaviourRun(spec, calls, timing)
+        course = self._kept.pop(spec.tree.name, None) or BehaviourRun(spec, calls, timing)
         self._kept[spec.tree.name] = course
         while len(self._kept) > KEPT:
             del self._kept[next(iter(self._kept))]

@@ -8,7 +8,7 @@ from pathlib import Path
 from threading import Lock
 
 from robbdd_tools.base.files import uri_to_path
-from robbdd_tools.run.shown import traced_variants
+from robbdd_tools.run.json_documents import traced_variants
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, project_root, store_beside
 
 

@@ -22,7 +22,7 @@ from robbdd_tools.names.project import Snapshot
 Targets = Callable[[Snapshot, str, int], list[tuple[str, Span]]]
 
 
-def register_ways(server: RobbddServer) -> None:
+def register_definitions(server: RobbddServer) -> None:
     """Add the methods to a server."""
     _register_targets(server)
     _register_calls(server)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robbdd_tools.protocol.messages import RunMessage, ScenarioFinished, ScenarioStarted
-from robbdd_tools.run.order import InOrder
+from robbdd_tools.run.message_order import OrderedMessages
 
 
 def story(index: int) -> list[RunMessage]:
@@ -15,19 +15,19 @@ def story(index: int) -> list[RunMessage]:
 
 @given(st.permutations([0, 1, 2, 3] * 2))
 def test_any_interleaving_becomes_the_order_of_the_manifest(turns: list[int]) -> None:
-    order, stories = InOrder(range(4)), {index: iter(story(index)) for index in range(4)}
+    order, stories = OrderedMessages(range(4)), {index: iter(story(index)) for index in range(4)}
     found = [due for index in turns for due in order.take(index, next(stories[index]))]
     assert found == [message for index in range(4) for message in story(index)]
 
 
 def test_the_scenario_whose_turn_it_is_is_heard_at_once() -> None:
-    order = InOrder(range(4))
+    order = OrderedMessages(range(4))
     assert list(order.take(0, ScenarioStarted(0))) == [ScenarioStarted(0)]
     assert list(order.take(1, ScenarioStarted(1))) == []
 
 
 def test_what_is_finished_is_not_lost_when_its_turn_never_comes() -> None:
-    order = InOrder(range(4))
+    order = OrderedMessages(range(4))
     for message in (*story(2), ScenarioStarted(1)):
         assert list(order.take(2 if message in story(2) else 1, message)) == []
     assert list(order.finished()) == story(2)

@@ -11,11 +11,11 @@ import pytest
 
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.shapes.project_shapes import EditorShapes
-from robbdd_tools.lsp import survey
+from robbdd_tools.lsp import workspace_diagnostics as survey
 from robbdd_tools.lsp.convert import Converter
 from robbdd_tools.lsp.framing import Answer, Request
 from robbdd_tools.lsp.server import RobbddServer
-from robbdd_tools.lsp.survey import Survey
+from robbdd_tools.lsp.workspace_diagnostics import WorkspaceDiagnostics
 
 PATIENCE = 10.0
 
@@ -76,10 +76,10 @@ def process(monkeypatch: pytest.MonkeyPatch) -> _Process:
 
 async def test_a_file_that_changes_while_it_is_looked_at_is_looked_at_again(tmp_path: Path, process: _Process) -> None:
     (tmp_path / "a.bdd").write_text("", encoding="utf-8")
-    surveyed = Survey(cast(RobbddServer, _Server(tmp_path)))
-    surveyed.look()
+    surveyed = WorkspaceDiagnostics(cast(RobbddServer, _Server(tmp_path)))
+    surveyed.schedule()
     first = await process.next()
-    surveyed.look([first.uri])
+    surveyed.schedule([first.uri])
     await surveyed.wait_for_news()
     assert process.asked.empty()
     process.answer(first)

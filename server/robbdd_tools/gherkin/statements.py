@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from robbdd_tools.graph.acceptance_model import AcceptanceModel
 
 
-def stated(model: AcceptanceModel, variant: str, variation: int) -> set[tuple[str, str]]:
+def statements(model: AcceptanceModel, variant: str, variation: int) -> set[tuple[str, str]]:
     """Return clauses (IRIs) and sentences of scenario number ``variation`` (from 1) of a variant (its IRI).
 
     A clause repeated for each element of a set has several sentences. Empty if there is no such scenario.

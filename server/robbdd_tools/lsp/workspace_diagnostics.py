@@ -46,7 +46,7 @@ class Findings:
         return cls(found, blake2b(text, digest_size=12).hexdigest())
 
 
-class Survey:
+class WorkspaceDiagnostics:
     """The findings in unopened files, by file, as far as validated."""
 
     def __init__(self, server: RobbddServer) -> None:
@@ -68,7 +68,7 @@ class Survey:
         """Whether all files have been validated in their current state."""
         return not (self._waiting or self._asked or self._timer or self._telling)
 
-    def look(self, changed: Iterable[str] | None = None) -> None:
+    def schedule(self, changed: Iterable[str] | None = None) -> None:
         """Schedule validation of all files, or of those that depend on the ``changed`` ones."""
         self._changed.update(changed or ())
         self._everything |= changed is None
@@ -79,7 +79,7 @@ class Survey:
     def closed(self, uri: str) -> None:
         """Take over a file that the editor has just closed."""
         self._published.pop(uri, None)
-        self.look([uri])
+        self.schedule([uri])
 
     def stop(self) -> None:
         """End the process."""
@@ -126,7 +126,7 @@ class Survey:
             if is_new or not changed.isdisjoint(self._reached.get(uri, ())):
                 self._waiting[uri] = None
         self._ask()
-        self.tell_soon()
+        self.publish_soon()
 
     def _ask(self) -> None:
         while len(self._asked) < AT_ONCE:
@@ -153,7 +153,7 @@ class Survey:
         finally:
             self._asked.discard(answer.uri)
             self._ask()
-            self.tell_soon()
+            self.publish_soon()
 
     def _converted(self, answer: Answer) -> dict[str, Findings]:
         convert, documents = self._server.convert, answer.documents
@@ -163,7 +163,7 @@ class Survey:
             found.setdefault(one.uri, []).append(convert.diagnostic(documents, one))
         return {uri: Findings.of(diagnostics) for uri, diagnostics in found.items()}
 
-    def tell_soon(self) -> None:
+    def publish_soon(self) -> None:
         """Publish the findings soon."""
         if self._telling is None:
             self._telling = asyncio.get_running_loop().call_later(GATHERING, self._tell)

@@ -71,7 +71,7 @@ def find_trace(store: RunStore, word: str | None, given: Mapping[str, object]) -
     raise NoTrace(f"there is no trace of {'that scenario' if given else 'any scenario'} in {where}: run it first")
 
 
-def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
+def trace_document(run: StoredRun, index: int) -> dict[str, Any]:
     """Return the document of a trace; raises ``NoTrace`` and ``NoSuchRun``.
 
     It is independent of the current model text: clauses have no ``source`` and no ``stale``, but the sentence of their
@@ -85,7 +85,7 @@ def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
     if index not in finished_in(document) or not trace_file(run.folder, index).is_file():
         raise NoTrace(f"run {run.number} keeps no trace of {spec.name}")
     seen = _seen(run, index)
-    kept = kept_curves(run, index)
+    kept = stored_curves(run, index)
     parts = {str(clause.line): kept["clauses"].get(str(clause.line), []) for clause in spec.clauses}
     return {
         "run": run.number,
@@ -107,7 +107,7 @@ def shown_trace(run: StoredRun, index: int) -> dict[str, Any]:
     }
 
 
-def kept_curves(run: StoredRun, index: int) -> Mapping[str, Any]:
+def stored_curves(run: StoredRun, index: int) -> Mapping[str, Any]:
     """Return the curves stored with a trace: duration, remark, events, curves by feature line; raises ``NoTrace``."""
     path = curves_file(run.folder, index)
     try:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 Json = dict[str, Any]
 
 
-class LastGood:
+class LastValid:
     """Keeps the last good answer by document and further keys."""
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class LastGood:
         if error is None:
             kept[key] = make()
             return kept[key], None
-        return kept.get(key), _told(snapshot, uri, error)
+        return kept.get(key), _described(snapshot, uri, error)
 
     def forget(self, uri: str) -> None:
         """Drop the answers of a document."""
@@ -45,7 +45,7 @@ def _first_error(snapshot: Snapshot, uri: str) -> Diagnostic | None:
     return None
 
 
-def _told(snapshot: Snapshot, uri: str, error: Diagnostic) -> str:
+def _described(snapshot: Snapshot, uri: str, error: Diagnostic) -> str:
     place = document_of(snapshot, error.uri).position(error.span.start)
     problem = f"line {place.line + 1}: {error.message}"
     return problem if error.uri == uri else f"{error.uri.rsplit('/', 1)[-1]}, {problem}"

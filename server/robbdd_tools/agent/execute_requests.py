@@ -13,7 +13,7 @@ PAUSE = 0.2
 """Seconds between two checks that the parent process is alive, after it has closed the stream."""
 
 
-def read_orders(stream: TextIO) -> Iterator[str]:
+def read_requests(stream: TextIO) -> Iterator[str]:
     """Yield the lines of a stream as they arrive.
 
     When the stream has ended and the parent process is gone, this process exits immediately, whatever it executes. If

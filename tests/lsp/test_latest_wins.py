@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import asyncio
 
-from robbdd_tools.lsp.newest import MOST_REPLACED, Newest
+from robbdd_tools.lsp.latest_wins import MAX_REPLACED, LatestWins
 
 
 class Bench:
     """Numbered works that wait until they are let go, and what became of them."""
 
     def __init__(self) -> None:
-        self.newest = Newest(asyncio.create_task)
+        self.newest = LatestWins(asyncio.create_task)
         self.go = asyncio.Event()
         self.begun: list[int] = []
         self.finished: list[int] = []
@@ -46,29 +46,29 @@ async def test_a_newer_work_replaces_the_older() -> None:
 
 async def test_one_work_is_let_through_and_the_last_one_follows_it() -> None:
     bench = Bench()
-    last = 5 * MOST_REPLACED
+    last = 5 * MAX_REPLACED
     for number in range(last + 1):
         await bench.begin(number)
-    assert bench.begun == list(range(MOST_REPLACED + 1))
+    assert bench.begun == list(range(MAX_REPLACED + 1))
     await bench.let_go()
-    assert bench.finished == [MOST_REPLACED, last]
+    assert bench.finished == [MAX_REPLACED, last]
 
 
 async def test_works_may_be_replaced_again_once_one_was_let_through() -> None:
     bench = Bench()
-    for number in range(MOST_REPLACED + 1):
+    for number in range(MAX_REPLACED + 1):
         await bench.begin(number)
     await bench.let_go()
     bench.go.clear()
     await bench.begin(100)
     await bench.begin(101)
     await bench.let_go()
-    assert bench.finished == [MOST_REPLACED, 101]
+    assert bench.finished == [MAX_REPLACED, 101]
 
 
 async def test_what_is_ended_neither_goes_on_nor_is_followed() -> None:
     bench = Bench()
-    for number in range(MOST_REPLACED + 2):
+    for number in range(MAX_REPLACED + 2):
         await bench.begin(number)
     bench.newest.end("file")
     await bench.let_go()

@@ -86,7 +86,7 @@ class Timing:
     timeout: float = TIMEOUT
 
 
-class Course:
+class BehaviourRun:
     """The course of events: the settled world at time 0 and the behaviours to execute in it.
 
     ``stamps`` are the events emitted so far; ``completed`` counts the successful behaviours of a sequence; ``tree`` is
@@ -273,7 +273,7 @@ class Course:
         self.remark = self.remark or remark
 
 
-def _tree_run(spec: TreeSpec, course: Course) -> TreeRun:
+def _tree_run(spec: TreeSpec, course: BehaviourRun) -> TreeRun:
     from robbdd_tools.agent.tree_execution import TreeRun
 
     return TreeRun(spec, lambda leaf: course.attempt(Call(leaf.behaviour, leaf.arguments)), course.stamp)

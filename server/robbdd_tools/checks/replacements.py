@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from robbdd_tools.checks.finding import MOST_OFFERED, change
+from robbdd_tools.checks.finding import MAX_OFFERED, change
 from robbdd_tools.names.types import narrowed, variable_key
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
@@ -39,7 +39,7 @@ def other_variables(site: Site, use: Use, clauses: Clauses, others: Mapping[str,
     phrase = next((phrase for phrase in clauses.phrases if phrase.span.contains(use.ref.span.start)), None)
     taken = {value.path for _, value in phrase.arguments if isinstance(value, tree.Ref)} if phrase is not None else ()
     fitting = [name for name, kinds in others.items() if kinds & use.kinds and name not in taken]
-    yield from (change(site, f"Change to '{name}'", use.ref, name) for name in fitting[:MOST_OFFERED])
+    yield from (change(site, f"Change to '{name}'", use.ref, name) for name in fitting[:MAX_OFFERED])
 
 
 def other_values(scenario: Scenario, column: Column, node: tree.Node, kinds: Kinds, written: set[str]) -> Iterator[Fix]:
@@ -52,11 +52,11 @@ def other_values(scenario: Scenario, column: Column, node: tree.Node, kinds: Kin
     is_source = any(isinstance(one, tree.Selection) and one.source is node for one in column.written)
     if link is None and not is_source:
         names = [member.name for member in members if member.name not in written]
-        for name in names[:MOST_OFFERED]:
+        for name in names[:MAX_OFFERED]:
             yield change(site, f"Change to '<{name}>'", node, name if isinstance(node, tree.Ref) else f"<{name}>")
         return
     sets = dict.fromkeys((SET_WORDS[member.kind], member.name.rpartition(".")[0]) for member in members)
-    for words, name in list(sets)[:MOST_OFFERED]:
+    for words, name in list(sets)[:MAX_OFFERED]:
         if link is None:
             yield change(site, f"Change to '{name}'", node, name)
         else:

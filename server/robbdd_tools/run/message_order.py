@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from robbdd_tools.protocol.messages import RunMessage, ScenarioFinished
 
 
-class InOrder:
+class OrderedMessages:
     """Pass on the current scenario's messages immediately; buffer those of later ones until their turn.
 
     ``turns`` are the numbers of the scenarios, increasing.

@@ -1,4 +1,4 @@
-"""Latest-wins task runner that cannot starve: a task is replaced at most ``MOST_REPLACED`` times in a row."""
+"""Latest-wins task runner that cannot starve: a task is replaced at most ``MAX_REPLACED`` times in a row."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 
 Work = Callable[[], Coroutine[Any, Any, None]]
-MOST_REPLACED = 8
+MAX_REPLACED = 8
 """Replacements in a row: about a second of fast typing, after which a task may finish and show its findings."""
 
 
-class Newest:
-    """Runs one task at a time for each key; a newer one replaces it, or, after ``MOST_REPLACED``, waits for its end.
+class LatestWins:
+    """Runs one task at a time for each key; a newer one replaces it, or, after ``MAX_REPLACED``, waits for its end.
 
     ``spawn`` starts a coroutine as a task.
     """
@@ -28,7 +28,7 @@ class Newest:
         running = self._running.get(key)
         if running is not None:
             replaced = self._replaced.get(key, 0)
-            if replaced == MOST_REPLACED:
+            if replaced == MAX_REPLACED:
                 self._waiting[key] = work
                 return
             self._replaced[key] = replaced + 1
