@@ -1,4 +1,4 @@
-// Finds, starts, watches and stops the language server.
+// Find, start, watch and stop the language server.
 import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 import { openFiles } from "./written";
@@ -23,9 +23,9 @@ export class Server implements vscode.Disposable {
   private lookup: Lookup | undefined;
   private state: ServerState = { kind: "stopped" };
   private begun = false;
-  /** How many runs were begun by commands; names them. */
+  /** Number of runs started by commands; part of their names. */
   private commands = 0;
-  /** Starts and stops one after the other, however fast they are asked for. */
+  /** Serialises starts and stops, however fast they are requested. */
   private pending: Promise<void> = Promise.resolve();
 
   constructor(
@@ -35,7 +35,7 @@ export class Server implements vscode.Disposable {
     private readonly onState: (state: ServerState) => void,
   ) {}
 
-  /** Look for the server and start it, unless that was done before: nothing runs until something needs it. */
+  /** Find and start the server, unless already done: nothing runs until it is needed. */
   begin(): Promise<void> {
     if (this.begun) {
       return this.pending;
@@ -44,7 +44,7 @@ export class Server implements vscode.Disposable {
     return this.restart();
   }
 
-  /** Stop the server if there is one, look for it again and start it. */
+  /** Stop the server, if any, find it again and start it. */
   restart(): Promise<void> {
     this.begun = true;
     return this.enqueue(async () => {
@@ -60,7 +60,7 @@ export class Server implements vscode.Disposable {
     });
   }
 
-  /** Restart only if the search would end elsewhere than the last time. */
+  /** Restart only if the lookup would have another result than last time. */
   async restartIfMoved(): Promise<void> {
     if (!this.begun) {
       return;
@@ -75,13 +75,13 @@ export class Server implements vscode.Disposable {
     return this.enqueue(() => this.shutDown());
   }
 
-  /** Install a server for this extension alone and start it; whether one runs then. */
+  /** Install a server for this extension and start it; return whether one runs then. */
   async install(): Promise<boolean> {
     await this.pending;
     const lookup = this.lookup;
     if (lookup?.found === true && lookup.origin !== OWN) {
       const used = `The language server ${lookup.command} (from ${lookup.origin}) is in use`;
-      void vscode.window.showInformationMessage(`${used}; one of the extension's own would come after it.`);
+      void vscode.window.showInformationMessage(`${used}; it takes precedence over one of the extension's own.`);
       return this.isRunning();
     }
     const before = this.state;
@@ -108,7 +108,7 @@ export class Server implements vscode.Disposable {
     return this.isRunning();
   }
 
-  /** Whether a server runs once what is under way has ended; if none does, the user is asked what to do. */
+  /** Whether a server runs after pending starts; if none does, ask the user what to do. */
   async ready(): Promise<boolean> {
     await this.begin();
     if (this.state.kind === "missing") {
@@ -141,13 +141,13 @@ export class Server implements vscode.Disposable {
   }
 
   /**
-   * Run a command of the server, whether a code lens or the palette asked for it, and do what follows from its
-   * answer. With `problem`, after a message, when there is no server or it refuses. A run without a `token` gets one, so
-   * that its end, and no other, can be shown.
+   * Run a command of the server, from a code lens or the palette, and handle its answer. Show a message and return
+   * `problem` if there is no server or it refuses. A run without a `token` gets one, so that its end can be
+   * distinguished.
    */
   async execute(command: string, target: unknown): Promise<unknown> {
     const argument = RUNNING.has(command) && hasUri(target) ? this.named(target) : target;
-    // A command may be what has activated us: the server is just starting then.
+    // A command may have activated the extension: the server is just starting then.
     await this.begin();
     const client = this.client;
     if (client?.isRunning() !== true) {
@@ -176,13 +176,13 @@ export class Server implements vscode.Disposable {
       return { problem: this.refused(command, error) };
     } finally {
       if (isNamed(argument)) {
-        // The answer follows the last message. A cancelled or crashed run has not said that it ended.
+        // The answer follows the last message. A cancelled or crashed run has not reported its end.
         this.runs.end(argument.token);
       }
     }
   }
 
-  /** Ask the server something that no user waits for: undefined when there is no server or it has no answer. */
+  /** Send a request that no user waits for; undefined without a server or an answer. */
   async request(method: string, params: object): Promise<unknown> {
     if (this.client?.isRunning() !== true) {
       return undefined;
@@ -195,7 +195,7 @@ export class Server implements vscode.Disposable {
     }
   }
 
-  /** Ask the server something that a user waits for, and show why there is no answer. */
+  /** Send a request that a user waits for, and show why there is no answer. */
   async ask(method: string, params: object): Promise<unknown> {
     if (!(await this.ready())) {
       return undefined;
@@ -208,14 +208,14 @@ export class Server implements vscode.Disposable {
     }
   }
 
-  /** Tell the server something, if it runs. */
+  /** Notify the server, if it runs. */
   notify(method: string, params: object): void {
     if (this.isRunning()) {
       void this.client?.sendNotification(method, params);
     }
   }
 
-  /** Wait until a start or stop under way has ended. */
+  /** Wait until a pending start or stop has ended. */
   settled(): Promise<void> {
     return this.pending;
   }
@@ -239,7 +239,7 @@ export class Server implements vscode.Disposable {
       this.client = client;
       await client.start();
     } catch (error) {
-      // A client writes its reason to the log itself, or the server does on its way out.
+      // The client or the exiting server has already written the reason to the log.
       this.log[client === undefined ? "error" : "debug"](String(error));
       this.fail(client, `The RobBDD language server (${command}) could not be started. See the log.`);
     }
@@ -272,7 +272,7 @@ export class Server implements vscode.Disposable {
     return client;
   }
 
-  /** Let what was to be run show why it was not. */
+  /** Report at the requested items why they were not run. */
   private tellRefusal(target: unknown, answer: unknown): void {
     const problem = problemOf(answer);
     if (problem !== undefined && hasUri(target) && !isMomentary(answer)) {
@@ -307,7 +307,7 @@ export class Server implements vscode.Disposable {
     this.onState(state);
   }
 
-  /** Say once, for the client in use, that it is gone. */
+  /** Report once, for the current client, that it is gone. */
   private fail(client: LanguageClient | undefined, problem: string): void {
     if (this.client !== client) {
       return;

@@ -1,4 +1,4 @@
-// The commands of the palette. Those of code lenses (robbdd.run, …) are the server's own.
+// The commands of the palette. Those of code lenses (robbdd.run, …) belong to the server.
 import * as vscode from "vscode";
 import type { Server } from "./client";
 import type { GraphView } from "./panels/graph/view";
@@ -15,7 +15,7 @@ import { openServerSetting } from "./settings";
 import { isRecord } from "./values";
 import type { TestingView } from "./testing/view";
 
-/** What shows something of a model beside its text. */
+/** Views that show a model next to its text. */
 export interface Views {
   readonly previews: PreviewView;
   readonly graphs: GraphView;
@@ -77,12 +77,12 @@ async function runWithOptions(server: Server, chooser: RunOptionsChooser, uri: s
   }
 }
 
-/** Replay what a menu of the Testing view names: a test, or a message with the test that it is about. */
+/** Replay the item of a Testing view menu: a test, or a message with its test. */
 async function replayTest(replays: ReplayView, tests: TestingView, target: unknown): Promise<void> {
   const test = isRecord(target) && "test" in target ? target["test"] : target;
   const recording = tests.recording(test as vscode.TestItem);
   if (recording === undefined) {
-    void vscode.window.showInformationMessage("A story is not executed by itself: replay one of its scenarios.");
+    void vscode.window.showInformationMessage("A story has no execution of its own: replay one of its scenarios.");
     return;
   }
   await replays.open(recording);

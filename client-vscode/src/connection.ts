@@ -6,21 +6,21 @@ import { CloseAction, ErrorAction, LanguageClient, State, TransportKind } from "
 import { RestartBudget } from "./restarts";
 import { VerdictPainter } from "./verdicts/painter";
 
-/** What hears of a connection, and does what the server's commands ask for. */
+/** Receives the events of a connection and the requests of the server's commands. */
 export interface Owner {
   starting(): void;
   running(): void;
-  /** The server ended by itself, whether or not it is started again. */
+  /** The server ended by itself, whether or not it will be restarted. */
   ended(): void;
-  /** The server ended by itself and is not started again. */
+  /** The server ended by itself and will not be restarted. */
   gaveUp(): void;
   runMessage(notification: unknown): void;
   execute(command: string, argument: unknown): Promise<unknown>;
 }
 
 /**
- * Logs its errors and leaves it to us to speak to the user: two messages for one failure are one too many. Where in its
- * library one arose is left out: it would push what the server said last out of sight.
+ * Logs its errors without showing them: two messages for one failure are too many. The library's stack trace is
+ * omitted: it would push the server's last output out of sight.
  */
 class DiscreetClient extends LanguageClient {
   override error(message: string, data?: unknown): void {
@@ -28,7 +28,7 @@ class DiscreetClient extends LanguageClient {
   }
 }
 
-/** A client, not started yet, of the server that a command starts in the folder `cwd`, for files of these languages. */
+/** Create an unstarted client of the server that a command starts in the folder `cwd`, for files of these languages. */
 export function createClient(
   command: string,
   cwd: string,
@@ -38,7 +38,7 @@ export function createClient(
 ): LanguageClient {
   const budget = new RestartBudget();
   let answered = false;
-  /** There while the server runs: what it has sent goes with it. */
+  /** Exists only while the server runs, as its data goes with it. */
   let verdicts: VerdictPainter | undefined;
   const client = new DiscreetClient(
     "robbdd",
@@ -51,11 +51,11 @@ export function createClient(
       markdown: { isTrusted: { enabledCommands: ["robbdd.showReplay"] } },
       initializationFailedHandler: () => false,
       errorHandler: {
-        // A broken pipe is followed by the close of the connection, which is where the decision is made.
+        // A broken pipe is followed by the close of the connection, which is handled there.
         error: () => ({ action: ErrorAction.Continue, handled: true }),
         closed: () => {
           owner.ended();
-          // A server that never answered will not do so the next time either.
+          // A server that never answered will fail again.
           const again = answered && budget.crashed(Date.now());
           if (!again) {
             owner.gaveUp();
@@ -76,7 +76,7 @@ export function createClient(
         },
         executeCommand: (name, [argument]: unknown[]) => owner.execute(name, argument),
       },
-      // Python's logging writes everything to stderr; that alone does not make a line an error.
+      // Python's logging writes everything to stderr; a line there is not necessarily an error.
       stdioOptions: { stdout: forwardLines, stderr: forwardLines },
     },
   );
@@ -102,7 +102,7 @@ function forwardLines(input: Readable, channel: vscode.LogOutputChannel): void {
   });
 }
 
-/** Leaves out the server's snippets: the extension has the same ones, and offers them while there is no server, too. */
+/** Drop the server's snippets: the extension has the same ones, also without a server. */
 function withoutSnippets<Found extends vscode.CompletionItem[] | vscode.CompletionList>(
   found: Found | null | undefined,
 ): Found | vscode.CompletionItem[] | null | undefined {

@@ -1,9 +1,9 @@
-// Asks another extension for something that it may refuse, or never answer: neither may keep ours from working.
+// Query other extensions, which may refuse or never answer, without blocking ours.
 
-/** Milliseconds that another extension has to answer. */
+/** Time limit for another extension's answer, ms. */
 export const ANSWER_LIMIT = 5000;
 
-/** What `ask` answers; undefined when it fails or takes longer than the limit, which `warn` gets in words. */
+/** Return the answer of `ask`; undefined if it fails or exceeds the limit, which is reported to `warn`. */
 export async function answerOf<Answer>(
   what: string,
   ask: () => PromiseLike<Answer> | Answer,
@@ -19,7 +19,7 @@ export async function answerOf<Answer>(
   try {
     return await Promise.race([Promise.resolve().then(ask), late]);
   } catch (error) {
-    warn(`${what}: ${error instanceof Error ? error.message : String(error)}. It is left out.`);
+    warn(`${what}: ${error instanceof Error ? error.message : String(error)}. It is ignored.`);
     return undefined;
   } finally {
     clearTimeout(timer);

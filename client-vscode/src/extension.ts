@@ -1,4 +1,4 @@
-// Entry point: creates the parts and connects them.
+// Entry point: create the parts and connect them.
 import * as vscode from "vscode";
 import { LANGUAGES, Server } from "./client";
 import { registerCommands } from "./commands";
@@ -61,21 +61,21 @@ export function activate(context: vscode.ExtensionContext): void {
       }
     }),
     vscode.workspace.onDidChangeTextDocument(({ document, contentChanges }) => {
-      // The server sees code only when it is saved: an error that a run found in it is out of date from the first edit on.
+      // The server sees code only when it is saved: an error that a run found in it is outdated from the first edit on.
       if (document.languageId === "python" && contentChanges.length > 0 && hasOurs(document.uri)) {
         started.notify("robbdd/codeEdited", { uri: document.uri.toString() });
       }
     }),
     vscode.workspace.onDidGrantWorkspaceTrust(() => {
-      // The server gets it when it starts; and there may be another one now.
+      // Send the state to the server when it starts; it may be another one now.
       void started.restart();
     }),
     vscode.workspace.onDidChangeWorkspaceFolders(() => {
       void started.restartIfMoved();
     }),
   );
-  // A folder with models is no reason to work: one that is shown is, and the Testing view when it is opened. Nobody waits
-  // for these: what needs the server waits for it by itself.
+  // Activate the parts when a model is shown or the Testing view is opened; a folder with models alone does not. Not
+  // awaited: parts that need the server wait for it themselves.
   if (vscode.workspace.textDocuments.some(({ languageId }) => LANGUAGES.includes(languageId))) {
     void started.begin();
   }

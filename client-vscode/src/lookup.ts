@@ -1,29 +1,29 @@
-// Where the language server is: a pure function of what surrounds the editor.
+// Locate the language server: a pure function of the editor's environment.
 import { posix, win32 } from "node:path";
 
 export const SERVER = "robbdd-lsp";
 
-/** Everything the lookup depends on; no other state is read. */
+/** All inputs of the lookup; no other state is read. */
 export interface Surroundings {
   /** The setting `robbdd.server.path` as the user wrote it. */
   readonly setting: string;
-  /** Whether programs that the workspace brings along may be started. */
+  /** Whether programs of the workspace may be started. */
   readonly trusted: boolean;
-  /** File system paths of the workspace folders, in their order. */
+  /** File system paths of the workspace folders, in order. */
   readonly folders: readonly string[];
   /** The interpreter of the Python environment selected in the editor. */
   readonly python: string | undefined;
   /** The environment variable PATH. */
   readonly searchPath: string;
-  /** The program in the environment that the extension has made, if it has. */
+  /** The program in the environment created by the extension, if any. */
   readonly installed: string | undefined;
   readonly home: string;
   readonly platform: NodeJS.Platform;
-  /** Whether a path names a file that can be executed. */
+  /** Whether a path names an executable file. */
   readonly isExecutable: (path: string) => boolean;
 }
 
-/** Where a server comes from that the extension has installed. */
+/** Origin of a server installed by the extension. */
 export const OWN = "the extension's own environment";
 export type Origin = "setting" | "Python environment" | ".venv of the workspace" | "PATH" | typeof OWN;
 
@@ -43,9 +43,9 @@ interface Candidate {
 }
 
 /**
- * Find the server: the setting, the selected Python environment, `.venv` of a workspace folder, PATH, the
- * environment that the extension made; the first that exists wins. A setting that names nothing is a problem of its own: falling through would start another
- * server than the one the user asked for.
+ * Find the server: the setting, the selected Python environment, `.venv` of a workspace folder, PATH, the extension's
+ * environment; the first that exists wins. An invalid setting is a problem of its own: a fallback would start another
+ * server than the user requested.
  */
 export function findServer(around: Surroundings): Lookup {
   const setting = around.setting.trim();
@@ -66,7 +66,7 @@ export function findServer(around: Surroundings): Lookup {
     found: false,
     problem:
       `The RobBDD language server (${SERVER}) was not found. It can be installed ` +
-      `into a Python environment that only this extension uses.${trust}`,
+      `into a Python environment for this extension only.${trust}`,
     tried: candidates.map((candidate) => candidate.path),
     installable: true,
   };
@@ -111,7 +111,7 @@ function fromWorkspace(around: Surroundings): Candidate[] {
   return [...selected, ...local];
 }
 
-/** On Windows a base installation keeps its interpreter one folder above its scripts. */
+/** On Windows, a base installation keeps its interpreter one folder above its scripts. */
 function scriptsBeside(python: string, around: Surroundings): string {
   const folder = pathsOf(around).dirname(python);
   const beside = around.platform !== "win32" || /[/\\]Scripts$/i.test(folder);
@@ -126,8 +126,8 @@ function fromSearchPath(around: Surroundings): Candidate[] {
 }
 
 /**
- * The folders of PATH from which programs may be started. A relative entry would mean the current folder, and so
- * perhaps the workspace: it is left out.
+ * The folders of PATH from which programs may be started. Relative entries are skipped: they would mean the current
+ * folder, and so perhaps the workspace.
  */
 export function searchFolders(around: Surroundings): string[] {
   const paths = pathsOf(around);

@@ -1,4 +1,4 @@
-// How far the walkthrough has come: context keys that end its steps, each set once in a window.
+// Walkthrough progress: context keys that complete its steps, each set once in a window.
 import * as vscode from "vscode";
 
 const reached = new Set<string>();
@@ -10,7 +10,7 @@ export function reach(milestone: "projectBegun" | "modelShown" | "somethingHeld"
   }
 }
 
-/** Notice when a model is shown. */
+/** Complete a step when a model is shown. */
 export function noticeModels(): vscode.Disposable {
   const notice = (editor: vscode.TextEditor | undefined): void => {
     if (editor?.document.languageId === "robbdd") {

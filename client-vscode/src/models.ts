@@ -1,18 +1,18 @@
-// Which model a command is about.
+// Determine the model of a command.
 import * as vscode from "vscode";
 
 const MODELS = "**/*.bdd";
 const NOT_THERE = "**/{node_modules,.venv,.robbdd}/**";
-/** More than anybody wants to choose from. */
+/** Maximum number of models to choose from. */
 const MOST = 200;
 
-/** What says by itself which scenarios are executed: a model, and the executions of one. */
+/** Languages of runnable files: models and executions. */
 export const RUNNABLE = ["robbdd", "robbdd-bddx"];
 
 /**
- * The model that a menu names, else the one in the active editor, else one in another visible editor, else the
- * workspace's only one or the one that the user chooses, which is opened. Undefined, after a message, if there is none.
- * Editors count that show one of these languages.
+ * The model named by a menu, else the one in the active editor, else one in another visible editor, else the
+ * workspace's only one or the one that the user chooses, which is opened. Shows a message and returns undefined if
+ * there is none. Only editors of one of these languages are considered.
  */
 export async function modelFor(target: unknown, languages = ["robbdd"]): Promise<vscode.Uri | undefined> {
   const isModel = (editor: vscode.TextEditor | undefined): boolean =>
@@ -22,13 +22,13 @@ export async function modelFor(target: unknown, languages = ["robbdd"]): Promise
   return target instanceof vscode.Uri ? target : (shown?.document.uri ?? (await openModel()));
 }
 
-/** Open a model of the workspace; where there are several, the user chooses. */
+/** Open a model of the workspace; if there are several, the user chooses. */
 export async function openModel(): Promise<vscode.Uri | undefined> {
   const found = await vscode.workspace.findFiles(MODELS, NOT_THERE, MOST);
   const chosen = found.length > 1 ? await choose(found) : found[0];
   if (found.length === 0) {
     const begin = "New Project…";
-    const message = "There is no .bdd file in this workspace: its scenarios are what this command is about.";
+    const message = "There is no .bdd file in this workspace: this command needs one with scenarios.";
     if ((await vscode.window.showInformationMessage(message, begin)) === begin) {
       void vscode.commands.executeCommand("robbdd.newProject");
     }
@@ -38,10 +38,10 @@ export async function openModel(): Promise<vscode.Uri | undefined> {
   return chosen;
 }
 
-/** Show a file; where the walkthrough is in front, beside it, so that both can be seen. */
+/** Show a file, next to the walkthrough if that is visible. */
 export async function show(uri: vscode.Uri): Promise<void> {
   const tab = vscode.window.tabGroups.activeTabGroup.activeTab;
-  // A tab of the walkthrough is one that extensions cannot see.
+  // Extensions cannot inspect the walkthrough's tab.
   const beside = tab !== undefined && tab.input === undefined;
   await vscode.window.showTextDocument(uri, { viewColumn: beside ? vscode.ViewColumn.Beside : vscode.ViewColumn.Active });
 }

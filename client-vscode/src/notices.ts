@@ -1,4 +1,4 @@
-// Messages with buttons that say what can be done.
+// Messages with action buttons.
 import * as vscode from "vscode";
 
 export type Buttons = Readonly<Record<string, () => void>>;
@@ -11,7 +11,7 @@ export function warn(problem: string, buttons: Buttons = {}): void {
   follow(vscode.window.showWarningMessage(problem, ...Object.keys(buttons)), buttons);
 }
 
-/** Do what the button of a message says. Nobody waits for the answer: a restart would wait for itself. */
+/** Execute the action of a clicked button. Not awaited: a restart would wait for itself. */
 function follow(answer: Thenable<string | undefined>, buttons: Buttons): void {
   void answer.then((choice) => {
     if (choice !== undefined) {

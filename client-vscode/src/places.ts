@@ -1,4 +1,4 @@
-// Places in texts as the server gives them, and which of them a cursor is in.
+// Places in texts as sent by the server, and those at a cursor.
 import { isRecord } from "./values";
 
 export interface Place {
@@ -16,7 +16,9 @@ export interface Location {
   readonly range: Range;
 }
 
-/** Of the entries whose text is around the cursor the innermost; of several with one text the `best` of two. */
+/**
+ * The innermost of the entries whose text is around the cursor; among several with the same text, the `best` of two.
+ */
 export function innermost<Entry extends Location>(
   entries: Iterable<Entry>,
   uri: string,

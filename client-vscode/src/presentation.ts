@@ -1,18 +1,18 @@
-// What the status item shows; kept apart from the editor's interface so that it can be tested as a function.
+// Contents of the status item, independent of the editor's interface so that it can be tested as a function.
 
 export type ServerState =
   | { readonly kind: "starting" }
   | { readonly kind: "ready"; readonly command: string }
   | { readonly kind: "stopped" }
   | { readonly kind: "failed"; readonly problem: string }
-  /** It is nowhere, but could be installed. */
+  /** The server was not found, but can be installed. */
   | { readonly kind: "missing"; readonly problem: string }
   | { readonly kind: "installing" };
 
-/** How an installation of the server ended: with a `problem` where it failed. */
+/** Result of an installation of the server; with a `problem` if it failed. */
 export type Installed = { readonly kind: "installed" | "cancelled" } | { readonly kind: "failed"; readonly problem: string };
 
-/** The state after an installation that did not bring a server: that from before it, or why there is none. */
+/** The state after an unsuccessful installation: the previous one, or why there is no server. */
 export function afterInstallation(ended: Installed, before: ServerState): ServerState {
   return ended.kind === "failed" ? { kind: "missing", problem: notInstalled(ended.problem) } : before;
 }
@@ -30,14 +30,14 @@ export interface Presentation {
   readonly text: string;
   readonly tooltip: string;
   readonly severity: "normal" | "warning" | "error";
-  /** The command of a click. */
+  /** The command executed on a click. */
   readonly command: "robbdd.showLog" | "robbdd.showRuns" | "robbdd.statusActions" | "robbdd.installServer";
 }
 
 /**
- * Say in one item how the server is and what it does.
+ * Describe the server's state and activity in one item.
  *
- * `runs` are the runs under way; `summary` is the last finished one's, empty when there was none.
+ * `runs` are the runs in progress; `summary` is that of the last finished run, empty if there was none.
  */
 export function present(server: ServerState, runs: readonly RunProgress[], summary: string): Presentation {
   switch (server.kind) {

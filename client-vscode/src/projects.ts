@@ -1,4 +1,4 @@
-// Begins projects from the templates that the server knows.
+// Create projects from the server's templates.
 import * as vscode from "vscode";
 import type { Server } from "./client";
 import { show } from "./models";
@@ -10,7 +10,7 @@ interface Template {
   readonly about: string;
 }
 
-/** Ask for a template, a folder and a name, and open the first model of the project that the server writes there. */
+/** Ask for a template, a folder and a name, and open the first model of the created project. */
 export async function newProject(server: Server): Promise<void> {
   if (!(await server.ready())) {
     return;
@@ -22,7 +22,7 @@ export async function newProject(server: Server): Promise<void> {
   }
   const template = await vscode.window.showQuickPick(
     answer.map(({ name, about }) => ({ label: name, detail: about })),
-    { title: "New RobBDD Project", placeHolder: "What should it begin as?" },
+    { title: "New RobBDD Project", placeHolder: "Which template?" },
   );
   const parent = template && (await chooseParent());
   const name = parent && (await askName(template.label));
@@ -33,7 +33,7 @@ export async function newProject(server: Server): Promise<void> {
   const begun = await server.request("robbdd/newProject", { template: template.label, uri: folder.toString() });
   const problem = isRecord(begun) ? begun["problem"] : "the server did not answer";
   if (typeof problem === "string") {
-    void vscode.window.showErrorMessage(`No project was begun: ${problem}`);
+    void vscode.window.showErrorMessage(`No project was created: ${problem}`);
     return;
   }
   reach("projectBegun");

@@ -1,10 +1,10 @@
-// The one place that talks to the Python extension, which may be absent.
+// The only module that talks to the Python extension, which may be absent.
 import * as vscode from "vscode";
 import { answerOf } from "./environment";
 
 const PYTHON_EXTENSION = "ms-python.python";
 
-/** The part of the Python extension's public interface that is used here. */
+/** The used part of the Python extension's public interface. */
 interface PythonApi {
   readonly environments: {
     getActiveEnvironmentPath(resource?: vscode.Uri): { readonly path: string };
@@ -26,7 +26,7 @@ export async function selectedInterpreter(
   }
   const { environments } = api;
   const environment = await answerOf(
-    "The Python extension could not tell the selected environment",
+    "The Python extension did not report the selected environment",
     () => environments.resolveEnvironment(environments.getActiveEnvironmentPath(folder)),
     (message) => {
       log.warn(message);

@@ -1,7 +1,7 @@
-// Leads to the settings of the language server.
+// Open the settings of the language server.
 import * as vscode from "vscode";
 
-/** Open it where it can be set: a path of the machine that a remote window works on is not among the user's own. */
+/** Open a setting where it can be changed: in a remote window, paths of the machine are not user settings. */
 export function openServerSetting(name: "path" | "package" = "path"): void {
   const page =
     vscode.env.remoteName === undefined ? "workbench.action.openSettings" : "workbench.action.openRemoteSettings";

@@ -13,7 +13,7 @@ export class StatusItem implements vscode.Disposable {
     this.render();
   }
 
-  /** From the server's first state on there is something to show. */
+  /** Shown from the server's first state on. */
   showServer(state: ServerState): void {
     this.server = state;
     this.render();

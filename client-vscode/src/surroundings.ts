@@ -1,4 +1,4 @@
-// Reads from the editor and the machine what the lookup of the server depends on.
+// Read the inputs of the server lookup from the editor and the machine.
 import { accessSync, constants, statSync } from "node:fs";
 import { homedir } from "node:os";
 import * as vscode from "vscode";

@@ -1,4 +1,4 @@
-// Looks at values whose type nobody vouches for.
+// Type checks of untyped values.
 
 export function isRecord(value: unknown): value is Record<string, unknown> {
   return typeof value === "object" && value !== null;

@@ -1,7 +1,7 @@
-// What follows when the server has written files.
+// Follow-up when the server has written files.
 import * as vscode from "vscode";
 
-/** Open the first of the files that the server's command returned; when there is none the server has said why. */
+/** Open the first of the files returned by the server's command; without any, the server has shown the reason. */
 export async function openFiles(result: unknown): Promise<void> {
   const files = writtenFiles(result);
   const [first] = files;

@@ -13,7 +13,7 @@ test("an answer is passed on without a word", async () => {
 });
 
 test("an extension that rejects or throws is left out, and the log tells why", async () => {
-  const told = ["The stub failed: no such environment. It is left out."];
+  const told = ["The stub failed: no such environment. It is ignored."];
   const error = new Error("no such environment");
   assert.deepEqual(await asked(() => Promise.reject(error)), { answer: undefined, warnings: told });
   const { answer, warnings } = await asked(() => {
@@ -25,5 +25,5 @@ test("an extension that rejects or throws is left out, and the log tells why", a
 test("an extension that never answers is left out after the limit", async () => {
   const { answer, warnings } = await asked(() => new Promise<string>(() => undefined), 20);
   assert.equal(answer, undefined);
-  assert.deepEqual(warnings, ["The stub failed: there was no answer within 0.02 s. It is left out."]);
+  assert.deepEqual(warnings, ["The stub failed: there was no answer within 0.02 s. It is ignored."]);
 });

@@ -43,7 +43,7 @@ test("a node in view moves nothing, one outside comes in by the shortest way", (
 
 test("a picture that does not show the whole model as it is says so", () => {
   assert.equal(remark(PICTURE), "");
-  assert.match(remark({ ...PICTURE, problem: "line 3: oh" }), /^Out of date.*line 3: oh.*made before/);
+  assert.match(remark({ ...PICTURE, problem: "line 3: oh" }), /^Out of date.*line 3: oh.*the last picture without errors/);
   assert.match(remark({ ...PICTURE, svg: "", problem: "line 3: oh" }), /nothing to draw yet/);
   assert.match(remark({ ...PICTURE, shown: 0, total: 0 }), /no story/);
   assert.match(remark({ ...PICTURE, shown: 600, total: 4000, root: NODE }), /^600 of 4000 nodes around sort/);

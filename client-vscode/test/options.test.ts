@@ -88,7 +88,7 @@ test("what is remembered is used as far as it is usable", () => {
   assert.deepEqual(optionsIn({ repeat: 0, jobs: "2", seed: 1.5, where: "", amount: { kind: "pairwise", number: 4 } }), {});
   assert.deepEqual(argumentsOf(optionsIn({ seed: 0, amount: { kind: "sample", number: 7 } })), { seed: 0, sample: 7 });
   assert.deepEqual(withOption({ seed: 1, repeat: 2 }, "repeat", undefined), { seed: 1 });
-  assert.equal(summaryOf({}), "everything as the model says");
+  assert.equal(summaryOf({}), "all as in the model");
 });
 
 test("a number is typed whole, in its range, or left out", () => {

@@ -142,10 +142,10 @@ test("an answer of another version is no trace", () => {
   }
 });
 
-test("a reader is told which clauses read otherwise by now, and when that cannot be told", () => {
+test("a reader is told which clauses have changed, and when that is unknown", () => {
   const one = clause("at-goal", "holds", null);
   assert.equal(ageOf([one, { ...one, stale: false }]), "");
-  assert.match(ageOf([one, { ...one, stale: true }, { ...one, name: "in-hand", stale: true }]), /at-goal, in-hand read otherwise/);
-  assert.match(ageOf([{ ...one, stale: true }]), /at-goal reads otherwise/);
+  assert.match(ageOf([one, { ...one, stale: true }, { ...one, name: "in-hand", stale: true }]), /at-goal, in-hand have changed/);
+  assert.match(ageOf([{ ...one, stale: true }]), /at-goal has changed/);
   assert.match(ageOf([{ ...one, stale: null }]), /has errors/);
 });

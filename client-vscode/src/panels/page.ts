@@ -1,13 +1,13 @@
-// The page that a web view begins with: one script, one style sheet, and a policy that lets nothing else in.
+// HTML of a web view: one script, one style sheet, and a policy that allows nothing else.
 
 export interface PageParts {
   readonly title: string;
-  /** Address of the bundled script and of the style sheet beside it, as the web view may load them. */
+  /** Addresses of the bundled script and style sheet, as seen by the web view. */
   readonly script: string;
   readonly style: string;
-  /** Where the web view's own files come from, for the policy. */
+  /** Source of the web view's own files, for the policy. */
   readonly source: string;
-  /** A word that nobody can guess; only scripts that carry it run. */
+  /** An unguessable token; only scripts with it run. */
   readonly nonce: string;
 }
 

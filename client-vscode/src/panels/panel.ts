@@ -1,4 +1,4 @@
-// What all panels with a page of their own have in common: where its files lie, what it may load, when it can listen.
+// Common base of all panels with a page: its files, its permissions, its message queue.
 import { randomBytes } from "node:crypto";
 import * as vscode from "vscode";
 import { isRecord } from "../values";
@@ -8,9 +8,7 @@ import { page } from "./page";
 export class Panel<Outgoing extends object> implements vscode.Disposable {
   private readonly subscriptions: vscode.Disposable[];
 
-  /**
-   * `ready` is called whenever the page has been loaded and knows nothing; `receive` with all else that it says.
-   */
+  /** `ready` is called whenever the page has loaded without state; `receive` with all its other messages. */
   constructor(
     readonly view: vscode.WebviewPanel,
     extension: vscode.Uri,
@@ -59,7 +57,7 @@ export class Panel<Outgoing extends object> implements vscode.Disposable {
   }
 }
 
-/** Open a new panel beside the text, without taking the keyboard from that; one that a panel leads to in its place. */
+/** Open a new panel next to the text without taking the focus; from another panel, in its place. */
 export function beside(type: string, title: string): vscode.WebviewPanel {
   const fromPanel = vscode.window.tabGroups.activeTabGroup.activeTab?.input instanceof vscode.TabInputWebview;
   const viewColumn = fromPanel ? vscode.ViewColumn.Active : vscode.ViewColumn.Beside;

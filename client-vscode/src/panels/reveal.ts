@@ -1,8 +1,8 @@
-// The way from a panel back to a text.
+// Navigate from a panel to a text.
 import * as vscode from "vscode";
 import type { Range } from "../places";
 
-/** Select a place in its document, in an editor that shows it already if there is one, never in the panel's column. */
+/** Select a place in its document, in an editor that already shows it if any, never in the panel's column. */
 export async function reveal(uri: string, range: Range, panel: vscode.ViewColumn | undefined): Promise<void> {
   const shown = vscode.window.visibleTextEditors.find(({ document }) => document.uri.toString() === uri);
   const document = await vscode.workspace.openTextDocument(vscode.Uri.parse(uri));

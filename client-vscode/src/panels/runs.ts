@@ -16,7 +16,7 @@ export interface StoredRun {
   readonly seed: number;
   readonly complete: boolean;
   readonly state: (typeof STATES)[number];
-  /** How many of `total` scenarios came to their end. */
+  /** How many of `total` scenarios are finished. */
   readonly finished: number;
   readonly total: number;
   readonly holds: number;
@@ -32,7 +32,7 @@ export function isRuns(value: unknown): value is { readonly runs: readonly Store
   return isRecord(value) && Array.isArray(value["runs"]) && value["runs"].every(isRun);
 }
 
-/** How the scenarios of a run came out, and how far a run is that did not finish all of them. */
+/** The verdicts of a run's scenarios, and the progress of an unfinished run. */
 export function outcome({ holds, violated, unknown, state, finished, total }: StoredRun): string {
   const parts = [`${holds} hold`, `${violated} violated`, `${unknown} unknown`].filter((part) => !part.startsWith("0 "));
   const counts = parts.join(", ") || "nothing judged";

@@ -1,22 +1,22 @@
-// The server's answer to `robbdd/preview`, and the way from a place in a model to a line of its feature.
+// The server's answer to `robbdd/preview`, and the map from a place in a model to a line of its feature.
 import { type Location, type Place, innermost, isLocation } from "../places";
 import { isRecord } from "../values";
 
-/** A line of the feature, from 0, and the text that it was made from. */
+/** A line of the feature, from 0, and its source text. */
 export interface PreviewLine extends Location {
   readonly line: number;
 }
 
 export interface Preview {
   readonly text: string;
-  /** Why the text is older than the model; null when it is not. */
+  /** Why the text is older than the model; null if it is not. */
   readonly problem: string | null;
   readonly lines: readonly PreviewLine[];
 }
 
 /**
- * The line that shows what the cursor is in: of the innermost text around it, which may be repeated in each scenario,
- * the line nearest to the one shown at present.
+ * The feature line of the innermost text at the cursor. It may be repeated in each scenario; then the line nearest to
+ * the one currently shown.
  */
 export function lineAt(lines: readonly PreviewLine[], uri: string, cursor: Place, present: number): number | undefined {
   const away = ({ line }: PreviewLine) => Math.abs(line - present);

@@ -1,18 +1,18 @@
-// The Gherkin of a model in a read-only document beside it, which follows its text and the cursor.
+// The Gherkin of a model in a read-only document next to it, which follows its text and the cursor.
 import * as vscode from "vscode";
 import { LANGUAGES, type Server } from "../client";
 import { type Preview, isPreview, lineAt } from "./answer";
 
 const SCHEME = "robbdd-preview";
-/** Milliseconds without an edit before a preview is made again. */
+/** Milliseconds without an edit before a preview is updated. */
 const PAUSE = 250;
-/** Languages of other extensions that colour Gherkin, best first; ours colours it where none is there. */
+/** Languages of other extensions that colour Gherkin, best first; ours is the fallback. */
 const COLOURS = ["cucumber", "gherkin", "feature", "robbdd-feature"];
 
 export class PreviewView implements vscode.TextDocumentContentProvider, vscode.Disposable {
   private readonly changed = new vscode.EventEmitter<vscode.Uri>();
   readonly onDidChange = this.changed.event;
-  /** What is shown, by the URI of the model. */
+  /** Previews by the URI of the model. */
   private readonly shown = new Map<string, Preview>();
   private readonly mark = vscode.window.createTextEditorDecorationType({
     isWholeLine: true,
@@ -38,7 +38,7 @@ export class PreviewView implements vscode.TextDocumentContentProvider, vscode.D
     ];
   }
 
-  /** Show the Gherkin of a model beside it. */
+  /** Show the Gherkin of a model next to it. */
   async open(model: vscode.Uri): Promise<void> {
     await this.load(model.toString());
     const uri = previewOf(model);
@@ -57,7 +57,7 @@ export class PreviewView implements vscode.TextDocumentContentProvider, vscode.D
     return this.shown.get(modelOf(uri))?.text ?? "";
   }
 
-  /** Make all previews again, because the server is another one. */
+  /** Update all previews, because the server has changed. */
   refreshSoon(): void {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => void this.refresh(), this.shown.size > 0 ? PAUSE : 0);
@@ -73,7 +73,7 @@ export class PreviewView implements vscode.TextDocumentContentProvider, vscode.D
   }
 
   private async refresh(): Promise<void> {
-    // A change of a document's language closes it for a moment: what is closed is sent when it is needed.
+    // A change of a document's language closes it briefly: closed documents are sent again when needed.
     const open = new Set(vscode.workspace.textDocuments.map(({ uri }) => uri.toString()));
     for (const [model, { text }] of [...this.shown]) {
       if (!open.has(previewOf(vscode.Uri.parse(model)).toString())) {
@@ -100,7 +100,7 @@ export class PreviewView implements vscode.TextDocumentContentProvider, vscode.D
     }
   }
 
-  /** Show in a visible preview what the cursor of its model, or of a file that it imports, is in. */
+  /** Show, in a visible preview, the line at the cursor of its model or of an imported file. */
   private follow(editor: vscode.TextEditor): void {
     if (!LANGUAGES.includes(editor.document.languageId)) {
       return;
@@ -123,7 +123,7 @@ export class PreviewView implements vscode.TextDocumentContentProvider, vscode.D
   }
 }
 
-/** The name that a preview is shown under ends like a feature's; which model it is of stands behind it. */
+/** The address of a preview has the ending of a feature; the query names the model. */
 function previewOf(model: vscode.Uri): vscode.Uri {
   const name = model.path.replace(/^.*\//, "").replace(/\.bdd$/, "");
   return vscode.Uri.from({ scheme: SCHEME, path: `/${name}.feature`, query: model.toString() });

@@ -1,4 +1,4 @@
-// Asks for the options of a run, and remembers them for each workspace folder.
+// Ask for the options of a run, and remember them for each workspace folder.
 import * as vscode from "vscode";
 import { type Amount, type OptionName, type RunOptions, numberProblem, optionsIn, substitutionProblem, summaryOf, typedNumber, withOption, wordsOf } from "./options";
 
@@ -12,7 +12,7 @@ interface Entry extends vscode.QuickPickItem {
 export class RunOptionsChooser {
   constructor(private readonly memory: vscode.Memento) {}
 
-  /** The options for a run of a model, asked for; undefined where the user gave up. They are remembered either way. */
+  /** Ask for the options of a run of a model; undefined if the user cancels. They are remembered either way. */
   async choose(model: vscode.Uri): Promise<RunOptions | undefined> {
     const key = `${KEY}:${folderOf(model)}`;
     let options = optionsIn(this.memory.get(key));
@@ -45,28 +45,28 @@ function entries(options: RunOptions): Entry[] {
     option("$(symbol-numeric) Seed", "seed"),
     option("$(server-process) Processes", "jobs"),
     option("$(replace) Behaviours", "bhv"),
-    ...(Object.keys(options).length === 0 ? [] : [{ label: "$(discard) Reset", description: "leave all to the model", action: "reset" } as const]),
+    ...(Object.keys(options).length === 0 ? [] : [{ label: "$(discard) Reset", description: "reset all to the model's values", action: "reset" } as const]),
   ];
 }
 
-/** Ask for one option; nothing changes where the user gives up. */
+/** Ask for one option; nothing changes if the user cancels. */
 async function change(options: RunOptions, name: OptionName): Promise<RunOptions> {
   switch (name) {
     case "where": {
-      const prompt = "Only scenarios with such values, such as: robot=panda and target=~cube.*";
+      const prompt = "Only scenarios with these values, such as: robot=panda and target=~cube.*";
       const typed = await vscode.window.showInputBox({ title: TITLE, prompt, value: options.where ?? "" });
       return typed === undefined ? options : withOption(options, name, typed.trim());
     }
     case "amount":
       return changeAmount(options);
     case "repeat":
-      return changeNumber(options, name, "How often is each scenario executed?");
+      return changeNumber(options, name, "How often should each scenario be executed?");
     case "seed":
-      return changeNumber(options, name, "The seed of everything random; it replaces those of executions.", Number.MIN_SAFE_INTEGER);
+      return changeNumber(options, name, "The seed of all random choices; it replaces the seeds of executions.", Number.MIN_SAFE_INTEGER);
     case "jobs":
-      return changeNumber(options, name, "How many scenarios are executed at a time?");
+      return changeNumber(options, name, "How many scenarios should be executed in parallel?");
     case "bhv": {
-      const prompt = "Catalog behaviours in place of implementations of the .bddx, such as: my-ros-server=pick-place";
+      const prompt = "Catalog behaviours instead of implementations of the .bddx, such as: my-ros-server=pick-place";
       const typed = await vscode.window.showInputBox({ title: TITLE, prompt, value: options.bhv ?? "", validateInput: substitutionProblem });
       return typed === undefined ? options : withOption(options, name, typed.trim());
     }
@@ -100,7 +100,7 @@ async function changeAmount(options: RunOptions): Promise<RunOptions> {
 function askNumber(prompt: string, value: number | undefined, least: number): Thenable<string | undefined> {
   return vscode.window.showInputBox({
     title: TITLE,
-    prompt: `${prompt} Leave it empty for what the model says.`,
+    prompt: `${prompt} Leave it empty to use the model's value.`,
     value: value === undefined ? "" : String(value),
     validateInput: (text) => numberProblem(text, least),
   });

@@ -1,4 +1,4 @@
-// What the server says about a run, as it arrives in the notification `robbdd/runMessage`.
+// The server's messages about a run, as sent in the notification `robbdd/runMessage`.
 import type { Place } from "../testing/listing";
 import { isRecord } from "../values";
 
@@ -14,19 +14,19 @@ export interface ScenarioStarted {
   readonly index: number;
   /** The scenario's name in its feature. */
   readonly name: string;
-  /** The values of its variables, in words. */
+  /** The values of its variables, as text. */
   readonly values: string;
   /** IRI of the scenario's variant. */
   readonly variant?: string;
-  /** Counts the scenarios of the variant, from 1. */
+  /** Number of the scenario in its variant, from 1. */
   readonly variation?: number;
-  /** IRI of the execution that runs it, where there is one. */
+  /** IRI of the execution that runs it, if any. */
   readonly execution?: string | null;
   /** The name of the variant in the text. */
   readonly source?: Place | null;
 }
 
-/** What is said of a clause beside its scenario and its line. */
+/** Data on a clause in addition to its scenario and its line. */
 export interface ClauseWords {
   /** IRI of the clause. */
   readonly clause?: string;
@@ -42,7 +42,7 @@ export interface ClauseStarted extends ClauseWords {
   readonly index: number;
   /** Line of the clause in the feature file. */
   readonly line: number;
-  /** What the clause says, with its values. */
+  /** The sentence of the clause, with its values. */
   readonly sentence?: string;
 }
 
@@ -50,7 +50,7 @@ export interface ClauseJudged extends ClauseWords {
   readonly type: "ClauseJudged";
   readonly index: number;
   readonly line: number;
-  /** What the clause says, with its values. */
+  /** The sentence of the clause, with its values. */
   readonly sentence: string;
   readonly verdict: "holds" | "violated" | "unknown";
   /** Signed margin in `unit`, positive when the clause holds. */
@@ -59,11 +59,11 @@ export interface ClauseJudged extends ClauseWords {
   /** Simulated time of the deciding instant, s. */
   readonly at: number | null;
   readonly reason: string;
-  /** Why the clause could not have been violated; empty where it could. */
+  /** Why the clause could not have been violated; empty if it could. */
   readonly vacuous?: string;
-  /** The error in code of the user that it is unknown for; empty where there is none. */
+  /** The id of the error in users' code that makes it unknown; empty if there is none. */
   readonly fault?: string;
-  /** The run was cancelled before the clause was judged, which is no result. */
+  /** The run was cancelled before the clause was judged; this is not a result. */
   readonly cancelled?: boolean;
 }
 
@@ -78,23 +78,23 @@ export interface ScenarioFinished {
   readonly index: number;
   /** Seconds of simulated time. */
   readonly simulated: number;
-  /** Seconds on the clock. */
+  /** Seconds of wall time. */
   readonly wall: number;
-  /** Seconds on the clock that physics took. */
+  /** Seconds of wall time spent in the physics engine. */
   readonly stepping: number;
 }
 
-/** Code of the user failed, and the scenario has no result because of it; null: no scenario has. */
+/** Users' code failed, and the scenario (null: every scenario) has no result because of it. */
 export interface UserCodeFailed {
   readonly type: "UserCodeFailed";
   readonly index: number | null;
-  /** The same for the same error in several scenarios. */
+  /** Equal for the same error in several scenarios. */
   readonly id: string;
-  /** What failed, and the traceback. */
+  /** The failure and the traceback. */
   readonly lines: readonly string[];
 }
 
-/** Lines that code of the user printed. */
+/** Lines printed by users' code. */
 export interface Output {
   readonly type: "Output";
   readonly index: number | null;
@@ -125,7 +125,7 @@ export type RunMessage =
   | RunFinished;
 
 export interface RunNotification {
-  /** Tells runs apart. */
+  /** Identifies the run. */
   readonly run?: string;
   readonly uri: string;
   readonly message: RunMessage;
@@ -160,7 +160,7 @@ const FIELDS: Record<RunMessage["type"], Record<string, Check>> = {
   RunFinished: { ok: (value) => typeof value === "boolean" },
 };
 
-/** Whether a notification is one this extension understands; a server of another version may say something else. */
+/** Whether a notification is understood by this version of the extension. */
 export function isRunNotification(value: unknown): value is RunNotification {
   return isRecord(value) && isText(value["uri"]) && isRunMessage(value["message"]);
 }

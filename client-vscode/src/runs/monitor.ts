@@ -1,11 +1,11 @@
-// Runs under way: prints their messages and keeps the status item up to date.
+// Runs in progress: print their messages and update the status item.
 import * as vscode from "vscode";
 import { reach } from "../milestones";
 import type { RunProgress } from "../presentation";
 import type { RunNotification } from "./messages";
 import { RunReport } from "./report";
 
-/** A run that was asked for and did not begin; `scenario` is the IRI of a variant, `token` what the run would be called. */
+/** A requested run that did not begin; `scenario` is the IRI of a variant, `token` the run's intended name. */
 export interface Refusal {
   readonly uri: string;
   readonly scenario?: string;
@@ -22,7 +22,7 @@ export class RunMonitor implements vscode.Disposable {
   private readonly over = new vscode.EventEmitter<string | undefined>();
   readonly onMessage = this.heard.event;
   readonly onRefused = this.refused.event;
-  /** The server sends no more messages of the named run, or of any run, whether they ended or not. */
+  /** No more messages of the named run, or of any run, will follow, whether they ended or not. */
   readonly onOver = this.over.event;
 
   constructor(private readonly onChange: (runs: readonly RunProgress[], summary: string) => void) {}
@@ -47,18 +47,18 @@ export class RunMonitor implements vscode.Disposable {
     }
   }
 
-  /** Nothing was run, for a reason that the scenarios should show. */
+  /** Nothing was run, for a reason to be shown at the scenarios. */
   refuse(refusal: Refusal): void {
     this.refused.fire(refusal);
   }
 
-  /** The server sends no more messages of a run. */
+  /** No more messages of a run will follow. */
   end(run: string): void {
     this.interrupt(run, "The run ended before it was complete.");
     this.over.fire(run);
   }
 
-  /** The server is gone, and with it whatever it was running. */
+  /** The server is gone, and all its runs. */
   abandon(): void {
     for (const run of [...this.reports.keys()]) {
       this.interrupt(run, "The language server stopped during the run.");

@@ -1,22 +1,24 @@
-// How the scenarios of a run are chosen and executed: the options of `robbdd.run` that the user sets.
+// User-defined options of `robbdd.run`: selection and execution of scenarios.
 import { isRecord } from "../values";
 
 export const AMOUNTS = ["first", "sample", "pairwise"] as const;
 
-/** Only some scenarios: the first, a random sample, or few that cover all combinations of 2 or 3 variables. */
+/**
+ * A part of the scenarios: the first, a random sample, or a small set that covers all combinations of 2 or 3 variables.
+ */
 export interface Amount {
   readonly kind: (typeof AMOUNTS)[number];
   readonly number: number;
 }
 
-/** What is left out is as the model says; `jobs` is then the number of cores. */
+/** Missing options take the model's values; `jobs` then defaults to the number of cores. */
 export interface RunOptions {
   readonly where?: string;
   readonly amount?: Amount;
   readonly repeat?: number;
   readonly seed?: number;
   readonly jobs?: number;
-  /** Behaviour implementations and the catalog behaviours that are executed instead: `my-server=pick-place, …`. */
+  /** Substitutions of behaviour implementations by catalog behaviours: `my-server=pick-place, …`. */
   readonly bhv?: string;
 }
 
@@ -31,7 +33,7 @@ export function argumentsOf({ amount, bhv, ...others }: RunOptions): Readonly<Re
   };
 }
 
-/** What is wrong with typed substitutions; undefined for usable ones and for nothing. */
+/** The problem of typed substitutions; undefined for valid or empty ones. */
 export function substitutionProblem(text: string): string | undefined {
   const isUsable = substitutionsIn(text).every(([name, behaviour]) => name !== "" && behaviour !== "");
   return isUsable ? undefined : "NAME=BEHAVIOUR, such as my-server=pick-place, separated by commas.";
@@ -45,7 +47,7 @@ function substitutionsIn(text: string): [name: string, behaviour: string][] {
   });
 }
 
-/** What is usable of remembered options, which an older version may have written. */
+/** The valid part of remembered options, which may be from an older version. */
 export function optionsIn(remembered: unknown): RunOptions {
   if (!isRecord(remembered)) {
     return {};
@@ -61,7 +63,7 @@ export function optionsIn(remembered: unknown): RunOptions {
   };
 }
 
-/** Options with one of them replaced, or left to the model. */
+/** Options with one of them replaced, or reset to the model's value. */
 export function withOption<Name extends OptionName>(
   options: RunOptions,
   name: Name,
@@ -70,7 +72,7 @@ export function withOption<Name extends OptionName>(
   return optionsIn({ ...options, [name]: value });
 }
 
-/** An option in words, as it is set or left out. */
+/** An option as text, set or not. */
 export function wordsOf(options: RunOptions, name: OptionName): string {
   const { where, amount, repeat, seed, jobs, bhv } = options;
   switch (name) {
@@ -79,17 +81,17 @@ export function wordsOf(options: RunOptions, name: OptionName): string {
     case "amount":
       return amount === undefined ? "all scenarios" : amountWords(amount);
     case "repeat":
-      return repeat === undefined ? "as the model says, else once" : `${repeat} ${repeat === 1 ? "execution" : "executions"} each`;
+      return repeat === undefined ? "as in the model, else once" : `${repeat} ${repeat === 1 ? "execution" : "executions"} each`;
     case "seed":
-      return seed === undefined ? "as the model says, else 1" : String(seed);
+      return seed === undefined ? "as in the model, else 1" : String(seed);
     case "jobs":
-      return jobs === undefined ? "as many as there are cores" : String(jobs);
+      return jobs === undefined ? "the number of cores" : String(jobs);
     case "bhv":
-      return bhv ?? "as the model says";
+      return bhv ?? "as in the model";
   }
 }
 
-/** All options that are set, in one line. */
+/** All set options in one line. */
 export function summaryOf(options: RunOptions): string {
   const { where, amount, repeat, seed, jobs, bhv } = options;
   const parts = [
@@ -100,17 +102,17 @@ export function summaryOf(options: RunOptions): string {
     ...(jobs === undefined ? [] : [`${jobs} at a time`]),
     ...(bhv === undefined ? [] : [`with ${bhv}`]),
   ];
-  return parts.length === 0 ? "everything as the model says" : parts.join(", ");
+  return parts.length === 0 ? "all as in the model" : parts.join(", ");
 }
 
-/** What is wrong with a typed number; undefined for a usable one and for nothing, which leaves it to the model. */
+/** The problem of a typed number; undefined for a valid one and for an empty text, which means the model's value. */
 export function numberProblem(text: string, least = 1): string | undefined {
   const number = Number(text);
   const isUsable = text.trim() === "" || (Number.isSafeInteger(number) && number >= least);
   return isUsable ? undefined : `A whole number${least === 1 ? " above 0" : ""}, or nothing.`;
 }
 
-/** A typed number that `numberProblem` accepts. */
+/** Parse a number that `numberProblem` accepts. */
 export function typedNumber(text: string): number | undefined {
   return text.trim() === "" ? undefined : Number(text);
 }

@@ -6,12 +6,12 @@ export const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
 
 type Outcome = "passed" | "failed" | "undecided";
 
-/** How many scenarios have ended so far, and how. */
+/** Number of ended scenarios, by outcome. */
 export interface Tally {
   readonly total: number;
   readonly passed: number;
   readonly failed: number;
-  /** Scenarios with a clause that could not be judged, none being violated. */
+  /** Scenarios with an unknown clause and no violated one. */
   readonly undecided: number;
 }
 
@@ -20,15 +20,15 @@ export class RunReport {
   private total = 0;
   private ended = false;
   private readonly verdicts = new Map<number, ClauseJudged["verdict"][]>();
-  /** Scenarios that are executed side by side are reported one after the other, each when it has ended. */
+  /** Parallel scenarios are reported one after the other, each when it has ended. */
   private readonly reported = new Map<number, string[]>();
-  /** The errors in code of the user that have been reported, with their numbers. */
+  /** The reported errors in users' code, with their numbers. */
   private readonly faults = new Map<string, number>();
   private readonly outcomes = new Map<number, Outcome>();
 
   constructor(private readonly name: string) {}
 
-  /** Whether the run has said its last word. */
+  /** Whether the run's last message has arrived. */
   get finished(): boolean {
     return this.ended;
   }
@@ -38,7 +38,7 @@ export class RunReport {
     return { total: this.total, passed: count("passed"), failed: count("failed"), undecided: count("undecided") };
   }
 
-  /** Take in a message and return the lines that it adds to the report. */
+  /** Process a message and return the lines that it adds to the report. */
   add(message: RunMessage): string[] {
     switch (message.type) {
       case "RunStarted":
@@ -75,7 +75,7 @@ export class RunReport {
     }
   }
 
-  /** End a run whose server went away; a run that has ended already adds nothing. */
+  /** End a run whose server is gone; adds nothing to an ended run. */
   interrupt(reason: string): string[] {
     if (this.ended) {
       return [];
@@ -101,7 +101,7 @@ export class RunReport {
     return `${this.name}: ${parts.join(", ")}.`;
   }
 
-  /** An error is reported once, however many scenarios have no result because of it. */
+  /** An error is reported once, even if several scenarios have no result because of it. */
   private traceback({ id, lines: [failed = "", ...calls] }: UserCodeFailed): string[] {
     if (this.faults.has(id)) {
       return [];
@@ -111,7 +111,7 @@ export class RunReport {
     return [`    error ${number}: ${failed}`, ...calls.map((line) => `    ${line}`)];
   }
 
-  /** What is to be reported of a scenario and was not yet. */
+  /** The lines of a scenario not yet reported. */
   private open(index: number): string[] {
     const lines = this.reported.get(index) ?? [];
     this.reported.delete(index);
@@ -129,7 +129,7 @@ export class RunReport {
   }
 }
 
-/** A scenario passes when every clause holds; without any clause there is no evidence for that. */
+/** A scenario passes if every clause holds; without any clause there is no evidence. */
 function decide(verdicts: readonly ClauseJudged["verdict"][]): Outcome {
   if (verdicts.includes("violated")) {
     return "failed";
@@ -149,7 +149,7 @@ function margin(clause: ClauseJudged): string {
   return shown === "" ? "" : ` by ${shown}`;
 }
 
-/** The margin in a unit that reads well; without a unit it is but another word for the verdict: nothing. */
+/** The margin in a readable unit; empty without a unit, as it then only repeats the verdict. */
 export function marginOf({ robustness, unit }: Pick<ClauseJudged, "robustness" | "unit">): string {
   return robustness === null || unit === "" ? "" : signed(robustness, unit);
 }

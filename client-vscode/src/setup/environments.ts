@@ -1,5 +1,5 @@
-// The private environments of the server: folders below the extension's own storage, named after the process that makes
-// them. One counts from the moment its record is written, so an installation that was cut short is never taken for a server.
+// Private environments of the server: folders in the extension's own storage, named after the creating process. An
+// environment is valid once its record is written, so an interrupted installation is never used.
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { rm } from "node:fs/promises";
 import { basename, join } from "node:path";
@@ -7,13 +7,13 @@ import { isRecord } from "../values";
 
 const PREFIX = "server-";
 const RECORD = "robbdd.json";
-/** The latest one, and the one before: another window may still run it. */
+/** The latest one and its predecessor, which another window may still run. */
 const KEPT = 2;
 
 export interface PrivateServer {
   /** Path of the program. */
   readonly command: string;
-  /** The name of the package that was installed. */
+  /** The name of the installed package. */
   readonly package: string;
 }
 
@@ -23,7 +23,7 @@ interface Installed extends PrivateServer {
   readonly time: number;
 }
 
-/** The wheel of a version in a folder; undefined where an extension was packed without it. */
+/** The wheel of a version in a folder; undefined if the extension was packed without it. */
 export function bundledWheel(folder: string, version: string): string | undefined {
   try {
     const name = readdirSync(folder).find((file) => file.startsWith(`robbdd_tools-${version}-`) && file.endsWith(".whl"));
@@ -34,8 +34,8 @@ export function bundledWheel(folder: string, version: string): string | undefine
 }
 
 /**
- * Make the empty folder that the server works in. The editor's own working directory is often the folder that was
- * opened, and Python looks there for modules.
+ * Create the server's empty working folder. The editor's own working directory is often the opened folder, where Python
+ * would search for modules.
  */
 export function workingFolder(storage: string): string {
   const folder = join(storage, "work");
@@ -43,13 +43,13 @@ export function workingFolder(storage: string): string {
   return folder;
 }
 
-/** Make a new folder for an environment. */
+/** Create a new folder for an environment. */
 export function freshFolder(storage: string): string {
   mkdirSync(storage, { recursive: true });
   return mkdtempSync(join(storage, `${PREFIX}${process.pid}-`));
 }
 
-/** Record that the environment in a folder is complete, and delete those that nobody needs any more. */
+/** Record that the environment in a folder is complete, and delete unused ones. */
 export function recordInstalled(storage: string, folder: string, server: PrivateServer): void {
   writeFileSync(join(folder, RECORD), `${JSON.stringify(server)}\n`);
   for (const old of installedIn(storage).slice(KEPT)) {
@@ -57,7 +57,7 @@ export function recordInstalled(storage: string, folder: string, server: Private
   }
 }
 
-/** The server to use: the latest that was asked for by this name, else the latest at all. */
+/** The server to use: the latest installed under this name, else the latest of all. */
 export function installedServer(storage: string, wanted: string): PrivateServer | undefined {
   const all = installedIn(storage);
   const best = all.find((one) => one.package === wanted) ?? all[0];
@@ -65,28 +65,28 @@ export function installedServer(storage: string, wanted: string): PrivateServer 
 }
 
 /**
- * Delete an environment as far as that can be done: Windows keeps programs that another window still runs. The record
- * goes first, so that no half of one is ever taken for a server.
+ * Delete an environment as far as possible: Windows keeps programs that another window still runs. The record is
+ * deleted first, so that an incomplete environment is never used.
  */
 export function discard(folder: string): void {
   try {
     rmSync(join(folder, RECORD), { force: true });
     rmSync(folder, { recursive: true, force: true, maxRetries: 3 });
   } catch {
-    // An installation does not fail because an old one could not be deleted.
+    // A failed deletion of an old environment does not fail the installation.
   }
 }
 
-/** Delete what is left of installations that were cut short: those without a record whose process is gone. */
+/** Delete remains of interrupted installations: folders without a record whose process is gone. */
 export async function discardAbandoned(storage: string): Promise<void> {
   const abandoned = environmentsIn(storage).filter((folder) => !existsSync(join(folder, RECORD)) && !isBeingMade(folder));
   for (const folder of abandoned) {
-    // What cannot be deleted now may be at the next start.
+    // The next start tries again.
     await rm(folder, { recursive: true, force: true, maxRetries: 3 }).catch(() => undefined);
   }
 }
 
-/** Whether the process that makes an environment is there, of this window or of another one. */
+/** Whether the process that creates an environment is alive, in this window or another one. */
 function isBeingMade(folder: string): boolean {
   const maker = Number.parseInt(basename(folder).slice(PREFIX.length));
   try {
@@ -96,7 +96,7 @@ function isBeingMade(folder: string): boolean {
   }
 }
 
-/** The complete ones, the latest first. */
+/** The complete ones, latest first. */
 function installedIn(storage: string): Installed[] {
   return environmentsIn(storage)
     .flatMap(read)

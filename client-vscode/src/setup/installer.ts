@@ -1,4 +1,4 @@
-// Makes a private environment and installs the server into it.
+// Create a private environment and install the server into it.
 import { existsSync } from "node:fs";
 import { homedir } from "node:os";
 import { join } from "node:path";
@@ -7,31 +7,31 @@ import { type PrivateServer, discard, freshFolder, recordInstalled } from "./env
 import { runProgram } from "./processes";
 import { OLDEST_PYTHON, type Step, type Tool, type Wanted, failureOf, installation, packageProblem, programIn, progressOf } from "./steps";
 
-/** The server could not be installed; the message says why, for the user. */
+/** The server could not be installed; the message gives the reason for the user. */
 export class InstallProblem extends Error {}
 
 export interface Installation {
   /** The folder of the private environments. */
   readonly storage: string;
   readonly wanted: Wanted;
-  /** Where programs are looked for, in this order. */
+  /** Folders in which programs are searched, in this order. */
   readonly folders: readonly string[];
-  /** An interpreter that the user has selected. */
+  /** The interpreter selected by the user. */
   readonly python: string | undefined;
   readonly signal: AbortSignal;
-  /** Told what is being done, for the user. */
+  /** Receives progress messages for the user. */
   readonly onProgress: (message: string) => void;
-  /** Told everything that the programs say. */
+  /** Receives every output line of the programs. */
   readonly onLine: (line: string) => void;
 }
 
 const PYTHONS = ["python3", "python", "python3.14", "python3.13", "python3.12", "python3.11"];
 const PROBE_LIMIT = 15_000;
 
-/** Exits with 0 from an interpreter that is new enough. */
+/** Exits with 0 in an interpreter that is new enough. */
 const PROBE = `import sys; sys.exit(sys.version_info < (${OLDEST_PYTHON.join(", ")}))`;
 
-/** Install the server; raises `InstallProblem`. What was begun is deleted when it fails or is cancelled. */
+/** Install the server; raises `InstallProblem`. On failure or cancellation, everything created is deleted. */
 export async function installServer(installation: Installation): Promise<PrivateServer> {
   const problem = packageProblem(installation.wanted.name);
   if (problem !== undefined) {
@@ -65,7 +65,7 @@ async function installInto(folder: string, { storage, signal, ...wishes }: Insta
   }
   const command = programIn(folder, SERVER, platform);
   if (!existsSync(command)) {
-    throw new InstallProblem(`${name} was installed, but it brings no ${SERVER}`);
+    throw new InstallProblem(`${name} was installed, but does not contain ${SERVER}`);
   }
   const server = { command, package: name };
   recordInstalled(storage, folder, server);
@@ -80,7 +80,7 @@ async function perform(step: Step, cwd: string, signal: AbortSignal, onLine: (li
   }
 }
 
-/** uv when it is there: it is fast, and brings a Python where there is none. Else a Python that is new enough. */
+/** uv if available: it is fast, and provides Python if there is none. Else a Python that is new enough. */
 async function findTool(
   folders: readonly string[],
   selected: string | undefined,

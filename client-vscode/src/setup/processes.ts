@@ -1,19 +1,19 @@
-// Starts the programs that install the server, and ends them with all that they started.
+// Start the programs that install the server, and end them with their child processes.
 import { type ChildProcess, spawn } from "node:child_process";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 
 export interface Ending {
-  /** 0 when it went well; undefined when the program could not be started or was ended. */
+  /** 0 on success; undefined if the program could not be started or was ended. */
   readonly code: number | undefined;
-  /** What it wrote to either stream. */
+  /** Output lines of both streams. */
   readonly lines: readonly string[];
 }
 
 /**
- * Run a program to its end; each line goes to `onLine` as it comes.
+ * Run a program to its end; each line is passed to `onLine` as it arrives.
  *
- * @param folder the folder to run in: never one of the workspace, whose files must not be taken for modules
+ * @param folder the folder to run in: never one of the workspace, whose files must not be imported as modules
  */
 export function runProgram(
   program: string,
@@ -28,7 +28,7 @@ export function runProgram(
     onLine(line);
   };
   return new Promise((resolve) => {
-    // A group of its own, so that what an installer starts ends with it.
+    // A separate process group, so that child processes of an installer end with it.
     const child = spawn(program, args, {
       cwd: folder,
       detached: process.platform !== "win32",
@@ -60,8 +60,8 @@ export function runProgram(
 }
 
 /**
- * The environment without Python's own variables. `PYTHONPATH`, `PYTHONHOME` and others lead to modules that would run
- * in place of the installer's; `-I` keeps them from one interpreter only, not from those that uv and pip start.
+ * The environment without Python's own variables. `PYTHONPATH`, `PYTHONHOME` and others could replace the installer's
+ * modules; `-I` protects only one interpreter, not those that uv and pip start.
  */
 function withoutPython(environment: NodeJS.ProcessEnv): NodeJS.ProcessEnv {
   return Object.fromEntries(Object.entries(environment).filter(([name]) => !/^PYTHON/i.test(name)));
@@ -72,7 +72,7 @@ function endGroup(child: ChildProcess): void {
     return;
   }
   if (process.platform === "win32") {
-    // By its path: Windows looks for a bare name in the working directory first.
+    // By its path: Windows searches a bare name in the working directory first.
     const taskkill = join(process.env["SystemRoot"] ?? "C:\\Windows", "System32", "taskkill.exe");
     spawn(taskkill, ["/pid", String(child.pid), "/t", "/f"], { windowsHide: true });
     return;
@@ -80,6 +80,6 @@ function endGroup(child: ChildProcess): void {
   try {
     process.kill(-child.pid, "SIGKILL");
   } catch {
-    // It ended by itself in the meantime.
+    // It has ended by itself.
   }
 }

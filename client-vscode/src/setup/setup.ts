@@ -1,4 +1,4 @@
-// Installs the language server for the user: progress, cancelling, what went wrong, and when it is too old.
+// Install the language server for the user: progress, cancellation, errors, and updates.
 import * as vscode from "vscode";
 import { searchFolders } from "../lookup";
 import type { Installed } from "../presentation";
@@ -9,13 +9,13 @@ import { type Wanted, wantedPackage } from "./steps";
 
 export class Setup {
   private installing: Promise<Installed> | undefined;
-  /** What an update was offered for: once in a window is enough. */
+  /** The server for which an update was offered: once in a window is enough. */
   private offered: string | undefined;
 
   /**
    * @param storage the folder of the private environments
-   * @param version that of the extension, and so of its server
-   * @param bundled the folder of the wheel that the extension brings along
+   * @param version version of the extension and of its server
+   * @param bundled the folder of the bundled wheel
    */
   constructor(
     private readonly storage: string,
@@ -29,17 +29,17 @@ export class Setup {
     return installedServer(this.storage, this.wanted().name);
   }
 
-  /** The folder that the server works in; throws where it cannot be made. */
+  /** The server's working folder; throws if it cannot be created. */
   workingFolder(): string {
     return workingFolder(this.storage);
   }
 
-  /** Delete what earlier windows have left of installations that they did not finish. */
+  /** Delete remains of unfinished installations of earlier windows. */
   tidy(): Promise<void> {
     return discardAbandoned(this.storage);
   }
 
-  /** Install the server. The caller tells the user of a problem: nothing here waits for an answer to that. */
+  /** Install the server. The caller reports problems to the user; nothing here waits for an answer. */
   install(): Promise<Installed> {
     this.installing ??= this.installNow().finally(() => {
       this.installing = undefined;
@@ -47,7 +47,7 @@ export class Setup {
     return this.installing;
   }
 
-  /** Offer an update when the private server in use is not the one that belongs to this extension. */
+  /** Offer an update if the private server in use does not match this extension. */
   offerUpdate(command: string, update: () => void): void {
     const server = this.installed();
     const wanted = this.wanted().name;
@@ -55,7 +55,7 @@ export class Setup {
       return;
     }
     this.offered = wanted;
-    const message = `RobBDD: this version of the extension belongs to ${wanted}; ${server.package} is installed.`;
+    const message = `RobBDD: this version of the extension needs ${wanted}; ${server.package} is installed.`;
     void vscode.window.showInformationMessage(message, "Update").then((choice) => {
       if (choice !== undefined) {
         update();
@@ -83,7 +83,7 @@ export class Setup {
     return { kind: "failed", problem };
   }
 
-  /** Install it once; returns what went wrong. */
+  /** Install it once; return the problem, if any. */
   private async attempt(
     onProgress: (message: string) => void,
     token: vscode.CancellationToken,

@@ -1,4 +1,4 @@
-// Runs that follow each save.
+// Runs on save.
 import * as vscode from "vscode";
 import type { TestRunner } from "./runner";
 import type { TestTree } from "./tree";
@@ -22,7 +22,7 @@ export class ContinuousRuns implements vscode.Disposable {
     private readonly runner: TestRunner,
   ) {}
 
-  /** Run what is asked for with each save of what it depends on, until that is cancelled. */
+  /** Run a request whenever one of its files is saved, until cancelled. */
   add(request: vscode.TestRunRequest, token: vscode.CancellationToken): void {
     const entry: Continuous = { request, running: Promise.resolve(), current: undefined };
     this.entries.add(entry);
@@ -36,7 +36,7 @@ export class ContinuousRuns implements vscode.Disposable {
     this.listener.dispose();
   }
 
-  /** Run again what depends on a saved file; a run that is under way would tell of the text before. */
+  /** Run again the tests that depend on a saved file; a run in progress is about the old text. */
   private saved(uri: string): void {
     for (const entry of this.entries) {
       const affected = new Set([uri, ...this.tree.dependents(uri)]);

@@ -1,4 +1,4 @@
-// The editor's side of the tree of tests: its items, its runs, its addresses and places.
+// The editor's side of the test tree: its items, its runs, its addresses and places.
 import * as vscode from "vscode";
 import type { RunMessage, RunNotification } from "../runs/messages";
 import type { Sink } from "./follower";
@@ -18,7 +18,7 @@ export function factory(controller: vscode.TestController): Factory<vscode.TestI
   };
 }
 
-/** What one run of the server shows; the editor's run may hold several of these. */
+/** The display of one run of the server; the editor's run may contain several. */
 export function sinkOf(run: vscode.TestRun, onEnd: () => void = () => undefined): Sink<vscode.TestItem> {
   let ended = false;
   const open = (show: () => void) => {
@@ -61,7 +61,7 @@ export function sinkOf(run: vscode.TestRun, onEnd: () => void = () => undefined)
   };
 }
 
-/** An address as the editor writes it: the server may escape other characters. */
+/** An address as written by the editor: the server may escape other characters. */
 export function normal(uri: string): string {
   return vscode.Uri.parse(uri).toString();
 }
@@ -74,7 +74,7 @@ export function normalised(notification: RunNotification): RunNotification {
     : notification;
 }
 
-/** How the editor shows the address of a file to the user. */
+/** The display name of a file's address. */
 export function titleOf(uri: string): string {
   return vscode.workspace.asRelativePath(vscode.Uri.parse(uri));
 }

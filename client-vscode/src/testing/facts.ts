@@ -1,11 +1,11 @@
-// What is known of a listed test, and how its item is called, described and sorted.
+// Data of a listed test, and its item's label, description and order.
 import type { Facts, Source } from "./items";
 import type { ListedTest, Place } from "./listing";
 
-/** Scenarios of a variant that are listed before anybody asks, so that rows and clauses have icons of their own. */
+/** Variants up to this number of scenarios are listed at once, so that rows and clauses have icons. */
 export const EAGER = 100;
 
-/** Scenarios that are listed at first where there are more; as many again with each step further. */
+/** Number of scenarios listed at first in larger variants, and in each further step. */
 export const PAGE = 200;
 
 export function described(note: string, detail: string): string {
@@ -50,7 +50,7 @@ export function sameSource(one: Partial<Source>, other: Source): boolean {
   return one.variant === other.variant && one.execution === other.execution;
 }
 
-/** Whether results that an item had are about another text: its words have changed, or those that it stands for. */
+/** Whether an item's results are outdated: its text, or that of the declarations it stands for, has changed. */
 export function hasChanged(before: Facts, now: Facts): boolean {
   return makesScenarios(now) ? before.digest !== now.digest : before.clause !== now.clause;
 }
@@ -67,17 +67,17 @@ export function labelOf(listed: ListedTest): string {
   return role === "" ? listed.name : `${role.charAt(0).toUpperCase()}${role.slice(1)} ${listed.name}`;
 }
 
-/** Everything stands in the order of the text: places of what is declared, numbers of the others; files come last. */
+/** Sort key in text order: declarations by place, others by number; files last. */
 export function sortOf(listed: ListedTest, position?: number): string {
   if (listed.kind === "file") {
-    // The editor compares as a dictionary does: letters come after numbers, signs before them.
+    // The editor compares like a dictionary: letters sort after numbers, signs before them.
     return `z${listed.name}`;
   }
   const number = position ?? listed.number ?? listed.place?.range.start.line ?? 0;
   return String(number).padStart(9, "0");
 }
 
-/** What the item behind the first scenarios says, whose expansion lists as many again. */
+/** The text of the item after the first scenarios, whose expansion lists more. */
 export function moreWords(listed: number, count: number | undefined): { readonly label: string; readonly description: string } {
   const last = Math.min(2 * listed, count ?? Infinity);
   return {

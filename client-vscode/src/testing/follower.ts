@@ -1,4 +1,4 @@
-// Puts what a run says onto the items of the tree of tests.
+// Show the messages of a run at the items of the test tree.
 import type { ClauseJudged, ClauseStarted, RunNotification, ScenarioStarted } from "../runs/messages";
 import { RunReport } from "../runs/report";
 import type { Item } from "./items";
@@ -7,7 +7,7 @@ import { type Failure, type Outcome, outcomeOf } from "./outcomes";
 import type { TestTree } from "./tree";
 import { Worst } from "./worst";
 
-/** A run as the editor shows it; it ignores what is said after its end. */
+/** A run as shown by the editor; it ignores messages after its end. */
 export interface Sink<I> {
   started(item: I): void;
   passed(item: I, duration?: number): void;
@@ -20,11 +20,11 @@ export interface Sink<I> {
 interface Begun<I> {
   readonly item: I;
   readonly values: string;
-  /** When the clause that is being judged was begun, ms. */
+  /** When the judgement of the current clause began, ms. */
   since: number;
 }
 
-/** Follows one run of the server. Messages are taken in their order, though a file may have to be read for one. */
+/** Follows one run of the server. Messages are processed in order, even if one needs a file to be read. */
 export class RunFollower<I extends Item<I>> {
   private readonly scenarios = new Map<number, Begun<I>>();
   private readonly worst = new Worst<I>();
@@ -57,7 +57,7 @@ export class RunFollower<I extends Item<I>> {
     });
   }
 
-  /** Say at what was to be run why nothing was. */
+  /** Show at the requested items why nothing was run. */
   refuse(items: readonly I[], problem: string): void {
     for (const item of items) {
       this.sink.errored(item, { text: problem }, null);
@@ -66,12 +66,12 @@ export class RunFollower<I extends Item<I>> {
     this.sink.output(`■ ${problem}`);
   }
 
-  /** Resolves when everything that was taken is shown. */
+  /** Resolves when everything received is shown. */
   settled(): Promise<void> {
     return this.pending;
   }
 
-  /** The server has nothing more to say. */
+  /** No more messages of the server will follow. */
   async interrupt(reason: string): Promise<void> {
     await this.pending;
     for (const line of this.report.interrupt(reason)) {
@@ -86,7 +86,7 @@ export class RunFollower<I extends Item<I>> {
       return;
     }
     const execution = message.execution ?? undefined;
-    // An execution stands in the model that is run, a variant maybe in one that it imports.
+    // An execution is in the run model; a variant may be in one that it imports.
     const uri = execution === undefined ? (message.source?.uri ?? model) : model;
     const source = { variant: iri, execution };
     if (this.tree.source(uri, source) === undefined) {
@@ -104,7 +104,7 @@ export class RunFollower<I extends Item<I>> {
     const item = scenario && this.clause(scenario, message, message.sentence ?? "");
     if (scenario !== undefined && item !== undefined) {
       scenario.since = instant;
-      // A repetition leaves the verdict of the one before where it is.
+      // A repetition does not replace the verdict of the one before.
       if (!this.worst.has(item)) {
         this.sink.started(item);
       }

@@ -1,4 +1,4 @@
-// Results that no run of this window has found: those that the server kept, and those of a file.
+// Results from outside this window's runs: those kept by the server, and those of a file.
 import * as vscode from "vscode";
 import type { Server } from "../client";
 import { normal, sinkOf } from "./display";
@@ -8,7 +8,7 @@ import type { TestTree } from "./tree";
 
 export class ResultsElsewhere {
   private restored: Promise<void> | undefined;
-  /** Kept results that are not shown yet: of scenarios that nobody has listed. */
+  /** Kept results not yet shown: of scenarios that are not listed. */
   private left: readonly FoundScenario[] = [];
 
   constructor(
@@ -18,7 +18,7 @@ export class ResultsElsewhere {
     private readonly outdated: (items: readonly vscode.TestItem[]) => void,
   ) {}
 
-  /** Show once what the server kept of runs, those of earlier sessions too; the rest when more scenarios are listed. */
+  /** Show once the results kept by the server, also of earlier sessions; the rest when more scenarios are listed. */
   async restore(): Promise<void> {
     this.restored ??= (async () => {
       const answer = await this.server.request("robbdd/testResults", {});
@@ -33,12 +33,12 @@ export class ResultsElsewhere {
     }
   }
 
-  /** There is another server, which may have kept other results. */
+  /** The server has changed, and its kept results may differ. */
   reset(): void {
     this.restored = undefined;
   }
 
-  /** Show the results that a file holds, which `robbdd run` wrote here or in CI; the user is asked for the file. */
+  /** Show the results in a file written by `robbdd run` here or in CI; the user chooses the file. */
   async importFile(file?: vscode.Uri): Promise<void> {
     const chosen = file ?? (await chooseFile());
     if (chosen === undefined || !(await this.server.ready())) {
@@ -56,13 +56,13 @@ export class ResultsElsewhere {
       void vscode.window.showWarningMessage(`RobBDD: ${name} has no results of a scenario in this workspace.`);
     } else {
       await this.show(scenarios.map(normalised), name, true);
-      const rest = left > 0 ? `; ${left} of scenarios that the workspace does not have are left out` : "";
+      const rest = left > 0 ? `; ${left} of scenarios outside the workspace are left out` : "";
       void vscode.window.showInformationMessage(`RobBDD: ${scenarios.length} results of ${name} are shown${rest}.`);
       await vscode.commands.executeCommand("workbench.view.testing.focus");
     }
   }
 
-  /** Whether a result can be shown now, or where is to be found out. */
+  /** Whether a result can be shown now, or whether this can be found out. */
   private isDue({ uri, variant, execution, variation }: FoundScenario): boolean {
     const item = this.tree.source(uri, { variant, execution: execution ?? undefined });
     return item === undefined || item.children.size === 0 || this.tree.lists(item, variation);

@@ -1,4 +1,4 @@
-// The part of the editor's test items that the tree needs, so that it can be tested without an editor.
+// The part of the editor's test items that the tree uses, so that it can be tested without an editor.
 import type { Kind, Place } from "./listing";
 
 export interface Items<I> extends Iterable<[id: string, item: I]> {
@@ -20,34 +20,34 @@ export interface Item<I> {
   canResolveChildren: boolean;
 }
 
-/** Makes items and sets what the editor has types of its own for. */
+/** Creates items and sets the fields that need the editor's own types. */
 export interface Factory<I> {
   create(id: string, label: string, uri: string): I;
   setPlace(item: I, place: Place | null): void;
   setProblem(item: I, problem: string | undefined): void;
 }
 
-/** What makes scenarios: a variant as it is, or as an execution of it says; both by IRI. */
+/** The source of scenarios: a plain variant, or an execution of it; both by IRI. */
 export interface Source {
   readonly variant: string;
   readonly execution?: string | undefined;
 }
 
-/** What an item stands for; `uri` is the model that is run. */
+/** The data behind an item; `uri` is the model that is run. */
 export interface Facts extends Partial<Source> {
-  /** `more` stands for scenarios that are not listed yet. */
+  /** `more` represents scenarios that are not listed yet. */
   readonly kind: Kind | "more";
   readonly uri: string;
   readonly place: Place | null;
-  /** Of a variant or an execution: how many scenarios it makes, where known. */
+  /** Of a variant or an execution: its number of scenarios, if known. */
   readonly count?: number | undefined;
   readonly digest?: string | undefined;
-  /** Of these: its values are known without a long wait, and are shown beside the text. */
+  /** Of a variant or an execution: small enough to list its values at once and show them next to the text. */
   readonly small?: boolean;
   readonly variation?: Place | null;
   /** Of a scenario and its clauses. */
   readonly number?: number;
-  /** Of a clause: its IRI, and what it says of its scenario. */
+  /** Of a clause: its IRI, and its text within the scenario. */
   readonly clause?: string;
   readonly detail: string;
 }

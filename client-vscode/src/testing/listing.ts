@@ -1,4 +1,4 @@
-// What the server's request `robbdd/tests` answers, level by level.
+// Answers of the server's request `robbdd/tests`, level by level.
 import { isRecord } from "../values";
 
 /** A place in a text, in the units of the protocol, which are those of the editor. */
@@ -14,7 +14,7 @@ export type Kind = "file" | "story" | "variant" | "execution" | "scenario" | "cl
 
 export interface ListedTest {
   readonly kind: Kind;
-  /** IRI; of a scenario its number, of a file its address. */
+  /** IRI; for a scenario its number, for a file its address. */
   readonly id: string;
   readonly name: string;
   readonly detail: string;
@@ -22,11 +22,11 @@ export interface ListedTest {
   readonly tests: readonly ListedTest[];
   /** Of an execution: IRI of the variant that it executes. */
   readonly variant?: string;
-  /** Of a variant or an execution: how many scenarios it makes, where that is known. */
+  /** Of a variant or an execution: its number of scenarios, if known. */
   readonly count?: number | null;
-  /** Of a variant or an execution: what lists its values. */
+  /** Of a variant or an execution: the place of its values. */
   readonly variation?: Place | null;
-  /** Of a variant or an execution: tells whether its text, or that of what it names, has changed. */
+  /** Of a variant or an execution: changes with its text and that of the declarations it names. */
   readonly digest?: string;
   /** Of a scenario. */
   readonly number?: number;
@@ -37,12 +37,15 @@ export interface ListedTest {
 export interface Listing {
   /** Why there is nothing (more) to show, for the user. */
   readonly problem: string | null;
-  /** Files with stories, or what the answer depends on. */
+  /** Files with stories, or the files that the answer depends on. */
   readonly files: readonly string[];
   readonly tests: readonly ListedTest[];
 }
 
-/** What to ask for: nothing names the files, `uri` the stories of one, `variant` the scenarios of a variant. */
+/**
+ * The request's parameters: without any, the files; with `uri`, the stories of one; with `variant`, the scenarios of a
+ * variant.
+ */
 export interface Question {
   readonly uri?: string;
   readonly variant?: string;
@@ -54,7 +57,7 @@ export type Ask = (question: Question) => Promise<Listing | undefined>;
 
 const KINDS: ReadonlySet<unknown> = new Set<Kind>(["file", "story", "variant", "execution", "scenario", "clause"]);
 
-/** Whether an answer is one that this extension understands. */
+/** Whether an answer is understood by this version of the extension. */
 export function isListing(value: unknown): value is Listing {
   return (
     isRecord(value) &&

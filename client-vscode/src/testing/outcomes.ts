@@ -1,7 +1,7 @@
-// What a verdict on a clause is in the words of the editor's tests.
+// Convert a clause's verdict to the editor's test states.
 import { marginOf, seconds } from "../runs/report";
 
-/** What is expected of a margin. */
+/** The expected margin. */
 export const NO_LESS = "margin ≥ 0";
 
 /** A verdict, from a run's message or from a stored result. */
@@ -15,24 +15,23 @@ export interface Judged {
 }
 
 export interface Failure {
-  /** What is shown beside the clause. */
+  /** Text shown next to the clause. */
   readonly text: string;
-  /** What the comparison shows; an unknown verdict has none. */
+  /** The expected value of the comparison; an unknown verdict has none. */
   readonly expected?: string;
   readonly actual?: string;
 }
 
 export interface Outcome {
   readonly state: "passed" | "failed" | "errored";
-  /** What follows the clause's name in the tree. */
+  /** Note after the clause's name in the tree. */
   readonly note: string;
   readonly failure?: Failure;
 }
 
 /**
- * A violated clause has failed; an unknown one, which says nothing about the robot, has an error.
- *
- * `values` tell the scenario from others that are shown at the same clause.
+ * A violated clause has failed; an unknown one, which proves nothing about the robot, has an error. `values`
+ * distinguish the scenario from others shown at the same clause.
  */
 export function outcomeOf(judged: Judged, values: string): Outcome {
   const margin = marginOf(judged);
@@ -46,7 +45,7 @@ export function outcomeOf(judged: Judged, values: string): Outcome {
     case "violated": {
       const instant = judged.at === null ? "" : ` at ${seconds(judged.at)}`;
       const words = `violated${margin === "" ? "" : ` by ${margin}`}${instant}`;
-      // Short, so that the editor shows both whole in one line beside the clause.
+      // Short, so that the editor shows both on one line next to the clause.
       const expected = margin === "" ? "holds" : NO_LESS;
       const actual = margin === "" ? `violated${instant}` : `${margin}${instant}`;
       return {

@@ -1,4 +1,4 @@
-// What runs before or elsewhere have found, shown as a finished run.
+// Show results of earlier or external runs as a finished run.
 import { isRecord } from "../values";
 import { type Sink, showOutcome } from "./follower";
 import type { Item } from "./items";
@@ -8,7 +8,7 @@ import type { TestTree } from "./tree";
 import { Worst } from "./worst";
 
 export interface FoundClause {
-  /** IRI, or the number of the clause in its scenario from 0; one of both is known. */
+  /** IRI, or the number of the clause in its scenario from 0; one of them is known. */
   readonly clause: string | null;
   readonly position: number | null;
   readonly sentence: string;
@@ -22,7 +22,7 @@ export interface FoundClause {
 export interface FoundScenario {
   readonly uri: string;
   readonly variant: string;
-  /** IRI of the execution that it was run by, where there is one. */
+  /** IRI of the execution that it was run by, if any. */
   readonly execution?: string | null;
   readonly variation: number;
   readonly values: string;
@@ -39,7 +39,7 @@ export interface FoundResults {
   readonly scenarios: readonly FoundScenario[];
 }
 
-/** Whether an answer is one that this extension understands. */
+/** Whether an answer is understood by this version of the extension. */
 export function isFoundResults(value: unknown): value is FoundResults {
   return isRecord(value) && typeof value["left"] === "number" && Array.isArray(value["scenarios"]);
 }
@@ -47,11 +47,11 @@ export function isFoundResults(value: unknown): value is FoundResults {
 export interface Shown<I> {
   /** Items whose text has changed since. */
   readonly outdated: readonly I[];
-  /** Results of scenarios that are not listed yet, with clauses that only the list could tell. */
+  /** Results of scenarios that are not listed yet, with clauses that only the list can identify. */
   readonly left: readonly FoundScenario[];
 }
 
-/** Put results onto the items of the tree. */
+/** Show results at the items of the tree. */
 export async function showResults<I extends Item<I>>(
   tree: TestTree<I>,
   scenarios: readonly FoundScenario[],
@@ -73,7 +73,7 @@ export async function showResults<I extends Item<I>>(
     const whole = found.seconds === null ? undefined : found.seconds * 1000;
     for (const clause of found.clauses) {
       for (const item of itemsOf(tree, scenario, clause)) {
-        // Only the whole execution was timed: each clause takes its share, so that the sum is right.
+        // Only whole executions are timed: each clause gets an equal share, so that the sum is right.
         const share = whole === undefined ? undefined : whole / found.clauses.length;
         const outcome = worst.add(item, outcomeOf(clause, found.values));
         tree.note(item, outcome.note);
@@ -87,7 +87,7 @@ export async function showResults<I extends Item<I>>(
   return { outdated, left };
 }
 
-/** The variant of an execution with its scenarios, undefined where the workspace does not have it any more. */
+/** The variant of an execution with its scenarios, undefined if the workspace no longer has it. */
 async function listed<I extends Item<I>>(tree: TestTree<I>, found: FoundScenario): Promise<I | undefined> {
   if (!tree.knows(found.uri)) {
     await tree.load(found.uri);
@@ -126,7 +126,7 @@ function outcomeOf(found: FoundClause, values: string): Outcome {
   }
 }
 
-/** As short as that of a run of our own, so that it fits beside the clause: without sign and reason. */
+/** As short as for our own runs, so that it fits next to the clause: without sign and reason. */
 function compared({ margin, said }: FoundClause): Omit<Failure, "text"> {
   const actual = said.replace(/^\S+ /, "").split(": ", 1)[0] ?? margin;
   return margin === "" ? {} : { expected: NO_LESS, actual };

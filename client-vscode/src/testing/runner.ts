@@ -1,4 +1,4 @@
-// Runs of the server as the Testing view shows them: those begun in it, and those begun elsewhere.
+// Runs of the server in the Testing view: those started in it, and those started elsewhere.
 import * as vscode from "vscode";
 import type { Server } from "../client";
 import type { RunNotification } from "../runs/messages";
@@ -9,19 +9,21 @@ import { RunFollower } from "./follower";
 import { type FileRun, fileRuns } from "./selection";
 import type { TestTree } from "./tree";
 
-/** Milliseconds that a cancelled run is given to end by itself. */
+/** Time that a cancelled run has to end by itself, ms. */
 const CANCEL_LIMIT = 400;
-/** What names of runs begin with that were begun here. */
+/** Prefix of the names of runs started here. */
 const OWN = "testing-";
 
-/** Opens an entry among the editor's results that nobody asked for in the view; `persist` keeps it for the next session. */
+/**
+ * Opens an entry in the editor's results that was not requested in the view; `persist` keeps it for the next session.
+ */
 export type OpenRun = (title: string, persist?: boolean) => vscode.TestRun;
 
 export class TestRunner implements vscode.Disposable {
   private readonly followers = new Map<string, RunFollower<vscode.TestItem>>();
   private readonly listeners: readonly vscode.Disposable[];
   private runs = 0;
-  /** Resolves when the server is done with what was begun here. */
+  /** Resolves when the server has finished all runs started here. */
   private turn: Promise<void> = Promise.resolve();
 
   /** `discover` finds all tests, for a run of everything. */
@@ -42,13 +44,13 @@ export class TestRunner implements vscode.Disposable {
     ];
   }
 
-  /** What of which files a request is about. */
+  /** The files and items of a request. */
   choose(request: vscode.TestRunRequest): FileRun[] {
     const about = (item: vscode.TestItem) => this.tree.about(item);
     return fileRuns(this.controller.items, about, request.include, request.exclude ?? []);
   }
 
-  /** Run what is asked for, of the files `among` where they are named, by a command of the server with `options`. */
+  /** Run a request, restricted to the files `among` if given, by a command of the server with `options`. */
   async execute(
     request: vscode.TestRunRequest,
     token: vscode.CancellationToken,
@@ -109,7 +111,7 @@ export class TestRunner implements vscode.Disposable {
     const before = this.turn;
     const { promise: turn, resolve: pass } = whenResolved();
     this.turn = turn;
-    // The server does one run at a time, and a cancelled one may still be on its way out.
+    // The server executes one run at a time, and a cancelled one may still be ending.
     await Promise.race([before, cancelled]);
     if (token.isCancellationRequested) {
       void before.then(pass);
@@ -134,10 +136,10 @@ export class TestRunner implements vscode.Disposable {
     });
     await Promise.race([executed, cancelled]);
     this.followers.delete(name);
-    await follower.interrupt("The run did not come to its end.");
+    await follower.interrupt("The run did not finish.");
   }
 
-  /** Show what a run says; one that was begun elsewhere gets an entry of its own. */
+  /** Show the messages of a run; one started elsewhere gets its own entry. */
   private hear(message: RunNotification): void {
     const name = message.run ?? message.uri;
     let follower = this.followers.get(name);
@@ -158,7 +160,7 @@ export class TestRunner implements vscode.Disposable {
     }
   }
 
-  /** Show at its variants why what was asked for elsewhere was not run. */
+  /** Show at its variants why a request from elsewhere was not run. */
   private async refuse({ uri, scenario, token, problem }: Refusal): Promise<void> {
     if (token?.startsWith(OWN) === true) {
       return;
@@ -177,7 +179,7 @@ export class TestRunner implements vscode.Disposable {
     }
   }
 
-  /** End the entry of a run that was begun elsewhere and broke off, or those of all without a name. */
+  /** End the entry of an aborted run that was started elsewhere, or of all such runs without a name. */
   private async abandonOthers(over: string | undefined): Promise<void> {
     for (const [name, follower] of this.followers) {
       if (!name.startsWith(OWN) && (over === undefined || over === name)) {
@@ -188,12 +190,12 @@ export class TestRunner implements vscode.Disposable {
   }
 }
 
-/** What a run with recording says at its end: paths, which the terminal makes links of. */
+/** Final output of a run with recording: paths, which the terminal turns into links. */
 function recordingWords(answer: unknown): string[] {
   const path = (uri: string) => vscode.Uri.parse(uri).fsPath;
   const folder = recordedIn(answer);
   const pictures = picturesOf(answer).map((picture) => `    picture of a violation: ${path(picture)}`);
-  const recorded = `● Recorded, for a replay too: ${path(folder ?? "")}${pictures.length > 0 ? "" : ". Nothing was violated that could be pictured."}`;
+  const recorded = `● Recording, can be replayed: ${path(folder ?? "")}${pictures.length > 0 ? "" : ". There was no violation to render."}`;
   return folder === undefined ? pictures : [recorded, ...pictures];
 }
 

@@ -1,7 +1,7 @@
-// What of a tree of tests is to be run, in the words of the server's command.
+// Convert a selection in the test tree to the server's command.
 import type { Facts, Item, Items, Source } from "./items";
 
-/** Scenarios of one variant, or of one execution of it, by their numbers; all where none are named. */
+/** Scenarios of one variant, or of one execution of it, by number; all without numbers. */
 export interface Wanted extends Source {
   readonly variations?: readonly number[];
 }
@@ -14,7 +14,7 @@ export interface FileRun {
 
 interface Numbers {
   readonly source: Source;
-  /** How many there are. */
+  /** The number of existing scenarios. */
   count: number;
   whole: boolean;
   readonly numbers: Set<number>;
@@ -23,8 +23,8 @@ interface Numbers {
 /**
  * The runs that execute the included items without the excluded ones, file by file.
  *
- * A clause is judged with its scenario, so that it stands for the scenario; excluded alone it changes nothing.
- * Of a variant that is excluded in part the rest is named by its numbers.
+ * A clause is judged with its scenario, so it stands for the scenario; excluding only a clause has no effect. If a
+ * variant is partly excluded, the others are listed by number.
  */
 export function fileRuns<I extends Item<I>>(
   roots: Items<I>,
@@ -77,7 +77,7 @@ export function fileRuns<I extends Item<I>>(
       return;
     }
     if (found.whole) {
-      // What is left of a whole variant has to be named.
+      // The rest of a partly excluded variant must be listed.
       found.whole = false;
       for (let number = 1; number <= found.count; number += 1) {
         found.numbers.add(number);

@@ -1,21 +1,21 @@
-// The tree of tests: stories, variants, executions, scenarios, clauses; it grows as it is asked for and follows the text.
+// The test tree: stories, variants, executions, scenarios, clauses; it is loaded on demand and follows the text.
 import * as words from "./facts";
 import type { Facts, Factory, Item, Items, Source } from "./items";
 import type { Ask, ListedTest, Listing, Place } from "./listing";
 import type { Wanted } from "./selection";
 
-/** Scenarios that the server tells at most in one answer. */
+/** Maximum number of scenarios in one answer of the server. */
 const MOST = 10_000;
 
 export class TestTree<I extends Item<I>> {
   private readonly facts = new WeakMap<I, Facts>();
-  /** What the last run found, in a word or two. */
+  /** The last run's result, as a short note. */
   private readonly notes = new WeakMap<I, string>();
-  /** For each file with stories the files that its tests depend on. */
+  /** For each file with stories, the files that its tests depend on. */
   private readonly files = new Map<string, ReadonlySet<string>>();
-  /** How many scenarios of a variant are listed, where they are. */
+  /** Number of listed scenarios by variant. */
   private readonly listed = new WeakMap<I, number>();
-  /** What is being read, so that nothing is read twice at a time. */
+  /** Loads in progress, so that nothing is loaded twice at a time. */
   private readonly loading = new Map<string, Promise<void>>();
 
   /** `outdated` is called with items whose text has changed since it was listed. */
@@ -30,7 +30,7 @@ export class TestTree<I extends Item<I>> {
     return this.facts.get(item);
   }
 
-  /** Find the files with stories, and what they tell. */
+  /** Find the files with stories, and their contents. */
   async discover(): Promise<void> {
     const found = await this.ask({});
     if (found === undefined) {
@@ -46,7 +46,7 @@ export class TestTree<I extends Item<I>> {
     }
   }
 
-  /** Read the stories of a file, again if it is known. */
+  /** Load the stories of a file, also if already known. */
   load(uri: string): Promise<void> {
     return this.once(uri, async () => {
       const found = await this.ask({ uri });
@@ -57,7 +57,7 @@ export class TestTree<I extends Item<I>> {
     });
   }
 
-  /** List what is below an item; everything where there is none. */
+  /** List the children of an item; the root without an item. */
   async expand(item: I | undefined): Promise<void> {
     const facts = item === undefined ? undefined : this.facts.get(item);
     if (item === undefined || facts === undefined) {
@@ -70,12 +70,12 @@ export class TestTree<I extends Item<I>> {
     }
   }
 
-  /** Whether a scenario is among those that are listed. */
+  /** Whether a scenario is listed. */
   lists(variant: I, number: number): boolean {
     return number <= (this.listed.get(variant) ?? 0);
   }
 
-  /** List the scenarios of a file's variants that have only few, and of those that are listed already. */
+  /** List the scenarios of a file's small variants, and of those already listed. */
   async expandSmall(uri: string): Promise<void> {
     for (const item of this.variantsOf(uri)) {
       const facts = this.facts.get(item);
@@ -85,7 +85,7 @@ export class TestTree<I extends Item<I>> {
     }
   }
 
-  /** The known files whose tests depend on a file, and the file itself if it is known. */
+  /** The known files whose tests depend on a file, including the file itself. */
   dependents(uri: string): string[] {
     return [...this.files].filter(([file, needs]) => file === uri || needs.has(uri)).map(([file]) => file);
   }
@@ -104,19 +104,19 @@ export class TestTree<I extends Item<I>> {
     return this.variantsOf(uri).find((item) => words.sameSource(this.facts.get(item) ?? {}, source));
   }
 
-  /** The listed scenarios that are wanted of a variant. */
+  /** The listed scenarios among those wanted of a variant. */
   scenariosOf(uri: string, { variations, ...source }: Wanted): I[] {
     const scenarios = [...(this.source(uri, source)?.children ?? [])].map(([, item]) => item);
     return scenarios.filter((item) => variations?.includes(this.facts.get(item)?.number ?? 0) ?? true);
   }
 
-  /** What is wanted of a variant: the variant as a whole, or those of its scenarios. */
+  /** The wanted items of a variant: the variant as a whole, or some of its scenarios. */
   wanted(uri: string, wanted: Wanted): I[] {
     const whole = this.source(uri, wanted);
     return wanted.variations === undefined && whole !== undefined ? [whole] : this.scenariosOf(uri, wanted);
   }
 
-  /** The item of a scenario; one that was not listed yet is made with the words of its run. */
+  /** The item of a scenario; an unlisted one is created with the data of its run. */
   scenario(variant: I, number: number, name: string): I {
     const facts = this.facts.get(variant);
     const found = variant.children.get(String(number));
@@ -134,7 +134,7 @@ export class TestTree<I extends Item<I>> {
     );
   }
 
-  /** The item of a clause by its position in the scenario; one that was not listed yet is made. */
+  /** The item of a clause by its position in the scenario; an unlisted one is created. */
   clause(scenario: I, position: number, listed: ListedTest): I {
     const facts = this.facts.get(scenario);
     return (
@@ -143,13 +143,13 @@ export class TestTree<I extends Item<I>> {
     );
   }
 
-  /** Show what a run found behind an item's name. */
+  /** Show a run's result after an item's name. */
   note(item: I, note: string): void {
     this.notes.set(item, note);
     item.description = words.described(note, this.facts.get(item)?.detail ?? "");
   }
 
-  /** The clauses below an item that are listed, the item itself where it is one. */
+  /** The listed clauses below an item, or the item itself if it is one. */
   *clauses(item: I): Generator<I> {
     if (this.facts.get(item)?.kind === "clause") {
       yield item;
@@ -185,7 +185,7 @@ export class TestTree<I extends Item<I>> {
     this.drop(this.roots, (facts) => facts.uri === uri, kept);
   }
 
-  /** List the first scenarios of a variant, again as many as there are. */
+  /** List the first scenarios of a variant, as many as are already listed. */
   private async expandVariant(item: I): Promise<void> {
     await this.list(item, 1, Math.min(MOST, Math.max(words.PAGE, this.listed.get(item) ?? 0)));
   }
@@ -198,7 +198,7 @@ export class TestTree<I extends Item<I>> {
         const found = await this.ask({ uri, variant, first, most: last - first + 1 });
         if (found !== undefined) {
           this.factory.setProblem(item, found.problem ?? undefined);
-          // What was listed before a mistake stays: it is what results are about.
+          // Keep the list while the text has errors: results refer to it.
           if (found.problem === null) {
             this.fill(item, found.tests, first, last);
           }
@@ -221,7 +221,7 @@ export class TestTree<I extends Item<I>> {
       );
       this.drop(scenario.children, () => true, new Set(clauses.map((clause) => clause.id)));
     }
-    // What a run has shown further on stays, as long as there is such a scenario.
+    // Keep scenarios that a run has added further down, if they still exist.
     const isAmong = ({ number = 0 }: Facts) => number >= first && (ended || number <= last);
     this.drop(item.children, (facts) => facts.kind === "more" || isAmong(facts), kept);
     this.listed.set(item, first - 1 + scenarios.length);
@@ -230,7 +230,7 @@ export class TestTree<I extends Item<I>> {
     }
   }
 
-  /** Add what lists more scenarios when it is expanded. */
+  /** Add an item that lists more scenarios when expanded. */
   private addMore(variant: I, listed: number): void {
     const { uri = "", count } = this.facts.get(variant) ?? {};
     const { label, description } = words.moreWords(listed, count);
@@ -242,7 +242,7 @@ export class TestTree<I extends Item<I>> {
     variant.children.add(item);
   }
 
-  /** Make or update the item of a listed test; it stays the same item, so that it keeps its results. */
+  /** Create or update the item of a listed test; the item's identity is kept, so that it keeps its results. */
   private put(into: Items<I>, uri: string, owner: Facts | undefined, listed: ListedTest, position?: number): I {
     const id = words.itemId(uri, listed, position);
     let item = into.get(id);
@@ -265,7 +265,7 @@ export class TestTree<I extends Item<I>> {
     return item;
   }
 
-  /** Where an item is shown: what a clause or a row offers to run is the variant as it is, not its executions. */
+  /** Where an item is shown: clauses and rows in the text run the plain variant, not its executions. */
   private placeOf({ kind, place }: Facts, owner: Facts | undefined): Place | null {
     if (owner?.execution !== undefined) {
       return null;
@@ -282,7 +282,7 @@ export class TestTree<I extends Item<I>> {
     }
   }
 
-  /** Do something that takes time once at a time: who asks for the same meanwhile gets it done once more, after it. */
+  /** Serialise a slow task: a request during its execution repeats it once more afterwards. */
   private once(key: string, task: () => Promise<void>): Promise<void> {
     const running = this.loading.get(key);
     const next = (running ?? Promise.resolve()).then(task).finally(() => {

@@ -1,12 +1,12 @@
-// Keeps the tree of tests true: what is typed, saved, made, moved and deleted changes it.
+// Keep the test tree up to date with edits and with saved, created, moved and deleted files.
 import * as vscode from "vscode";
 import type { TestTree } from "./tree";
 
-/** Languages of the files that tests stand in, and the endings of these. */
+/** Languages and file endings of files with tests. */
 const LANGUAGES = ["robbdd", "robbdd-bddx"];
 const ENDINGS = [".bdd", ".bddx"];
 const FILES = "**/*.{bdd,scene,scenex,ktree,bddx}";
-/** Milliseconds without a keystroke after which the tree follows the text. */
+/** Milliseconds without a keystroke before the tree is updated. */
 const PAUSE = 400;
 
 export class Upkeep implements vscode.Disposable {
@@ -14,7 +14,7 @@ export class Upkeep implements vscode.Disposable {
   private readonly listeners: readonly vscode.Disposable[];
   private watcher: vscode.FileSystemWatcher | undefined;
 
-  /** `onShown` is called when the tests of a file that the user looks at were listed. */
+  /** `onShown` is called when the tests of a visible file have been listed. */
   constructor(
     private readonly tree: TestTree<vscode.TestItem>,
     private readonly onShown: () => Promise<void>,
@@ -29,7 +29,7 @@ export class Upkeep implements vscode.Disposable {
     ];
   }
 
-  /** Whether the tree knows all files of the workspace, so that it has to follow them: from its first opening on. */
+  /** Whether the tree has found all files of the workspace, and so must follow them: after it was first opened. */
   get watches(): boolean {
     return this.watcher !== undefined;
   }
@@ -50,13 +50,13 @@ export class Upkeep implements vscode.Disposable {
     });
   }
 
-  /** Find all tests of the workspace, and know of new ones from now on. */
+  /** Find all tests of the workspace, and follow new ones from now on. */
   async discover(): Promise<void> {
     this.watch();
     await this.tree.discover();
   }
 
-  /** Give the files that are shown their icons. */
+  /** List the tests of visible files, so that they have icons. */
   async showVisible(again = false): Promise<void> {
     for (const uri of shownFiles()) {
       if (again || !this.tree.knows(uri)) {
@@ -67,7 +67,7 @@ export class Upkeep implements vscode.Disposable {
     }
   }
 
-  /** Read again what depends on a file that has changed. */
+  /** Reload the tests that depend on a changed file. */
   async follow(uri: string): Promise<void> {
     const shown = shownFiles();
     const affected = new Set(this.tree.dependents(uri));

@@ -1,4 +1,4 @@
-// The Testing view: the tree of tests, its profiles, and what fills and follows it.
+// The Testing view: the test tree, its profiles, and the parts that fill and update it.
 import * as vscode from "vscode";
 import type { Server } from "../client";
 import type { Recording } from "../panels/replay/messages";
@@ -55,7 +55,7 @@ export class TestingView implements vscode.Disposable {
     );
   }
 
-  /** The server can be asked now. */
+  /** The server accepts requests now. */
   async serverReady(): Promise<void> {
     this.results.reset();
     if (this.upkeep.watches) {
@@ -65,7 +65,7 @@ export class TestingView implements vscode.Disposable {
     await this.upkeep.showVisible();
   }
 
-  /** What is recorded of a test, for a replay: of a scenario, of the one around a clause, or of a variant's. */
+  /** The recording of a test for a replay: of a scenario, of a clause's scenario, or of a variant. */
   recording(item: vscode.TestItem): (Recording & { readonly clause?: string }) | undefined {
     const facts = this.tree.about(item);
     if (facts?.variant === undefined) {
@@ -81,7 +81,7 @@ export class TestingView implements vscode.Disposable {
     };
   }
 
-  /** Show the results that a file holds; the user is asked for it where none is named. */
+  /** Show the results in a file; without one, the user chooses it. */
   importResults(file?: vscode.Uri): Promise<void> {
     return this.results.importFile(file);
   }

@@ -1,4 +1,4 @@
-// What several verdicts on one item come to: an execution that is repeated judges its clauses again and again.
+// Combine several verdicts on one item: a repeated execution judges its clauses repeatedly.
 import type { Outcome } from "./outcomes";
 
 interface Seen {
@@ -10,7 +10,7 @@ interface Seen {
 
 const BADNESS = { failed: 0, errored: 1, passed: 2 } as const;
 
-/** A clause is as good as its worst verdict in a run, and says how many held. */
+/** A clause gets its worst verdict in a run, and the number of times it held. */
 export class Worst<I> {
   private readonly seen = new Map<I, Seen>();
 
@@ -18,7 +18,7 @@ export class Worst<I> {
     return this.seen.has(item);
   }
 
-  /** Take a verdict, with its margin where that is known, and return what is known of the item now. */
+  /** Add a verdict, with its margin if known, and return the combined outcome of the item. */
   add(item: I, outcome: Outcome, margin: number | null = null): Outcome {
     const held = outcome.state === "passed" ? 1 : 0;
     const here = margin ?? Infinity;

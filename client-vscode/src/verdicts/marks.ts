@@ -2,14 +2,14 @@
 import type * as vscode from "vscode";
 import { isRecord } from "../values";
 
-/** What a result is coloured by. */
+/** Data that determine the colour of a result. */
 export interface Appearance {
   readonly verdict: "holds" | "violated" | "unknown";
   /** The text has changed since. */
   readonly stale: boolean;
 }
 
-/** Words at a place of a text, before it or behind it, with their tooltip. */
+/** Text before or after a place of a document, with its tooltip. */
 export interface Mark extends Appearance {
   readonly words: string;
   readonly line: number;
@@ -20,7 +20,7 @@ export interface Mark extends Appearance {
 
 type Text = Pick<vscode.TextDocument, "lineAt">;
 
-/** How a hint or a lens of the server is to look; undefined where it tells no verdict. */
+/** The appearance of a hint or a lens of the server; undefined if it has no verdict. */
 export function appearanceOf(shown: object): Appearance | undefined {
   const data: unknown = "data" in shown ? shown.data : undefined;
   if (!isRecord(data) || typeof data["verdict"] !== "string") {
@@ -31,8 +31,8 @@ export function appearanceOf(shown: object): Appearance | undefined {
 }
 
 /**
- * The verdicts on clauses and rows. One that does not hold stands before its clause: behind it the editor draws the
- * failure of the test, over whatever stands there.
+ * The verdicts on clauses and rows. A verdict other than *holds* is drawn before its clause: after it, the editor draws
+ * the failure of the test over everything else.
  */
 export function marksOfHints(document: Text, hints: readonly vscode.InlayHint[]): Mark[] {
   return hints.flatMap((hint): Mark[] => {

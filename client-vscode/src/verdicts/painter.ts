@@ -1,13 +1,13 @@
-// Draws verdicts in their colours: the editor has one colour for all hints and one for all lenses, icons included.
+// Draw verdicts in their colours: the editor has only one colour for all hints and one for all lenses, including icons.
 import * as vscode from "vscode";
 import { type Mark, appearanceOf, marksOfHints, marksOfLenses } from "./marks";
 
-/** Room between a verdict and the text. */
+/** Gap between a verdict and the text. */
 const GAP = "1.5ch";
 
 type Answer<Entry> = vscode.ProviderResult<Entry[]>;
 
-/** Takes the verdicts out of a server's hints and lenses and draws them itself, until it is disposed of. */
+/** Removes the verdicts from a server's hints and lenses and draws them itself, until disposed. */
 export class VerdictPainter implements vscode.Disposable {
   private readonly hints = new Layer((document) => {
     const shown = vscode.workspace.getConfiguration("editor", document).get("inlayHints.enabled");
@@ -33,7 +33,7 @@ export class VerdictPainter implements vscode.Disposable {
     }),
   ];
 
-  /** Ask for the hints of a whole text, whatever part is in sight, and return those of that part that are no verdicts. */
+  /** Request the hints of a whole document and return those in the visible part that are not verdicts. */
   async takeHints(
     document: vscode.TextDocument,
     part: vscode.Range,
@@ -41,14 +41,14 @@ export class VerdictPainter implements vscode.Disposable {
   ): Promise<vscode.InlayHint[] | null | undefined> {
     const { version } = document;
     const found = await ask(new vscode.Range(0, 0, document.lineCount, 0));
-    // Of a text that has been edited since the editor asks again.
+    // After an edit, the editor requests them again.
     if (found && document.version === version) {
       this.hints.show(document, marksOfHints(document, found));
     }
     return found?.filter((hint) => appearanceOf(hint) === undefined && part.contains(hint.position));
   }
 
-  /** Ask for the lenses of a text and return those that are no verdicts. */
+  /** Request the lenses of a document and return those that are not verdicts. */
   async takeLenses(
     document: vscode.TextDocument,
     ask: () => Answer<vscode.CodeLens>,
@@ -83,7 +83,7 @@ class Layer implements vscode.Disposable {
 
   constructor(private readonly isWanted: (document: vscode.TextDocument) => boolean) {}
 
-  /** Show these marks in a document as it is now, in all its editors, in place of those from before. */
+  /** Show these marks in the current text of a document, in all its editors, replacing previous ones. */
   show(document: vscode.TextDocument, marks: readonly Mark[]): void {
     this.known.set(document, { version: document.version, marks });
     for (const editor of vscode.window.visibleTextEditors.filter((one) => one.document === document)) {
@@ -91,7 +91,7 @@ class Layer implements vscode.Disposable {
     }
   }
 
-  /** Draw what is known in an editor; where the text has changed since, the editor has moved the marks that it has. */
+  /** Draw the known marks in an editor; if the text has changed, the editor has moved its marks. */
   draw(editor: vscode.TextEditor): void {
     const known = this.known.get(editor.document);
     if (!this.isWanted(editor.document)) {

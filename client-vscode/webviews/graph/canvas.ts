@@ -1,8 +1,8 @@
-// The server's picture in the page: its shapes in the theme's colours, its nodes to be reached and pressed.
+// The server's picture in the page: shapes in the theme's colours, nodes with focus and click.
 import { drawn } from "../shared/elements";
 import type { Box, Size, Viewport } from "./viewport";
 
-/** Movement, in pixels, up to which a pressed button was a click. */
+/** Maximum movement of the pointer during a click, pixels. */
 const STILL = 4;
 
 export class Canvas {
@@ -10,7 +10,7 @@ export class Canvas {
   private readonly scene = drawn("g");
   private nodes = new Map<string, SVGGElement>();
   private highlighted: string | null = null;
-  /** The size of the picture without its legend, which the page has of its own. */
+  /** The size of the picture without its legend; the page has its own. */
   picture: Size = { width: 1, height: 1 };
 
   constructor(private readonly open: (iri: string) => void) {
@@ -26,7 +26,7 @@ export class Canvas {
       const still = pressed !== undefined && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) <= STILL;
       pressed = undefined;
       if (still) {
-        // The captured pointer's events all go to the root: what lies under it has to be asked for.
+        // A captured pointer sends all events to the root, so find the element under it.
         this.press(document.elementFromPoint(event.clientX, event.clientY));
       }
     });
@@ -43,7 +43,7 @@ export class Canvas {
     return { width: this.root.clientWidth, height: this.root.clientHeight };
   }
 
-  /** Show another picture in place of the one there is; what had the keyboard keeps it where it is still there. */
+  /** Replace the picture; the focused node keeps the focus if it still exists. */
   show(svg: string): void {
     const focused = document.activeElement?.getAttribute("data-iri");
     const picture = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;
@@ -70,7 +70,7 @@ export class Canvas {
     this.scene.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
   }
 
-  /** Mark a node and its links. */
+  /** Highlight a node and its links. */
   highlight(iri: string | null): void {
     this.highlighted = iri;
     for (const marked of this.scene.querySelectorAll(".current")) {
@@ -86,7 +86,7 @@ export class Canvas {
     }
   }
 
-  /** Where a node is in the picture; undefined when it is not shown. */
+  /** The box of a node in the picture; undefined if it is not shown. */
   boxOf(iri: string): Box | undefined {
     return this.nodes.get(iri)?.getBBox();
   }

@@ -1,4 +1,4 @@
-// The page of a graph: a picture to be moved and zoomed, whose nodes lead to their text.
+// The graph page: a picture with pan and zoom, whose nodes link to their text.
 import "./graph.css";
 import type { FromGraph, GraphState, ToGraph } from "../../src/panels/graph/messages";
 import { button, drawn, element } from "../shared/elements";
@@ -8,7 +8,7 @@ import { type Viewport, fitted, panned, revealed, zoomed } from "./viewport";
 
 const STEP = 60;
 const ZOOM = 1.25;
-/** A picture is not begun smaller than this: its text could not be read. */
+/** Minimum initial scale: smaller text is not readable. */
 const READABLE = 0.75;
 
 const host = connect<FromGraph, GraphState>((message) => {
@@ -21,7 +21,7 @@ const canvas = new Canvas((iri) => {
 });
 let view: Viewport = host.kept?.view ?? { x: 0, y: 0, scale: 1 };
 let uri = host.kept?.uri ?? "";
-/** What is in view; undefined before anything was. */
+/** The shown subject; undefined at first. */
 let subject = host.kept?.subject;
 
 document.body.append(
@@ -138,7 +138,7 @@ canvas.root.addEventListener("focusin", ({ target }) => {
   bringIntoView(iri);
 });
 
-/** What the colours mean, without the shapes: these are in the picture. */
+/** The legend of colours, without shapes: these are in the picture. */
 function legend(): HTMLElement {
   const words = {
     story: "User story",

@@ -1,4 +1,4 @@
-// Which part of a picture a window shows: a point of the picture (px, py) stands at (x + px·scale, y + py·scale).
+// The visible part of a picture: its point (px, py) is at (x + px·scale, y + py·scale) in the window.
 
 export interface Viewport {
   readonly x: number;
@@ -20,7 +20,7 @@ export const SMALLEST = 0.05;
 export const LARGEST = 4;
 const MARGIN = 16;
 
-/** Show all of a picture in the middle of the window, not enlarged. */
+/** Fit the whole picture into the window, centred and not enlarged. */
 export function fitted(picture: Size, window: Size, smallest = SMALLEST): Viewport {
   const wide = (window.width - 2 * MARGIN) / picture.width;
   const high = (window.height - 2 * MARGIN) / picture.height;
@@ -29,7 +29,7 @@ export function fitted(picture: Size, window: Size, smallest = SMALLEST): Viewpo
   return { x: beginning(window.width, picture.width), y: beginning(window.height, picture.height), scale };
 }
 
-/** Enlarge by a factor; the point of the window (x, y) keeps what it shows. */
+/** Zoom by a factor around the window's point (x, y). */
 export function zoomed(view: Viewport, factor: number, x: number, y: number): Viewport {
   const scale = Math.min(LARGEST, Math.max(SMALLEST, view.scale * factor));
   const ratio = scale / view.scale;
@@ -40,7 +40,7 @@ export function panned(view: Viewport, dx: number, dy: number): Viewport {
   return { ...view, x: view.x + dx, y: view.y + dy };
 }
 
-/** Move as little as needed for a box of the picture to be in the window; one that is larger is shown from its start. */
+/** Pan as little as needed to show a box of the picture; a larger box is shown from its start. */
 export function revealed(view: Viewport, box: Box, window: Size): Viewport {
   const move = (start: number, length: number, space: number) => {
     if (start < MARGIN || length > space - 2 * MARGIN) {

@@ -1,4 +1,4 @@
-// Unpacks the numbers of a trace.
+// Unpack the numbers of a trace.
 import type { PackedArray } from "../../src/panels/replay/answer";
 
 /** The numbers of an array of 32-bit floats. */

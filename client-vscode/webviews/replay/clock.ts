@@ -1,4 +1,4 @@
-// The time that a replay shows, and how it goes on.
+// The current time of a replay, and its progress.
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4] as const;
 
@@ -12,13 +12,13 @@ export class Clock {
     private readonly changed: () => void,
   ) {}
 
-  /** Go to a time (s), at most the end. */
+  /** Seek to a time (s), at most the end. */
   seek(time: number): void {
     this.time = Math.min(this.duration, Math.max(0, time));
     this.changed();
   }
 
-  /** Play or pause; at the end it begins anew. */
+  /** Play or pause; at the end, restart. */
   toggle(): void {
     this.playing = !this.playing;
     this.seek(this.playing && this.time >= this.duration ? 0 : this.time);
@@ -29,7 +29,7 @@ export class Clock {
     this.changed();
   }
 
-  /** Let `elapsed` seconds of the wall clock pass. */
+  /** Advance by `elapsed` seconds of wall time. */
   advance(elapsed: number): void {
     if (this.playing) {
       const time = this.time + elapsed * this.speed;

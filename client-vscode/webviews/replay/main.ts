@@ -1,4 +1,4 @@
-// The page of a replay: the scene, the controls, the time line; all show one time.
+// The replay page: the scene, the controls, the timeline; all show the same time.
 import "./replay.css";
 import { type Trace, ageOf, firstClause } from "../../src/panels/replay/answer";
 import type { FromReplay, Recording, ReplayState, ToReplay } from "../../src/panels/replay/messages";
@@ -22,8 +22,8 @@ const clock = new Clock(0, update);
 const play = button("▶", "Play or pause (Space)", () => {
   clock.toggle();
 });
-const violation = button("To the violation", "Go to the violation of the chosen clause, else of the first (V)", toViolation);
-const home = button("⌂", "Look at the whole scene (H)", () => stage?.look());
+const violation = button("To the violation", "Jump to the violation of the selected clause, else of the first one (V)", toViolation);
+const home = button("⌂", "Show the whole scene (H)", () => stage?.look());
 const names = button("Aa", "Show or hide the names in the scene (N)", toggleNames);
 const slider = element("input", { type: "range", min: 0, step: 0.01, "aria-label": "Time", class: "slider" });
 const speed = element("select", { title: "Speed", "aria-label": "Speed" });
@@ -34,7 +34,7 @@ let trace: Trace | undefined;
 let recording: Recording | undefined;
 let chosen = -1;
 let named = true;
-/** When the screen was drawn last while playing, ms. */
+/** Time of the last drawn frame during playback, ms. */
 let last: number | undefined;
 
 speed.append(...SPEEDS.map((factor) => element("option", { value: factor }, `${factor} ×`)));
@@ -74,7 +74,7 @@ function tell(problem: string): void {
   status.classList.toggle("problem", problem !== "");
 }
 
-/** Show a trace: as it was left in an earlier life of the page, else from what one should look at first. */
+/** Show a trace: in the page's kept state, else at the most relevant clause. */
 function begin(shown: Trace, of: Recording, clause: string | undefined): void {
   const kept = host.kept;
   trace = shown;
@@ -98,7 +98,7 @@ function begin(shown: Trace, of: Recording, clause: string | undefined): void {
   clock.seek(violated() ?? 0);
 }
 
-/** The scene, or why there is none. */
+/** The scene, or a message why there is none. */
 function scene(shown: Trace): HTMLElement {
   try {
     stage = new Stage(shown, keep);
@@ -107,7 +107,7 @@ function scene(shown: Trace): HTMLElement {
   } catch (error) {
     console.warn(error);
     home.disabled = names.disabled = true;
-    const reason = "This window cannot draw in three dimensions (WebGL is missing or turned off). The time line works.";
+    const reason = "This window cannot draw in 3D (WebGL is missing or disabled). The timeline works.";
     return element("p", { class: "nothing" }, reason);
   }
 }
@@ -126,7 +126,7 @@ function update(): void {
   }
 }
 
-/** The clock advances once for each picture of the screen, however often that was asked for. */
+/** The clock advances once for each animation frame, however often one was requested. */
 function tick(now: number): void {
   if (now !== last) {
     const elapsed = last === undefined ? 0 : (now - last) / 1000;
@@ -152,7 +152,7 @@ function open(clause: number): void {
   host.post({ type: "open", clause });
 }
 
-/** The instant of the violation of the chosen clause, else of the first that is violated, s. */
+/** The instant of the violation of the selected clause, else of the first violated one, s. */
 function violated(): number | undefined {
   const clauses = trace?.clauses ?? [];
   const found = [clauses[chosen], ...clauses].find((clause) => clause?.verdict === "violated" && clause.at !== null);

@@ -1,7 +1,7 @@
-// Margins as they are drawn: above zero where a clause holds.
+// Margins for drawing: above zero if a clause holds.
 import type { Part } from "../../src/panels/replay/answer";
 
-/** The points of a part in the clause's sense: positive where the clause gets what it wants. */
+/** The points of a part, with the sign such that positive means that the clause holds. */
 export function points({ times, margins, negated }: Part): [number, number][] {
   return times.map((time, index) => {
     const margin = margins[index] ?? 0;
@@ -9,7 +9,7 @@ export function points({ times, margins, negated }: Part): [number, number][] {
   });
 }
 
-/** The least and the largest of some margins and zero, with room around them. */
+/** The minimum and maximum of some margins and zero, with padding. */
 export function extent(values: readonly number[]): [number, number] {
   const low = Math.min(0, ...values);
   const high = Math.max(0, ...values);

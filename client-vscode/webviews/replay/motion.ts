@@ -1,14 +1,14 @@
-// Where the moving bodies are at any time of a trace.
+// Poses of the moving bodies at any time of a trace.
 import type { Trace } from "../../src/panels/replay/answer";
 import { floats } from "./arrays";
 
-/** Numbers of a pose: x, y, z (m), then w, x, y, z. */
+/** Length of a pose: x, y, z (m), then w, x, y, z. */
 const POSE = 7;
 
 export class Motion {
   private readonly times: Float32Array;
   private readonly poses: Float32Array;
-  /** The numbers of the bodies that move. */
+  /** The indices of the moving bodies. */
   readonly bodies: readonly number[];
 
   constructor({ frames }: Pick<Trace, "frames">) {
@@ -18,8 +18,8 @@ export class Motion {
   }
 
   /**
-   * Tell the pose of each moving body at a time (s): x, y, z, then w, x, y, z of unit length. Between two frames it is
-   * interpolated, before the first and after the last it stays.
+   * Pass the pose of each moving body at a time (s): x, y, z, then w, x, y, z of unit length. Interpolated between
+   * frames, constant before the first and after the last.
    */
   at(time: number, tell: (body: number, pose: readonly number[]) => void): void {
     const after = this.times.findIndex((stamp) => stamp > time);
@@ -38,7 +38,7 @@ export class Motion {
   }
 }
 
-/** A pose on the straight way from one to another; turns go the shorter way round. */
+/** Interpolate two poses; rotations take the shorter way. */
 function between(one: Float32Array, other: Float32Array, share: number): number[] {
   const product = [3, 4, 5, 6].reduce((sum, index) => sum + (one[index] ?? 0) * (other[index] ?? 0), 0);
   const mixed = Array.from(one, (value, index) => {

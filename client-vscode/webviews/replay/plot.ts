@@ -11,13 +11,13 @@ export interface PlotPlace {
   readonly width: number;
 }
 
-/** The fluent that decides a clause; all of them where none does. */
+/** The fluent that decides a clause; all fluents if none does. */
 function deciding({ parts, operand }: Clause): readonly Part[] {
   const part = parts[operand ?? -1];
   return part === undefined ? parts : [part];
 }
 
-/** Draw the margin of the fluent that decides a clause; without any, say why there is none. */
+/** Draw the margin of a clause's deciding fluent; without a margin, show the reason. */
 export function marginPlot(clause: Clause | undefined, along: Scale, { top, height, width }: PlotPlace): SVGElement[] {
   const parts = clause === undefined ? [] : deciding(clause).filter(({ times }) => times.length > 0);
   if (clause === undefined || parts.length === 0) {
@@ -38,7 +38,7 @@ export function marginPlot(clause: Clause | undefined, along: Scale, { top, heig
   ];
 }
 
-/** The window of a fluent, which is all that its verdict depends on. */
+/** The window of a fluent, on which its verdict depends. */
 function judged({ start, end }: Part, along: Scale, top: number, height: number): SVGElement[] {
   if (start === null || end === null) {
     return [];
@@ -47,7 +47,7 @@ function judged({ start, end }: Part, along: Scale, top: number, height: number)
   return [drawn("rect", { class: "judged", x: from - 1, y: top, width: Math.max(2, to - from), height })];
 }
 
-/** A curve through the points; a single one is a dash, so that it is seen. */
+/** A curve through the points; a single point is drawn as a dash, so that it is visible. */
 function curve(part: Part, along: Scale, up: Scale): string {
   const places = points(part).map(([time, value]) => [along(time), up(value)] as const);
   const [first] = places;

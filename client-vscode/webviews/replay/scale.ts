@@ -1,6 +1,6 @@
-// Places on a time line and in a plot.
+// Scales and label layout of the timeline and the plot.
 
-/** From values to places along a line, linear. */
+/** Linear map from values to positions. */
 export interface Scale {
   (value: number): number;
   readonly back: (place: number) => number;
@@ -14,7 +14,7 @@ export function scale(from: number, to: number, start: number, end: number): Sca
   });
 }
 
-/** Round values from `from` to `to`, about `count` of them: steps of 1, 2 or 5 times a power of ten. */
+/** About `count` round values from `from` to `to`: steps of 1, 2 or 5 times a power of ten. */
 export function ticks(from: number, to: number, count: number): number[] {
   const rough = (to - from) / Math.max(1, count);
   if (!(rough > 0)) {
@@ -34,7 +34,7 @@ export interface Label {
   readonly width: number;
 }
 
-/** The lane of each label, from 0, so that none covers another; the labels come in the order of their beginnings. */
+/** The lane of each label, from 0, so that none overlaps another; labels are ordered by their start. */
 export function lanes(labels: readonly Label[]): number[] {
   const ends: number[] = [];
   return labels.map(({ start, width }) => {

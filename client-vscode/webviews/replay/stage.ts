@@ -1,4 +1,4 @@
-// The scene in three dimensions: shapes on bodies, workspaces as outlines, a camera that goes around.
+// The scene in 3D: shapes on bodies, workspaces as outlines, an orbiting camera.
 import {
   AmbientLight,
   Box3,
@@ -29,10 +29,10 @@ import { floats, integers } from "./arrays";
 import { Motion } from "./motion";
 import { apart } from "./tags";
 
-/** Half an edge of a plane without end, m. */
+/** Half edge of an infinite plane, m. */
 const ENDLESS = 4;
 const WORKSPACE = 0x3d8bd4;
-/** Where the camera looks from, in multiples of the size of the scene. */
+/** Initial direction of the camera, in multiples of the size of the scene. */
 const OUTLOOK = new Vector3(0.9, -1.1, 0.75);
 
 export class Stage {
@@ -88,7 +88,7 @@ export class Stage {
     this.request();
   }
 
-  /** Look at the whole scene again. */
+  /** Reset the camera to the whole scene. */
   look(): void {
     const { centre, distance } = this.home;
     this.camera.position.copy(OUTLOOK).setLength(distance).add(centre);
@@ -97,7 +97,7 @@ export class Stage {
     this.request();
   }
 
-  /** Where the camera is and what it looks at, m. */
+  /** Position of the camera and its target, m. */
   get view(): number[] {
     return [...this.camera.position.toArray(), ...this.controls.target.toArray()];
   }
@@ -109,7 +109,7 @@ export class Stage {
     this.request();
   }
 
-  /** Show or hide the names of things. */
+  /** Show or hide the names of elements. */
   set named(shown: boolean) {
     this.root.classList.toggle("nameless", !shown);
   }
@@ -126,12 +126,12 @@ export class Stage {
       const edges = new EdgesGeometry(new BoxGeometry(...doubled(half)));
       const box = new LineSegments(edges, new LineBasicMaterial({ color: WORKSPACE, transparent: true, opacity: 0.8 }));
       carrier.add(placed(box, center));
-      // At a corner: in the middle lies what is in it.
+      // At a corner: its middle is occupied by its contents.
       this.label(local(name), carrier, [center[0] - half[0], center[1] - half[1], center[2] + half[2]], "workspace");
     }
   }
 
-  /** Name what can be spoken of; a robot once, not each of its links, and a workspace's carrier by the workspace. */
+  /** Name the elements; a robot once instead of each link, and a workspace's carrier by the workspace. */
   private addNames({ bodies, workspaces }: Trace): void {
     const carriers = new Set(workspaces.map(({ body }) => body));
     const robots = new Set<string>();
@@ -152,7 +152,7 @@ export class Stage {
     this.root.append(text);
   }
 
-  /** The middle and the reach of everything but endless ground. */
+  /** The centre and extent of everything but infinite ground. */
   private measured(trace: Trace): { centre: Vector3; distance: number } {
     const box = new Box3();
     this.scene.updateMatrixWorld(true);
@@ -177,7 +177,7 @@ export class Stage {
     }
   }
 
-  /** Draw soon, once however often it is asked for. */
+  /** Draw soon; combine repeated requests. */
   private request(): void {
     if (!this.requested) {
       this.requested = true;
@@ -204,7 +204,7 @@ export class Stage {
     }
   }
 
-  /** The camera by keys: arrows go around, with Shift sideways, + and − nearer and further. */
+  /** Camera control by keys: arrows orbit, with Shift pan, + and − zoom. */
   private steer(event: KeyboardEvent): void {
     const turn = TURNS[event.key];
     if (turn === undefined || event.ctrlKey || event.metaKey || event.altKey) {
@@ -228,7 +228,7 @@ export class Stage {
   }
 }
 
-/** Key → turn around the vertical and up (rad), change of distance. */
+/** Key → rotation around the vertical and upwards (rad), change of distance. */
 const TURNS: Readonly<Record<string, readonly [number, number, number]>> = {
   ArrowLeft: [-0.1, 0, 1],
   ArrowRight: [0.1, 0, 1],
@@ -265,7 +265,7 @@ function geometry({ kind, size: [a, b, c], mesh }: Shape, meshes: readonly Buffe
       return new SphereGeometry(a, 32, 20);
     case "ellipsoid":
       return new SphereGeometry(1, 32, 20).scale(a, b, c);
-    // Those of three stand along y, ours along z.
+    // Cylinders of three are along y, ours along z.
     case "cylinder":
       return new CylinderGeometry(a, a, 2 * b, 32).rotateX(Math.PI / 2);
     case "capsule":
@@ -281,7 +281,7 @@ function meshed(vertices: Float32Array, faces: Uint32Array): BufferGeometry {
   const made = new BufferGeometry();
   made.setAttribute("position", new BufferAttribute(vertices, 3));
   made.setIndex(new BufferAttribute(faces, 1));
-  // Each triangle with corners of its own: edges of machine parts stay edges.
+  // Each triangle has its own corners, so that edges of machine parts stay sharp.
   const flat = made.toNonIndexed();
   flat.computeVertexNormals();
   return flat;

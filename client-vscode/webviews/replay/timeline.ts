@@ -1,4 +1,4 @@
-// The time line: events, the window of each clause in the colour of its verdict, the margin of the chosen one.
+// The timeline: events, the window of each clause in the colour of its verdict, the margin of the selected one.
 import { type Clause, type Trace, local } from "../../src/panels/replay/answer";
 import { signed } from "../../src/quantity";
 import { button, drawn, element } from "../shared/elements";
@@ -12,14 +12,14 @@ const PLOT = 120;
 const EDGE = 14;
 /** Mean width of a letter of a label, px. */
 const LETTER = 6.2;
-const EDITED = "This is what was judged; the model reads otherwise by now.";
+const EDITED = "This is the judged clause; the model has changed since.";
 const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
 
 export interface Timeline {
   readonly root: HTMLElement;
-  /** Draw all of it for the width that it has. */
+  /** Draw everything for the current width. */
   readonly draw: (chosen: number) => void;
-  /** Move the line that marks the time, s. */
+  /** Move the time marker, s. */
   readonly mark: (time: number) => void;
 }
 
@@ -42,7 +42,7 @@ export function timeline({ duration, events, clauses }: Trace, actions: Actions)
     const named = events.map(({ name, time }) => ({ name: local(name), time, start: along(time) + 3 }));
     const placed = named.map(({ name, start }) => {
       const length = name.length * LETTER + 6;
-      // A label at the end of the line stands before its event.
+      // A label at the end of the line is drawn before its event.
       return { start: Math.min(start, width - length), width: length };
     });
     const lane = lanes(placed);
@@ -54,7 +54,7 @@ export function timeline({ duration, events, clauses }: Trace, actions: Actions)
     tracks.replaceChildren(
       ...axis(along, duration, width),
       ...named.map(({ time }, index) => drawn("line", { class: "event", x1: along(time), x2: along(time), y1: AXIS + LANE * (lane[index] ?? 0), y2: high })),
-      // Behind all lines, which would strike through the names of other events.
+      // Draw below all lines, which would otherwise cross the names of other events.
       ...named.map(({ name }, index) => drawn("text", { class: "event", x: placed[index]?.start ?? 0, y: AXIS + LANE * ((lane[index] ?? 0) + 1) - 4 }, name)),
       ...clauses.map((clause, index) => windows(clause, along, head + index * ROW, index === chosen, width)),
       ...marginPlot(clauses[chosen], along, { top: head + clauses.length * ROW + 6, height: PLOT, width }),
@@ -63,7 +63,7 @@ export function timeline({ duration, events, clauses }: Trace, actions: Actions)
     const rows = clauses.map((clause, index) => row(clause, index, index === chosen, actions));
     const held = buttonsOf(labels).findIndex((one) => one === document.activeElement);
     labels.replaceChildren(element("div", { class: "space" }, ""), ...rows, caption(clauses[chosen]));
-    // What had the keyboard keeps it.
+    // Keep the keyboard focus.
     buttonsOf(labels)[held]?.focus({ preventScroll: true });
     labels.style.setProperty("--head", `${head}px`);
   };
@@ -92,7 +92,7 @@ function axis(along: Scale, duration: number, width: number): SVGElement[] {
   ]);
 }
 
-/** The windows of a clause: a bar, or a diamond where one instant is judged; a cross marks the violation. */
+/** The windows of a clause: a bar, or a diamond for a single instant; a cross marks the violation. */
 function windows(clause: Clause, along: Scale, top: number, chosen: boolean, width: number): SVGElement {
   const middle = top + ROW / 2;
   const group = drawn("g", { class: `clause ${clause.verdict}${chosen ? " chosen" : ""}` });
@@ -131,7 +131,7 @@ function row(clause: Clause, index: number, chosen: boolean, { choose, open }: A
   return element("div", { class: classes.join(" ") }, label, source);
 }
 
-/** A behaviour has a name that the graph made up: it is called what it says. */
+/** A behaviour has a generated name: show its sentence instead. */
 function shown(name: string, sentence: string): HTMLElement {
   return element("span", { class: "text" }, /\.(?:given|when|then)\b/.test(name) ? sentence : name);
 }
@@ -150,7 +150,7 @@ function margin({ verdict, robustness, unit, at }: Clause): string {
   return `${verdict}${by}${at === null ? "" : ` at ${at.toFixed(2)} s`}`;
 }
 
-/** Call `move` with the place of the pointer along an element, pressed or dragged. */
+/** Call `move` with the position of the pointer along an element while pressed or dragged. */
 function dragged(target: SVGElement, move: (x: number) => void): void {
   const follow = (event: PointerEvent) => {
     if (target.hasPointerCapture(event.pointerId)) {

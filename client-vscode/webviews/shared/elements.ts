@@ -1,8 +1,8 @@
-// Makes elements of a page.
+// Create elements of a page.
 
 type Attributes = Readonly<Record<string, string | number>>;
 
-/** Make an element with attributes and what is in it. */
+/** Create an element with attributes and children. */
 export function element<Name extends keyof HTMLElementTagNameMap>(
   name: Name,
   attributes: Attributes = {},
@@ -13,7 +13,7 @@ export function element<Name extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** Make an element of a picture. */
+/** Create an SVG element. */
 export function drawn<Name extends keyof SVGElementTagNameMap>(
   name: Name,
   attributes: Attributes = {},
@@ -24,7 +24,7 @@ export function drawn<Name extends keyof SVGElementTagNameMap>(
   return made;
 }
 
-/** Make a button; its title tells the key that does the same, if any. */
+/** Create a button; its title names its keyboard shortcut, if any. */
 export function button(label: string, title: string, press: () => void): HTMLButtonElement {
   const made = element("button", { type: "button", title, "aria-label": title }, label);
   made.addEventListener("click", press);

@@ -1,4 +1,4 @@
-// The way from a page to the extension, and what a page keeps over reloads.
+// Messages from a page to the extension, and its state over reloads.
 
 interface Api {
   postMessage(message: object): void;
@@ -10,12 +10,12 @@ declare function acquireVsCodeApi(): Api;
 
 export interface Host<Outgoing extends object, State extends object> {
   readonly post: (message: Outgoing) => void;
-  /** What the page kept in its last life; whoever wrote it was of this page, but perhaps of another version. */
+  /** The kept state, written by this page, perhaps in another version. */
   readonly kept: Partial<State> | undefined;
   readonly keep: (state: State) => void;
 }
 
-/** Begin to listen; `receive` gets what the extension, which is of the same version, says. */
+/** Start listening; `receive` gets the messages of the extension, which has the same version. */
 export function connect<Outgoing extends object, State extends object>(
   receive: (message: unknown) => void,
 ): Host<Outgoing, State> {
@@ -23,7 +23,7 @@ export function connect<Outgoing extends object, State extends object>(
   window.addEventListener("message", ({ data }: MessageEvent<unknown>) => {
     receive(data);
   });
-  // Whoever asked for the page goes on in this turn; its first message is for after that.
+  // The caller continues in this turn; send the first message after it.
   queueMicrotask(() => {
     api.postMessage({ type: "ready" });
   });

@@ -1,4 +1,4 @@
-// The page of a study: a heat map over two variables, and how the margins of each clause are distributed.
+// The study page: a heat map over two variables, and the distribution of each clause's margins.
 import "./study.css";
 import type { FromStudy, StudyState, ToStudy } from "../../src/panels/study/messages";
 import type { JudgedClause, JudgedScenario } from "../../src/panels/study/results";
@@ -94,7 +94,7 @@ function heatMap(columns: Dimension | undefined, rows: Dimension | undefined, cl
   return table;
 }
 
-/** A cell: the share that passed as its colour and in words, and the worst margin; it leads to the worst execution. */
+/** A cell: the pass rate as colour and text, and the worst margin; it links to the worst execution. */
 function square(counted: Cell | undefined, clause: string): HTMLElement {
   if (counted === undefined) {
     return element("td", { class: "none", title: "Not executed" }, "–");
@@ -111,7 +111,7 @@ function square(counted: Cell | undefined, clause: string): HTMLElement {
   return element("td", {}, press);
 }
 
-/** A clause with its verdicts counted and its margins as bars: below zero violated. */
+/** A clause with its verdict counts and its margins as bars: below zero violated. */
 function distribution(clause: JudgedClause): HTMLElement {
   const judged = scenarios.flatMap((scenario) => scenario.clauses.filter(({ iri }) => iri === clause.iri));
   const count = (wanted: string) => judged.filter(({ verdict }) => verdict === wanted).length;
@@ -137,7 +137,7 @@ function bars(bins: readonly Bin[], clause: JudgedClause): Element {
   picture.append(drawn("line", { x1: 0, x2: WIDTH, y1: HEIGHT, y2: HEIGHT }));
   for (const { from, to, count, index } of bins) {
     if (count > 0) {
-      // One alone is still to be seen, and to be pressed.
+      // A single execution must still be visible and clickable.
       const height = Math.max(4, (count / most) * (HEIGHT - 4));
       const said = `${count} × ${signed(from, clause.unit)} to ${signed(to, clause.unit)}: replay the smallest`;
       const middle = (from + to) / 2;
@@ -168,12 +168,12 @@ function replay(index: number, clause: string): void {
   host.post({ type: "replay", index, ...(clause === NOTHING ? {} : { clause }) });
 }
 
-/** A behaviour has a name that the graph made up, and its sentence is another one in each variation. */
+/** A behaviour has a generated name, and its sentence differs between variations. */
 function named({ role, name }: JudgedClause): string {
   return role === "when" ? "behaviour" : name;
 }
 
-/** The name of a variable as it stands in the text: the end of its IRI or CURIE. */
+/** The local name of a variable: the end of its IRI or CURIE. */
 function local(name: string): string {
   return name.replace(/^.*[/#:]/, "").replace(/^var-/, "");
 }

@@ -1,10 +1,10 @@
-// Results counted: by the values of two variables, and by margin.
+// Tabulate results: by the values of two variables, and by margin.
 import type { JudgedClause, JudgedScenario } from "../../src/panels/study/results";
 
 /** A variable that has more than one value in the results. */
 export interface Dimension {
   readonly name: string;
-  /** Numbers in their order, words in that of the results. */
+  /** Numbers in numeric order, other values in order of the results. */
   readonly values: readonly string[];
 }
 
@@ -14,7 +14,7 @@ export interface Cell {
   /** The smallest margin among them; undefined without any. */
   readonly worst: number | undefined;
   readonly unit: string;
-  /** Number of the scenario that one should look at: the one with the worst outcome. */
+  /** Number of the scenario with the worst outcome. */
   readonly index: number;
 }
 
@@ -26,7 +26,7 @@ export interface Bin {
   readonly index: number;
 }
 
-/** Anything that was judged once: a scenario as a whole or one of its clauses. */
+/** Something judged: a whole scenario or one of its clauses. */
 interface Outcome {
   readonly index: number;
   readonly verdict: JudgedScenario["verdict"];
@@ -36,7 +36,7 @@ interface Outcome {
 
 const RANK = { violated: 0, unknown: 1, holds: 2 } as const;
 
-/** A value as a reader knows it: without the prefixes of names, lists with commas. */
+/** A value for display: names without prefix, lists with commas. */
 export function shown(value: unknown): string {
   if (Array.isArray(value)) {
     return value.map(shown).join(", ");
@@ -55,7 +55,7 @@ export function dimensions(scenarios: readonly JudgedScenario[]): Dimension[] {
   return [...found].filter(([, values]) => values.size > 1).map(([name, values]) => ({ name, values: ordered([...values]) }));
 }
 
-/** The clauses of the results, each once, in the order of their scenarios. */
+/** The distinct clauses of the results, in scenario order. */
 export function clauses(scenarios: readonly JudgedScenario[]): JudgedClause[] {
   const found = new Map<string, JudgedClause>();
   for (const clause of scenarios.flatMap((scenario) => scenario.clauses)) {
@@ -67,8 +67,8 @@ export function clauses(scenarios: readonly JudgedScenario[]): JudgedClause[] {
 }
 
 /**
- * What came out where two variables have two values (`undefined`: any); of a clause where its IRI is given, else of
- * whole scenarios. Undefined where nothing was executed.
+ * The results for given values of two variables (`undefined`: any), of a clause if its IRI is given, else of whole
+ * scenarios. Undefined if nothing was executed.
  */
 export function cell(
   scenarios: readonly JudgedScenario[],
@@ -92,7 +92,7 @@ export function cell(
   };
 }
 
-/** The margins of a clause in `count` bins of one width, with a bound at zero where they reach both sides of it. */
+/** The margins of a clause in `count` bins of equal width, with a boundary at zero if they have both signs. */
 export function histogram(scenarios: readonly JudgedScenario[], clause: string, count: number): Bin[] {
   const outcomes = scenarios.flatMap((scenario, index) => outcomesOf(scenario, index, clause));
   const judged = outcomes.filter(({ robustness }) => robustness !== null);

@@ -107,7 +107,7 @@ describe("with three dimensions", () => {
     await workbench.page.keyboard.insertText("evt-end");
     await workbench.save();
     await workbench.command("RobBDD: Show Replay…");
-    await page.getByText("The model has been edited since: at-goal reads otherwise").waitFor();
+    await page.getByText("The model has been edited since: at-goal has changed").waitFor();
     await workbench.screenshot("replay-stale");
   });
 

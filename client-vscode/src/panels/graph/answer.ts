@@ -2,7 +2,7 @@
 import { type Location, isLocation } from "../../places";
 import { isRecord } from "../../values";
 
-/** A text that belongs to a node: its declaration, or a reference to it. */
+/** The text of a node: its declaration, or a reference to it. */
 export interface NodePlace extends Location {
   readonly iri: string;
 }
@@ -16,15 +16,15 @@ export interface GraphNode {
 
 export interface GraphPicture {
   readonly uri: string;
-  /** The picture; empty while nothing could be drawn. */
+  /** The picture; empty if nothing could be drawn. */
   readonly svg: string;
-  /** Why the picture is older than the model; null when it is not. */
+  /** Why the picture is older than the model; null if it is not. */
   readonly problem: string | null;
   readonly nodes: readonly GraphNode[];
   readonly places: readonly NodePlace[];
   readonly shown: number;
   readonly total: number;
-  /** What all shown nodes follow from, where not all are shown. */
+  /** The node around which others are shown, if not all are shown. */
   readonly root: GraphNode | null;
 }
 
@@ -45,10 +45,10 @@ export function isGraphPicture(value: unknown): value is GraphPicture {
   );
 }
 
-/** What a reader learns about a picture that does not show the whole model as it is now; empty when it does. */
+/** Remark on a picture that does not show the whole current model; empty if it does. */
 export function remark({ svg, problem, shown, total, root }: GraphPicture): string {
   if (problem !== null) {
-    const made = svg === "" ? "There is nothing to draw yet" : "This picture was made before";
+    const made = svg === "" ? "There is nothing to draw yet" : "This is the last picture without errors";
     return `Out of date: the model has an error (${problem}). ${made}.`;
   }
   if (total === 0) {

@@ -1,4 +1,4 @@
-// What the extension and the page of the graph say to each other.
+// Messages between the extension and the graph page.
 
 export type ToGraph =
   | {
@@ -8,19 +8,19 @@ export type ToGraph =
       readonly remark: string;
       /** The remark is about an error. */
       readonly outdated: boolean;
-      /** What the picture is about: another subject is shown from its beginning. */
+      /** The subject of the picture: a new subject resets the view. */
       readonly subject: string;
     }
-  /** Mark a node, and bring it into view if `move` says so. */
+  /** Highlight a node, and scroll it into view if `move` is set. */
   | { readonly type: "highlight"; readonly iri: string | null; readonly move: boolean };
 
-/** Beside `{ type: "ready" }`, which every page says when it can listen. */
+/** In addition to `{ type: "ready" }`, which every page sends when it listens. */
 export interface FromGraph {
   readonly type: "open";
   readonly iri: string;
 }
 
-/** What the page of a graph leaves behind for its next life. */
+/** State that a graph page keeps over reloads. */
 export interface GraphState {
   readonly uri: string;
   readonly subject: string;

@@ -1,4 +1,4 @@
-// The graph of a model beside its text: it follows edits and the cursor, and leads back to the text.
+// The graph of a model next to its text: it follows edits and the cursor, and links back to the text.
 import * as vscode from "vscode";
 import { LANGUAGES, type Server } from "../../client";
 import { innermost } from "../../places";
@@ -9,7 +9,7 @@ import { type GraphPicture, isGraphPicture, remark } from "./answer";
 import type { ToGraph } from "./messages";
 
 const TYPE = "robbdd.graph";
-/** Milliseconds without an edit before a picture is made again. */
+/** Milliseconds without an edit before a picture is updated. */
 const PAUSE = 250;
 
 export class GraphView implements vscode.Disposable {
@@ -41,7 +41,7 @@ export class GraphView implements vscode.Disposable {
     ];
   }
 
-  /** Show the graph of a model beside it. */
+  /** Show the graph of a model next to it. */
   open(model: vscode.Uri): void {
     const uri = model.toString();
     const open = this.graphs.get(uri);
@@ -52,7 +52,7 @@ export class GraphView implements vscode.Disposable {
     }
   }
 
-  /** Draw all graphs again, because a text or the server is another one. */
+  /** Update all graphs, because a text or the server has changed. */
   refreshSoon(): void {
     for (const graph of this.graphs.values()) {
       graph.loadSoon();
@@ -89,7 +89,7 @@ class Graph {
   readonly panel: Panel<ToGraph>;
   private picture: GraphPicture | undefined;
   private highlighted: string | null = null;
-  /** Counts the requests: an answer that is overtaken by a later one is dropped. */
+  /** Request counter: an answer overtaken by a later request is dropped. */
   private asked = 0;
   private timer: NodeJS.Timeout | undefined;
 
@@ -98,7 +98,7 @@ class Graph {
     extension: vscode.Uri,
     private readonly server: Server,
     private readonly uri: string,
-    /** The page shows its picture as it was left; the first one must not move it. */
+    /** The page restores its last view; the first picture must not move it. */
     private restored: boolean,
   ) {
     this.panel = new Panel(
@@ -121,14 +121,14 @@ class Graph {
     clearTimeout(this.timer);
   }
 
-  /** Follow the cursor of an editor; of a large model the part around it may have to be drawn first. */
+  /** Follow the cursor of an editor; for a large model, this may need a new picture around it. */
   moved(editor: vscode.TextEditor): void {
     if (!this.highlight(editor) && this.picture?.root != null && editor.document.uri.toString() === this.uri) {
       this.loadSoon();
     }
   }
 
-  /** Ask for the picture again; of a large model for the part around the cursor, else for the one shown. */
+  /** Request the picture again; for a large model, the part around the cursor, else the part shown. */
   private async load(): Promise<void> {
     this.asked += 1;
     const asked = this.asked;
@@ -150,7 +150,7 @@ class Graph {
     }
   }
 
-  /** Highlight what the cursor of an editor is in, which may show a file that the model imports; false for nothing. */
+  /** Highlight the node at the cursor of an editor, which may show an imported file; false if there is none. */
   private highlight({ document, selection }: vscode.TextEditor, move = true): boolean {
     const found = innermost(this.picture?.places ?? [], document.uri.toString(), selection.active);
     if (found !== undefined && found.iri !== this.highlighted) {
@@ -160,7 +160,7 @@ class Graph {
     return found !== undefined;
   }
 
-  /** The page knows nothing: tell it what there is, and ask for it when that is nothing. */
+  /** A fresh page has no state: send it the current picture, or request one. */
   private async begin(): Promise<void> {
     if (this.picture === undefined) {
       await this.load();

@@ -59,7 +59,7 @@ export interface Clause {
   readonly reason: string;
   readonly vacuous: string;
   readonly source: Location | null;
-  /** Whether the model states it no more; null (or nothing, from older servers) where that is not known. */
+  /** Whether the model has changed here since; null (or undefined, from older servers) if unknown. */
   readonly stale?: boolean | null;
   readonly parts: readonly Part[];
   /** Index of the part that decides the clause. */
@@ -98,7 +98,7 @@ export interface Trace {
 
 const LISTS = ["shapes", "meshes", "bodies", "workspaces", "events", "clauses"];
 
-/** Whether an answer has the form of this version: its parts, not every number in them. */
+/** Whether an answer has the form of this version: its parts, but not every number. */
 export function isTrace(value: unknown): value is Trace {
   return (
     isRecord(value) &&
@@ -113,21 +113,21 @@ export function isTrace(value: unknown): value is Trace {
   );
 }
 
-/** The part of a name that a reader looks for: what stands behind its prefix. */
+/** The local part of a name, after its prefix. */
 export function local(name: string): string {
   return name.replace(/^[^:]*:/, "");
 }
 
-/** What a reader is to know of the model's text as it was when a trace was recorded; empty where nothing has changed. */
+/** Remark on changes of the model's text since a trace was recorded; empty if there are none. */
 export function ageOf(clauses: readonly Clause[]): string {
   const changed = clauses.filter(({ stale }) => stale === true).map(({ name }) => name);
   if (changed.length > 0) {
-    return `The model has been edited since: ${[...new Set(changed)].join(", ")} ${changed.length === 1 ? "reads" : "read"} otherwise by now. Run again to judge what is written.`;
+    return `The model has been edited since: ${[...new Set(changed)].join(", ")} ${changed.length === 1 ? "has" : "have"} changed. Run again to judge the current text.`;
   }
-  return clauses.some(({ stale }) => stale === null) ? "The model has errors now: it may state something else by now." : "";
+  return clauses.some(({ stale }) => stale === null) ? "The model has errors now: its clauses may have changed." : "";
 }
 
-/** The clause that a reader should look at first: the one asked for, else the first violated, else the last. */
+/** The clause to show first: the requested one, else the first violated one, else the last. */
 export function firstClause(clauses: readonly Clause[], wanted?: string): number {
   const asked = clauses.findIndex(({ iri, name }) => wanted !== undefined && (iri === wanted || name === wanted));
   const violated = clauses.findIndex(({ verdict, at }) => verdict === "violated" && at !== null);

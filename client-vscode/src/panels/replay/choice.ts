@@ -1,4 +1,4 @@
-// Asks which recorded execution to show, and reads what others say of one.
+// Let the user choose a recorded execution, and read the server's list.
 import * as vscode from "vscode";
 import type { Server } from "../../client";
 import { type StoredRun, type StoredScenario, isRuns, outcome } from "../runs";
@@ -6,7 +6,9 @@ import type { Recording } from "./messages";
 
 const SIGNS = { holds: "$(pass)", violated: "$(error)", unknown: "$(question)" } as const;
 
-/** Let the user choose a stored run of a project, then one of its scenarios; undefined when there is none or no choice. */
+/**
+ * Let the user choose a stored run of a project, then one of its scenarios; undefined without any or without a choice.
+ */
 export async function chooseRecording(server: Server, uri: string): Promise<Recording | undefined> {
   const run = await chooseRun(server, uri, "Replay: which run?");
   const answer = run === undefined ? undefined : await server.request("robbdd/runs", { uri, run: run.run });
@@ -23,7 +25,7 @@ export async function chooseRecording(server: Server, uri: string): Promise<Reco
   return chosen && { uri, run: run.run, index: chosen.scenario.index };
 }
 
-/** Let the user choose a stored run of a project; the newest first, and without asking where there is but one. */
+/** Let the user choose a stored run of a project; newest first, without asking if there is only one. */
 export async function chooseRun(server: Server, uri: string, title: string): Promise<StoredRun | undefined> {
   const answer = await server.request("robbdd/runs", { uri });
   const runs = isRuns(answer) ? answer.runs.filter(({ problem }) => problem === null).reverse() : [];

@@ -1,7 +1,7 @@
-// What the extension and the page of a replay say to each other.
+// Messages between the extension and the replay page.
 import type { Trace } from "./answer";
 
-/** Which recorded execution is meant; what is left out, the server chooses. */
+/** Selects a recorded execution; the server chooses for missing fields. */
 export interface Recording {
   /** A document of the project. */
   readonly uri: string;
@@ -17,21 +17,24 @@ export interface Recording {
 export type ToReplay =
   | { readonly type: "trace"; readonly recording: Recording; readonly trace: Trace; readonly clause?: string }
   | { readonly type: "clause"; readonly clause: string }
-  /** What has changed since it was recorded. */
+  /** Changes since the recording. */
   | { readonly type: "age"; readonly text: string };
 
-/** Beside `{ type: "ready" }`, which every page says when it can listen: the number of a clause whose text is wanted. */
+/**
+ * In addition to `{ type: "ready" }`, which every page sends when it listens: the number of a clause whose text is
+ * requested.
+ */
 export interface FromReplay {
   readonly type: "open";
   readonly clause: number;
 }
 
-/** What the page of a replay leaves behind for its next life. */
+/** State that a replay page keeps over reloads. */
 export interface ReplayState {
   readonly recording: Recording;
   /** s */
   readonly time: number;
   readonly clause: number;
-  /** Position of the camera and what it looks at; none where there is no picture. */
+  /** Position of the camera and its target; undefined without a picture. */
   readonly camera?: readonly number[];
 }

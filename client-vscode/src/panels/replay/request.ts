@@ -1,10 +1,10 @@
-// What links, lenses and the page's own memory say about the recording that they mean; nothing of it is trusted.
+// Parse references to a recording from links, lenses and the page's state; they are untrusted.
 import { isRecord } from "../../values";
 import type { Recording } from "./messages";
 
 const NUMBERS = ["index", "variation", "repetition"] as const;
 
-/** The recording that a value names; undefined when it names none. */
+/** The recording named by a value; undefined if it names none. */
 export function recordingOf(value: unknown): Recording | undefined {
   if (!isRecord(value) || typeof value["uri"] !== "string") {
     return undefined;
@@ -20,7 +20,7 @@ export function recordingOf(value: unknown): Recording | undefined {
   };
 }
 
-/** The clause that a value asks to be shown, by its IRI or its name. */
+/** The clause that a value selects, by its IRI or its name. */
 export function clauseOf(value: unknown): string | undefined {
   return isRecord(value) && typeof value["clause"] === "string" ? value["clause"] : undefined;
 }

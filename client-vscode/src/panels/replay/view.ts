@@ -1,4 +1,4 @@
-// Recorded executions in panels: what was recorded is asked of the server, and played in the page.
+// Panels of recorded executions: the data is requested from the server and played in the page.
 import * as vscode from "vscode";
 import type { Server } from "../../client";
 import { isRecord } from "../../values";
@@ -12,7 +12,7 @@ import { clauseOf, recordingOf } from "./request";
 const TYPE = "robbdd.replay";
 
 export class ReplayView implements vscode.Disposable {
-  /** By the execution that they show. */
+  /** By execution. */
   private readonly replays = new Map<string, Replay>();
   private readonly serializer: vscode.Disposable;
 
@@ -28,16 +28,16 @@ export class ReplayView implements vscode.Disposable {
     });
   }
 
-  /** Show an execution of a model's project that the user chooses. */
+  /** Show an execution of a model's project chosen by the user. */
   async choose(model: string): Promise<void> {
-    // The command may be what has activated us.
+    // The command may have activated the extension.
     const recording = (await this.server.ready()) ? await chooseRecording(this.server, model) : undefined;
     if (recording !== undefined) {
       await this.open(recording);
     }
   }
 
-  /** Show the execution that `target` describes: a `Recording`, perhaps with a clause to look at. */
+  /** Show the execution that `target` describes: a `Recording`, optionally with a clause to select. */
   async open(target: unknown): Promise<void> {
     const recording = recordingOf(target);
     if (recording === undefined) {
@@ -71,7 +71,7 @@ export class ReplayView implements vscode.Disposable {
     await this.server.settled();
     const trace = recording === undefined ? undefined : await this.server.request("robbdd/trace", recording);
     if (recording === undefined || !isTrace(trace)) {
-      // The run is no longer kept, or the project is another one.
+      // The run has been removed, or the project is another one.
       view.dispose();
       return;
     }
@@ -105,7 +105,7 @@ class Replay {
       "replay",
       () => {
         this.panel.post({ type: "trace", recording, trace, ...(wanted === undefined ? {} : { clause: wanted }) });
-        // A page that comes back shows what it showed last.
+        // A restored page shows its last state.
         wanted = undefined;
       },
       ({ clause: number }) => {
@@ -130,7 +130,7 @@ function titleOf({ run, scenario }: Trace): string {
   return `Replay ${local(scenario.name)}${run > 0 ? ` (run ${run})` : ""}`;
 }
 
-/** What the server has chosen, so that the same is shown when the panel comes back. */
+/** The server's choice, so that a restored panel shows the same. */
 function exactly({ uri }: Recording, { run, folder, scenario }: Trace): Recording {
   return { uri, run: run > 0 ? run : vscode.Uri.parse(folder).fsPath, index: scenario.index };
 }

@@ -1,7 +1,7 @@
-// What the extension and the page of a study say to each other.
+// Messages between the extension and the study page.
 import type { Results } from "./results";
 
-/** Which stored run is meant. */
+/** Selects a stored run. */
 export interface StudiedRun {
   /** A document of the project. */
   readonly uri: string;
@@ -15,14 +15,14 @@ export interface ToStudy {
   readonly results: Results;
 }
 
-/** Beside `{ type: "ready" }`: the number of the scenario that is to be replayed, and the clause to look at. */
+/** In addition to `{ type: "ready" }`: the number of the scenario to replay, and the clause to select. */
 export interface FromStudy {
   readonly type: "replay";
   readonly index: number;
   readonly clause?: string;
 }
 
-/** What the page of a study leaves behind for its next life: the run, and what was chosen to be shown. */
+/** State that a study page keeps over reloads: the run, and the selection. */
 export interface StudyState {
   readonly studied: StudiedRun;
   readonly across: string;

@@ -25,7 +25,7 @@ export interface Results {
   readonly scenarios: readonly JudgedScenario[];
 }
 
-/** Read results from their text; undefined when it is something else. */
+/** Parse results; undefined for any other text. */
 export function readResults(text: string): Results | undefined {
   let found: unknown;
   try {

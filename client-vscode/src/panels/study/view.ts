@@ -1,4 +1,4 @@
-// The results of a stored run over its variations, in a panel that leads to the replay of each execution.
+// The results of a stored run over its variations, in a panel with links to the replay of each execution.
 import * as vscode from "vscode";
 import type { Server } from "../../client";
 import { isRecord } from "../../values";
@@ -57,7 +57,7 @@ export class StudyView implements vscode.Disposable {
         return;
       }
     }
-    // The run is no longer kept, or the project is another one.
+    // The run has been removed, or the project is another one.
     view.dispose();
   }
 
@@ -65,7 +65,7 @@ export class StudyView implements vscode.Disposable {
     const file = vscode.Uri.joinPath(vscode.Uri.parse(run.folder), "results.json");
     const results = readResults(await textOf(file));
     if (results === undefined) {
-      void vscode.window.showErrorMessage(`RobBDD: ${file.fsPath} holds no results of this version.`);
+      void vscode.window.showErrorMessage(`RobBDD: ${file.fsPath} contains no results of this version.`);
       return false;
     }
     const studied: StudiedRun = { uri, run: run.run };
@@ -87,7 +87,7 @@ export class StudyView implements vscode.Disposable {
   }
 }
 
-/** The text of a file; nothing where there is none. */
+/** The text of a file; empty if it does not exist. */
 async function textOf(file: vscode.Uri): Promise<string> {
   try {
     return new TextDecoder().decode(await vscode.workspace.fs.readFile(file));
