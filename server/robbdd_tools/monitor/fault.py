@@ -57,7 +57,7 @@ class Fault:
 
     @property
     def words(self) -> str:
-        """What failed, how and where, in one line."""
+        """The failure, its type and its place in one line."""
         place = self.place
         where = "" if place is None else f" ({place.file}:{place.line})"
         return f"{self.code} failed: {self.summary}{where}"

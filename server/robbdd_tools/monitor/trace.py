@@ -21,7 +21,7 @@ class EventStamp:
     """An event's name (CURIE) and the simulated time (s) at which it occurred.
 
     ``iteration`` counts the behaviours that the scenario executes, from 1; 0 for an event outside of them. In a
-    behaviour tree it counts the executions of what emits the event.
+    behaviour tree it counts the executions of the event's emitter.
     """
 
     name: str
@@ -53,8 +53,8 @@ class Trace:
     those contacts. ``immovable`` are the elements that a hit does not push: fixed objects, and agents. ``outlines`` is
     the extent of objects around their position. ``unreached`` is the reason if the scenario, a part of a behaviour
     tree, never began: it is then not judged. ``contents`` maps a workspace to those composed into it, at any depth.
-    ``executions`` maps events of a behaviour tree to how often what emits them was begun, ``pending`` are those that
-    could occur again if the execution went on.
+    ``executions`` maps events of a behaviour tree to the number of executions of their emitter, ``pending`` are those
+    that could occur again if the execution went on.
     """
 
     names: tuple[str, ...]

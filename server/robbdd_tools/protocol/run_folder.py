@@ -1,4 +1,4 @@
-"""What a run and its agents share beside messages: names of files in a run folder, environment variables, limits."""
+"""Constants shared by a run and its agents: names of files in a run folder, environment variables, limits."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ OWN_STEPS = "model_*steps.py"
 """Pattern of the step files in a run folder that are copies of users' own."""
 
 CRASH = "ROBBDD_CRASH"
-"""Environment variable: the path, without ending, of the files that tell where an agent was when it ended."""
+"""Environment variable: the path, without extension, of the files that record where an agent was when it crashed."""
 LIMIT = "ROBBDD_LIMIT"
-"""Environment variable: seconds of wall time that an agent has for each scenario, 0 for any time."""
+"""Environment variable: limit of an agent's wall time per scenario, s; 0: no limit."""
 STARTUP = 120.0
-"""Seconds of wall time that an agent has from its start, or from an order, until it starts with the scenario."""
+"""Limit of the wall time from an agent's start, or from an order, to the start of the scenario, s."""
 NOTE_SIZE = 4096
-"""Bytes of the file ``call_file``."""
+"""Size of the file ``call_file``, bytes."""
 
 
 def trace_file(folder: Path, index: int) -> Path:
@@ -33,10 +33,10 @@ def thumbnail_file(folder: Path, index: int, line: int) -> Path:
 
 
 def dump_file(base: Path) -> Path:
-    """Return where an agent dumps its stack; ``base`` is what ``CRASH`` names."""
+    """Return the path of an agent's stack dump; ``base`` is the value of ``CRASH``."""
     return base.with_name(f"{base.name}.stack")
 
 
 def call_file(base: Path) -> Path:
-    """Return where an agent notes which code of the user it calls: name, file and line, each with a NUL behind it."""
+    """Return the path where an agent records its calls of user code: name, file and line, each followed by a NUL."""
     return base.with_name(f"{base.name}.call")
