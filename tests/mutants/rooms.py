@@ -36,7 +36,10 @@ ROOMS = {
         Room("gherkin", ("select", "where", "covering", "variations")),
         Room("judging"),
         Room("world", ("placement", "pose", "extent", "clearance", "overlaps", "put_down")),
-        Room("run", ("scheduler", "order", "related", "iterations", "misfit", "agent_worker")),
+        Room(
+            "run",
+            ("scheduler", "agent_worker", "message_order", "message_check", "related_scenarios", "iterations"),
+        ),
     )
 }
 """By name. ``gherkin`` stands for the selection of scenarios, ``world`` for placement, ``run`` for the scheduler."""

@@ -32,7 +32,7 @@ from robbdd_tools.protocol.messages import (
 )
 from robbdd_tools.protocol.specs import ClauseSpec, Manifest, ScenarioSpec
 from robbdd_tools.run.agent_log import LIMIT
-from robbdd_tools.run.scheduler import CANCELLED, STOPPED, TIMEOUT, Policy, Scheduler, no_watcher
+from robbdd_tools.run.scheduler import CANCELLED, STOPPED, TIMEOUT, Policy, Scheduler, ignore_event
 from world.worlds import scenario
 
 CLAUSES = tuple(ClauseSpec(line, f"t:c{line}", f"c{line}", "then", "it is so") for line in (5, 6))
@@ -172,7 +172,7 @@ def scheduler_of(
     stage: Stage,
     manifest: Manifest,
     policy: Policy,
-    watch: Callable[[RunMessage], None] = no_watcher,
+    watch: Callable[[RunMessage], None] = ignore_event,
     indices: Sequence[int] | None = None,
     first_agent: int = 1,
 ) -> Scheduler:
