@@ -1,4 +1,4 @@
-"""A behaviour of our own: above, down, close, up, across, down, open, up."""
+"""Our own behaviour: above, down, close, up, across, down, open, up."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import Arguments, FloatArray
 
 TRAVEL = 0.35
-"""Height at which things are carried, m, world frame."""
+"""Height at which objects are carried, m, world frame."""
 PACE = 0.01
 """Largest change of a joint per tick, rad."""
 
@@ -23,18 +23,18 @@ class Carry:
     """Picks a cube and places it; see ``robbdd_tools.catalog.own_behaviour.UserBehaviour``."""
 
     def reset(self, world: World, behaviour: str, arguments: Arguments) -> None:
-        """Remember what to do."""
+        """Store the arguments and start the motion."""
         if behaviour != "pick-place":
             raise BehaviourFailed(f"this arm does not know how to {behaviour}")
         self._world = world
         self._target = world.joints
         self._opening = 1.0
         place = arguments["workspace"]
-        # Of a set of workspaces this arm takes the first.
+        # For a set of workspaces, use the first one.
         self._ticks = self._carry(str(arguments["object"]), place if isinstance(place, str) else place[0])
 
     def step(self) -> bool:
-        """Go on by one tick."""
+        """Execute one tick; return whether the behaviour is over."""
         try:
             next(self._ticks)
         except StopIteration:
@@ -64,7 +64,7 @@ class Carry:
         world.emit("place-end")
 
     def _to(self, position: FloatArray, closing: float) -> Iterator[None]:
-        """Move the joints evenly to where the tool is at a position."""
+        """Move the joints evenly until the tool is at a position."""
         goal = self._world.solve(position, closing)
         start = self._target
         count = max(1, int(np.ceil(np.abs(goal - start).max() / PACE)))
@@ -81,6 +81,6 @@ class Carry:
 
 
 def _across(rotation: FloatArray) -> float:
-    """Return a direction (rad) across a cube: that of the axis which lies flattest."""
+    """Return a direction (rad) across a cube: that of its most horizontal axis."""
     flattest = int(np.argmin(np.abs(rotation[2])))
     return atan2(rotation[1, flattest], rotation[0, flattest])
