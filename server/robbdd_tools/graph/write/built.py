@@ -28,7 +28,7 @@ class BuiltGraph:
     """A graph with its metadata.
 
     ``names`` maps an IRI to its qualified name in the text (a CURIE for a parsed graph). ``unreliable_declarations``
-    are the extents of declarations that have an error or use one that has; ``doubtful_nodes`` are the nodes that these declare.
+    are the extents of declarations that have an error or use one that has; ``doubtful_nodes`` are their nodes.
     ``faults`` are why a graph file could not be read; ``is_read`` marks a graph file, whose findings have to name their
     node. ``authors`` are the declarations (document and offset) that describe a node.
     """
