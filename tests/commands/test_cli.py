@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from fork_kit import ROBBDD
 from kit import EXAMPLES, MODEL, SCENE, corpus, default_signals, make_endless, schema_errors
 
 PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
-ROBBDD = [sys.executable, "-m", "robbdd_tools.cli"]
 
 
 def robbdd(*arguments: str | Path, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
@@ -199,7 +199,8 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     model, report = tmp_path / "pickplace" / PICKPLACE.name, tmp_path / "out.json"
     make_endless(model)
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
-    command = [*ROBBDD, "run", str(model), "--json", str(report), "--jobs", "1", "--no-store"]
+    # Not a fork: how a real interpreter takes the signal is tested.
+    command = [sys.executable, "-m", "robbdd_tools.cli", "run", model, "--json", report, "--jobs", "1", "--no-store"]
     process = subprocess.Popen(
         command, stdout=subprocess.PIPE, encoding="utf-8", env=environment, preexec_fn=default_signals
     )

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+from fork_kit import ROBBDD
 
 pytestmark = pytest.mark.physics
 SCENE = """ns env = 'https://example.org/composition/'
@@ -61,7 +62,7 @@ User Story (ns=m) clearing {
 def test_a_tray_is_a_part_of_the_table_only_if_it_is_composed_into_it(tmp_path: Path, composed: bool) -> None:
     (tmp_path / "room.scene").write_text(SCENE.replace("INNER", "ws comp <on_tray>" * composed), encoding="utf-8")
     (tmp_path / "m.bdd").write_text(MODEL, encoding="utf-8")
-    command = [sys.executable, "-m", "robbdd_tools.cli", "run", "m.bdd"]
+    command = [*ROBBDD, "run", "m.bdd"]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=tmp_path, env=dict(os.environ))
     assert done.returncode == 0, done.stdout + done.stderr
     results = json.loads((tmp_path / ".robbdd/runs/1/results.json").read_text(encoding="utf-8"))

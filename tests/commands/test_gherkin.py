@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from fork_kit import ROBBDD
 from kit import EXAMPLES, MODEL, SCENE
 from robbdd_tools.protocol.manifest_file import read_manifest
 
@@ -19,7 +20,7 @@ PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
 
 
 def robbdd(*arguments: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "robbdd_tools.cli", *map(str, arguments)]
+    command = [*ROBBDD, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=folder)
     assert "Traceback" not in done.stderr
     return done

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from functools import partial
@@ -13,13 +12,14 @@ from pathlib import Path
 
 import pytest
 
+from fork_kit import ROBBDD
 from kit import EXAMPLES
 
 PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
 
 
 def robbdd(*arguments: str | Path, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "robbdd_tools.cli", *map(str, arguments)]
+    command = [*ROBBDD, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=folder)
     assert "Traceback" not in done.stderr
     return done

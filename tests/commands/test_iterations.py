@@ -6,12 +6,12 @@ import json
 import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from fork_kit import ROBBDD
 from kit import EXAMPLES
 
 pytestmark = pytest.mark.physics
@@ -49,7 +49,7 @@ scene inst (ns=run) bench { scene: <sorter_scene> }
 
 
 def robbdd(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "robbdd_tools.cli", *arguments]
+    command = [*ROBBDD, *arguments]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=folder, env=dict(os.environ))
     assert "Traceback" not in done.stderr
     return done

@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from fork_kit import ROBBDD
 from kit import EXAMPLES, schema_errors
 from robbdd_tools.agent import shared_executions
 from robbdd_tools.agent.behaviour_run import BehaviourRun
@@ -27,7 +28,7 @@ LOST = "precondition not reached: pick failed: gripper lost env:cube0 at "
 
 
 def robbdd(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "robbdd_tools.cli", *arguments]
+    command = [*ROBBDD, *arguments]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=folder, env=dict(os.environ))
     assert "Traceback" not in done.stderr
     return done

@@ -7,7 +7,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from fork_kit import ROBBDD
 from kit import EXAMPLES, schema_errors
 from robbdd_tools.traces.codec import Evidence
 from robbdd_tools.traces.mcap_file import read_trace, write_trace
@@ -24,7 +24,7 @@ AT_GOAL = "at-goal: holds(<thing> is located at <goal>, after <evt-place-end>)"
 
 
 def robbdd(folder: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "robbdd_tools.cli", *arguments]
+    command = [*ROBBDD, *arguments]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=folder, env={**os.environ, **environment})
     assert "Traceback" not in done.stderr
     return done

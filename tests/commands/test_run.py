@@ -5,17 +5,16 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
+from fork_kit import ROBBDD
 from kit import EXAMPLES, schema_errors
 
 pytestmark = pytest.mark.physics
-ROBBDD = [sys.executable, "-m", "robbdd_tools.cli"]
 
 
 def robbdd(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:

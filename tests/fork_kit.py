@@ -1,0 +1,52 @@
+"""Commands and language servers that start as forks of a process that has loaded everything; see ``fork_server``.
+
+Importing takes most of the processor time of a test that starts one. A test of starting itself, of signals, terminals,
+limits or variables of the interpreter (``PYTHON…``) starts a real interpreter instead.
+"""
+
+from __future__ import annotations
+
+import atexit
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+from fork_server.launching import launch_command
+
+CAN_FORK = sys.platform == "linux"
+_FOLDER = Path(tempfile.mkdtemp(prefix="robbdd-forks-"))
+_ADDRESS = str(_FOLDER / "socket")
+atexit.register(shutil.rmtree, _FOLDER, ignore_errors=True)
+
+
+def _command(module: str) -> list[str]:
+    if not CAN_FORK:
+        return [sys.executable, "-m", module]
+    return launch_command(_ADDRESS, f"from {module} import main; raise SystemExit(main())")
+
+
+ROBBDD = _command("robbdd_tools.cli")
+ROBBDD_LSP = _command("robbdd_tools.lsp.main")
+
+
+@contextmanager
+def fork_server() -> Generator[None]:
+    """Let processes start as forks; without effect where there are none."""
+    if not CAN_FORK:
+        yield
+        return
+    command = [sys.executable, "-m", "fork_server.serve", _ADDRESS]
+    pipe = subprocess.PIPE
+    # In a session of its own: Ctrl-C ends the tests, which end the server.
+    with subprocess.Popen(
+        command, cwd=Path(__file__).parent, stdin=pipe, stdout=pipe, encoding="utf-8", start_new_session=True
+    ) as server:
+        assert server.stdin is not None
+        assert server.stdout is not None
+        assert server.stdout.readline() == "ready\n"
+        yield
+        server.stdin.close()

@@ -1,0 +1,46 @@
+"""Stands for a Python interpreter: ``launch.py SOCKET CODE [ARGUMENT...]`` runs code of ours in a fork of the server.
+
+The fork gets this process's standard streams, working directory, environment and umask. SIGINT, SIGTERM and SIGHUP are
+forwarded, exit code or signal returned; when this process dies, the fork is killed.
+"""
+
+import json
+import os
+import signal
+import socket
+import struct
+import sys
+from types import FrameType
+
+LENGTH = struct.Struct("!I")
+STATUS = struct.Struct("!i")
+
+
+def main() -> None:
+    address, *arguments = sys.argv[1:]
+    umask = os.umask(0)
+    os.umask(umask)
+    data = json.dumps({"arguments": arguments, "environment": dict(os.environ), "umask": umask}).encode()
+    folder = os.open(".", os.O_RDONLY)
+    connection = socket.socket(socket.AF_UNIX)
+    connection.connect(address)
+
+    def forward(number: int, _: FrameType | None) -> None:
+        connection.send(bytes([number]))
+
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, forward)
+    socket.send_fds(connection, [LENGTH.pack(len(data))], [0, 1, 2, folder])
+    connection.sendall(data)
+    # The fork alone holds the streams: who reads them sees when it closes them.
+    for descriptor in (0, 1, 2):
+        os.close(descriptor)
+    answer = connection.recv(STATUS.size, socket.MSG_WAITALL)
+    status = STATUS.unpack(answer)[0] if len(answer) == STATUS.size else 1
+    if status < 0:
+        signal.signal(-status, signal.SIG_DFL)
+        os.kill(os.getpid(), -status)
+    os._exit(status)
+
+
+main()

@@ -1,0 +1,181 @@
+"""Forks processes that have the product's modules loaded: ``serve.py SOCKET``, until standard input ends.
+
+What a test starts through ``launch.py`` is a process of its own, as if an interpreter had started, but without the
+half second of processor time that importing takes.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import json
+import os
+import selectors
+import shutil
+import signal
+import socket
+import struct
+import sys
+from asyncio.subprocess import PIPE, Process
+from contextlib import redirect_stdout, suppress
+from dataclasses import dataclass
+from importlib import import_module
+from io import StringIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+from unittest.mock import patch
+
+from fork_server.launching import launch_command
+from robbdd_tools.base.interpreter import working_folder
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "pickplace"
+LENGTH = struct.Struct("!I")
+STATUS = struct.Struct("!i")
+LOADED = (
+    "behave.parser",
+    "numpy",
+    "robbdd_tools.cli",
+    "robbdd_tools.lsp.handlers",
+    "robbdd_tools.lsp.main",
+    "robbdd_tools.lsp.worker",
+    *(f"robbdd_tools.commands.{name}" for name in ("check", "export", "gherkin", "models", "query", "run", "runs")),
+)
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a fork is to run, and where."""
+
+    arguments: list[str]
+    environment: dict[str, str]
+    umask: int
+    descriptors: list[int]
+    """Standard input, output and error output, and the working directory."""
+
+
+@dataclass(frozen=True)
+class Fork:
+    """A running fork: its number, its descriptor and the connection of its launcher."""
+
+    pid: int
+    descriptor: int
+    connection: socket.socket
+
+
+def serve(address: str) -> Request | None:
+    """Fork for every connection; returns the request in a fork, ``None`` in the server when standard input ends."""
+    listener = socket.socket(socket.AF_UNIX)
+    listener.bind(address)
+    listener.listen(64)
+    print("ready", flush=True)
+    with selectors.DefaultSelector() as selector:
+        selector.register(0, selectors.EVENT_READ)
+        selector.register(listener, selectors.EVENT_READ)
+        while True:
+            for key, _ in selector.select():
+                fork: Fork | None = key.data
+                if key.fileobj == 0:
+                    _end_all(selector)
+                    return None
+                if fork is None:
+                    connection, _ = listener.accept()
+                    request = _read(connection)
+                    pid = os.fork()
+                    if pid == 0:
+                        return request
+                    for descriptor in request.descriptors:
+                        os.close(descriptor)
+                    fork = Fork(pid, os.pidfd_open(pid), connection)
+                    selector.register(connection, selectors.EVENT_READ, fork)
+                    selector.register(fork.descriptor, selectors.EVENT_READ, fork)
+                elif key.fd == fork.descriptor:
+                    _report(selector, fork)
+                else:
+                    _forward(selector, fork)
+
+
+def _read(connection: socket.socket) -> Request:
+    head, descriptors, _, _ = socket.recv_fds(connection, LENGTH.size, 4)
+    (length,) = LENGTH.unpack(head)
+    fields: dict[str, Any] = json.loads(connection.recv(length, socket.MSG_WAITALL))
+    return Request(**fields, descriptors=descriptors)
+
+
+def _report(selector: selectors.BaseSelector, fork: Fork) -> None:
+    """Return the status of a fork that has ended to its launcher."""
+    _, status = os.waitpid(fork.pid, 0)
+    selector.unregister(fork.descriptor)
+    os.close(fork.descriptor)
+    with suppress(KeyError):
+        selector.unregister(fork.connection)
+    with suppress(OSError):
+        fork.connection.sendall(STATUS.pack(os.waitstatus_to_exitcode(status)))
+    fork.connection.close()
+
+
+def _forward(selector: selectors.BaseSelector, fork: Fork) -> None:
+    """Send the signals that the launcher got; kill the fork when the launcher is gone."""
+    numbers = fork.connection.recv(16)
+    if not numbers:
+        selector.unregister(fork.connection)
+    for number in numbers or [signal.SIGKILL]:
+        os.kill(fork.pid, number)
+
+
+def _end_all(selector: selectors.BaseSelector) -> None:
+    for key in list(selector.get_map().values()):
+        if isinstance(key.data, Fork):
+            os.kill(key.data.pid, signal.SIGKILL)
+
+
+def become(request: Request) -> None:
+    """Make this fork look like an interpreter that was just started by the launcher."""
+    os.setsid()
+    *streams, folder = request.descriptors
+    os.fchdir(folder)
+    for target, stream in enumerate(streams):
+        os.dup2(stream, target)
+    os.closerange(3, os.sysconf("SC_OPEN_MAX"))
+    os.environ.clear()
+    os.environ.update(request.environment)
+    os.umask(request.umask)
+    del sys.path[0]  # the folder of the tests
+    sys.argv = ["-c", *request.arguments[1:]]
+    sys.stdin = sys.__stdin__ = os.fdopen(0, encoding="utf-8", errors="surrogateescape")
+    sys.stdout = sys.__stdout__ = os.fdopen(1, "w", encoding="utf-8", errors="surrogateescape")
+    sys.stderr = sys.__stderr__ = os.fdopen(2, "w", buffering=1, encoding="utf-8", errors="backslashreplace")
+
+
+def warm_up() -> None:
+    """Fill the caches that depend on the installation alone, such as its shapes and grammars."""
+    from robbdd_tools.cli import main
+
+    with TemporaryDirectory() as folder, redirect_stdout(StringIO()):
+        model = str(shutil.copytree(EXAMPLE, Path(folder, "model")) / "pickplace.bdd")
+        main(["check", model])
+        main(["gherkin", model, "-o", str(Path(folder, "features"))])
+
+
+def main(address: str) -> None:
+    for name in LOADED:
+        import_module(name)
+    warm_up()
+
+    async def start_worker(code: str) -> Process:
+        command = launch_command(address, code)
+        return await asyncio.create_subprocess_exec(*command, cwd=working_folder(), stdin=PIPE, stdout=PIPE)
+
+    # A language server's validation process is a fork, too.
+    patch("robbdd_tools.lsp.shapes.start_worker", start_worker).start()
+    # What is loaded is not collected again in each fork.
+    gc.collect()
+    gc.freeze()
+    request = serve(address)
+    if request is not None:
+        become(request)
+        exec(request.arguments[0], {"__name__": "__main__"})
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
