@@ -50,3 +50,4 @@ def fork_server() -> Generator[None]:
         assert server.stdout.readline() == "ready\n"
         yield
         server.stdin.close()
+    assert server.returncode == 0

@@ -81,6 +81,9 @@ def serve(address: str) -> Request | None:
                 if fork is None:
                     connection, _ = listener.accept()
                     request = _read(connection)
+                    if request is None:
+                        connection.close()
+                        continue
                     pid = os.fork()
                     if pid == 0:
                         return request
@@ -91,14 +94,21 @@ def serve(address: str) -> Request | None:
                     selector.register(fork.descriptor, selectors.EVENT_READ, fork)
                 elif key.fd == fork.descriptor:
                     _report(selector, fork)
-                else:
+                elif fork.connection.fileno() >= 0:  # not closed by a report in this very round
                     _forward(selector, fork)
 
 
-def _read(connection: socket.socket) -> Request:
-    head, descriptors, _, _ = socket.recv_fds(connection, LENGTH.size, 4)
-    (length,) = LENGTH.unpack(head)
-    fields: dict[str, Any] = json.loads(connection.recv(length, socket.MSG_WAITALL))
+def _read(connection: socket.socket) -> Request | None:
+    """Read a request; returns ``None`` where the launcher was killed meanwhile."""
+    descriptors: list[int] = []
+    try:
+        head, descriptors, _, _ = socket.recv_fds(connection, LENGTH.size, 4)
+        (length,) = LENGTH.unpack(head)
+        fields: dict[str, Any] = json.loads(connection.recv(length, socket.MSG_WAITALL))
+    except (ConnectionError, struct.error, ValueError):
+        for descriptor in descriptors:
+            os.close(descriptor)
+        return None
     return Request(**fields, descriptors=descriptors)
 
 
@@ -116,7 +126,10 @@ def _report(selector: selectors.BaseSelector, fork: Fork) -> None:
 
 def _forward(selector: selectors.BaseSelector, fork: Fork) -> None:
     """Send the signals that the launcher got; kill the fork when the launcher is gone."""
-    numbers = fork.connection.recv(16)
+    try:
+        numbers = fork.connection.recv(16)
+    except ConnectionResetError:
+        numbers = b""
     if not numbers:
         selector.unregister(fork.connection)
     for number in numbers or [signal.SIGKILL]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,14 @@ import pytest
 import pytest_lsp
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
+from fork_kit import ROBBDD_LSP, fork_server
 from lsp_kit import Editor, begin_session
+
+
+@pytest.fixture(scope="session", autouse=True)
+def forks() -> Iterator[None]:
+    with fork_server():
+        yield
 
 
 @pytest.fixture
@@ -28,7 +34,7 @@ def asked() -> list[str]:
 
 # pytest-lsp leaves the types of its decorator open.
 @pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
-    config=ClientServerConfig(server_command=[sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio"]),
+    config=ClientServerConfig(server_command=[*ROBBDD_LSP, "--stdio"]),
 )
 async def client(
     asked: list[str],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import sys
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
+from fork_kit import ROBBDD_LSP
 from lsp_kit import CLIENTS, PATIENCE, Editor, begin_session
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.lsp.handlers import create_server
@@ -44,7 +44,7 @@ def pulling() -> types.ClientCapabilities:
 
 # pytest-lsp leaves the types of its decorator open.
 @pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
-    config=ClientServerConfig(server_command=[sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio"]),
+    config=ClientServerConfig(server_command=[*ROBBDD_LSP, "--stdio"]),
 )
 async def puller(lsp_client: LanguageClient, tmp_path: Path, asked: list[str]) -> AsyncIterator[None]:
     await begin_session(lsp_client, tmp_path, pulling(), asked)

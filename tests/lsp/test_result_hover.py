@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import sys
 from base64 import b64decode
 from collections.abc import AsyncIterator
 from pathlib import Path
@@ -18,6 +17,7 @@ import pytest_asyncio
 from lsprotocol import types
 from pytest_lsp import client_capabilities, make_test_lsp_client
 
+from fork_kit import ROBBDD_LSP
 from lsp_kit import Editor, begin_session, plain
 from robbdd_tools.cli import main
 
@@ -32,7 +32,7 @@ SOON = ("<thing> is located at <goal>, after <evt-place-end>", "<thing> is locat
 async def unjudged(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncIterator[Editor]:
     """The example in a client that shows pictures and replays, or does not; nothing was run."""
     client: Any = make_test_lsp_client()
-    await client.start_io(sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
+    await client.start_io(*ROBBDD_LSP, "--stdio")
     able = cast(bool, getattr(request, "param", True))
     await begin_session(
         client, tmp_path, client_capabilities("visual-studio-code"), [], {"pictures": able, "replay": able}

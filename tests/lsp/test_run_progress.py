@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcInternalError
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
+from fork_kit import ROBBDD_LSP
 from kit import make_endless
 from lsp_kit import PATIENCE, Editor, begin_session
 
@@ -29,7 +29,7 @@ def told() -> Told:
 
 # pytest-lsp leaves the types of its decorator open.
 @pytest_lsp.fixture(  # pyright: ignore[reportUnknownMemberType]
-    config=ClientServerConfig(server_command=[sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio"]),
+    config=ClientServerConfig(server_command=[*ROBBDD_LSP, "--stdio"]),
 )
 async def client(
     request: pytest.FixtureRequest, lsp_client: LanguageClient, tmp_path: Path, told: Told

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import sys
 from pathlib import Path
 from typing import Any, cast
 
@@ -12,6 +11,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
+from fork_kit import ROBBDD_LSP
 from kit import make_endless, schema_errors
 from lsp_kit import CLIENTS, PATIENCE, Editor, plain
 from robbdd_tools.base.files import path_to_uri, uri_to_path
@@ -56,7 +56,7 @@ async def another_client(folder: Path) -> LanguageClient:
     client = make_test_lsp_client()
     # The type of its further arguments is left open.
     start = cast(Any, client).start_io
-    await start(sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
+    await start(*ROBBDD_LSP, "--stdio")
     root = types.WorkspaceFolder(uri=path_to_uri(folder), name="test")
     await client.initialize_session(
         types.InitializeParams(capabilities=client_capabilities("neovim"), workspace_folders=[root])
