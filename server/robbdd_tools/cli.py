@@ -82,7 +82,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"robbdd {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    check = commands.add_parser("check", help="report what is wrong in models")
+    check = commands.add_parser("check", help="report errors and warnings in models")
     check.add_argument("paths", nargs="+", metavar="FILE|DIR", type=Path)
     check.add_argument("--json", action="store_true", help="one JSON object per diagnostic and line")
     check.set_defaults(command=_check)

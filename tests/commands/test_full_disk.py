@@ -62,7 +62,7 @@ def test_a_run_ends_with_the_reason_keeps_what_it_showed_and_can_be_resumed(fold
         rest, errors = process.communicate()
         assert process.returncode == 2
         assert holding(rest) == [], "what cannot be kept is not shown as a result"
-        full = f"results cannot be kept any more: {store / 'results.sqlite'}: database or disk is full"
+        full = f"results can no longer be stored: {store / 'results.sqlite'}: database or disk is full"
         assert f"the run is incomplete: {full}" in rest
         assert "4 scenarios: 2 hold, 0 violated, 2 unknown" in rest
         assert "the trace is not kept: No space left on device\n" in rest

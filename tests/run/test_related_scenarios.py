@@ -98,7 +98,7 @@ def test_the_leaves_do_what_is_linked_to_them_with_the_values_of_all(tmp_path: P
     assert (leaf.behaviour, leaf.problem) == ("place", "")
     assert dict(leaf.arguments) == {"agent": "env:panda", "object": "env:nut", "workspace": "env:tray_ws"}
     (other,) = [leaf for leaf in spec.tree.leaves() if leaf.name == "pick"]
-    assert other.problem == "no scenario is linked to pick, so nothing says what it does"
+    assert other.problem == "no scenario is linked to pick, so its behaviour is undefined"
 
 
 def test_repeated_rows_are_executions_of_their_own(tmp_path: Path) -> None:

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from robbdd_tools.monitor.trace import Trace
     from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
 
-UNKNOWN_SCENARIO = "the manifest of this run knows no such scenario; was the feature changed?"
+UNKNOWN_SCENARIO = "the manifest of this run has no such scenario; was the feature changed?"
 
 
 class ScenarioRun:

@@ -105,7 +105,7 @@ class TreeRun:
         siblings = [] if found.parent is None else found.parent.children
         before = [one for one in siblings[: siblings.index(found)] if one.id in self._begun] if siblings else []
         if before and before[-1].id in self._succeeded:
-            return f"not reached: {before[-1].name} succeeded before, so nothing else was tried"
+            return f"not reached: {before[-1].name} had already succeeded"
         name, reason = self._failure(before[-1]) if before else ("", "")
         if name:
             return f"{NOT_REACHED}: {name} failed: {reason}"

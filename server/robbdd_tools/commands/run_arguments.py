@@ -30,7 +30,7 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rerun-failed", action="store_true", help="only what did not hold in the last stored run")
     text = "resume an interrupted run: its number or folder (default: the latest)"
     parser.add_argument("--resume", metavar="RUN", nargs="?", const="latest", help=text)
-    text = "execute a catalog behaviour in place of this implementation of a .bddx, as with a ROS action; repeats"
+    text = "execute a catalog behaviour instead of this implementation of a .bddx, such as a ROS action; repeats"
     parser.add_argument("--bhv", metavar="NAME=BEHAVIOUR", type=_substitution, action="append", help=text)
     allow_policy(parser)
     allow_selection(parser)
@@ -42,7 +42,7 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     outputs.add_argument("--viewer", action="store_true", help="follow each scenario in a window, in real time")
     text = "keep features, manifest, logs and results here instead of in the store"
     outputs.add_argument("-o", "--output", metavar="DIR", type=Path, help=text)
-    outputs.add_argument("--no-store", action="store_true", help="keep nothing of the run")
+    outputs.add_argument("--no-store", action="store_true", help="do not store the run")
     allow_store(outputs)
 
 
@@ -53,7 +53,7 @@ def argument_problem(options: argparse.Namespace) -> str:
     given = [f"--{name.replace('_', '-')}" for name in CHOOSING if getattr(options, name) not in (None, False)]
     given += [] if options.output is None else ["--output"]
     if given:
-        return f"--resume executes what the run has left open, with its own seed: leave out {', '.join(given)}"
+        return f"--resume executes the run's open scenarios, with its own seed: omit {', '.join(given)}"
     return ""
 
 

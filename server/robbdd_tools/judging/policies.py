@@ -82,7 +82,7 @@ class Judge:
             for target in observation.targets:
                 value: object = self.spec.values.get(target, self.own.get(plain_name(target), target))
                 if not isinstance(value, str):
-                    raise Unobserved(f"what is observed must be one element, but {target} is {value}")
+                    raise Unobserved(f"the observed target must be one element, but {target} is {value}")
                 found.append(Stream(observation, value, evidence, self.spec.seed))
         return found
 

@@ -35,7 +35,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--robbdd-seed", metavar="N", type=int, help="seed of all random choices (default: 1)")
     text = "execute each scenario N times, each with a different random seed"
     group.addoption("--robbdd-repeat", metavar="N", type=int, help=text)
-    text = "execute a catalog behaviour in place of this implementation of a .bddx, as with a ROS action; repeats"
+    text = "execute a catalog behaviour instead of this implementation of a .bddx, such as a ROS action; repeats"
     group.addoption("--robbdd-bhv", metavar="NAME=BEHAVIOUR", action="append", help=text)
     text = "only scenarios with these values: 'robot=panda and target=~cube.*'"
     group.addoption("--robbdd-where", metavar="EXPRESSION", help=text)
@@ -48,7 +48,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--robbdd-timeout", metavar="SECONDS", type=float, help=text)
     text = "where the run is kept (default: .robbdd/runs in the project's root)"
     group.addoption("--robbdd-store", metavar="DIR", help=text)
-    group.addoption("--robbdd-no-store", action="store_true", default=False, help="keep nothing of the run")
+    group.addoption("--robbdd-no-store", action="store_true", default=False, help="do not store the run")
 
 
 def pytest_configure(config: pytest.Config) -> None:

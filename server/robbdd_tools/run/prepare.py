@@ -22,7 +22,7 @@ from robbdd_tools.run.scenario_specs import SpecWriter
 DEFAULT_SEED = 1
 FEATURES = "features"
 MODEL_STEPS = "model_steps.py"
-_ENVIRONMENT = '''"""Hooks that hold the simulated world while behave goes through the scenarios."""
+_ENVIRONMENT = '''"""Hooks that manage the simulated world during a behave run."""
 
 from robbdd_tools.agent.hooks import after_all, after_scenario, after_step, before_all, before_scenario
 

@@ -273,7 +273,7 @@ def first_failure(results: RunResults) -> int | None:
 def failure_reason(error: OSError) -> str:
     """Return why no further results of a run can be kept."""
     reason = str(error) if isinstance(error, DatabaseProblem) else f"{error.filename}: {error.strerror or error}"
-    return f"results cannot be kept any more: {reason}"
+    return f"results can no longer be stored: {reason}"
 
 
 def _insert(connection: sqlite3.Connection, table: str, row: Mapping[str, object]) -> int | None:

@@ -82,7 +82,7 @@ class TreeSpecWriter:
             return NodeSpec(node.iri, name, node.kind, tuple(self._node(child, group) for child in node.children))
         link = self.relations.behaviours.get(node.iri)
         if link is None:
-            problem = f"no scenario is linked to {name}, so nothing says what it does"
+            problem = f"no scenario is linked to {name}, so its behaviour is undefined"
             return NodeSpec(node.iri, name, node.kind, problem=problem)
         arguments = {slot: self._element(term, group.values) for slot, term in link.arguments.items()}
         missing = [slot for slot, element in arguments.items() if not element]

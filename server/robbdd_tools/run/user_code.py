@@ -14,7 +14,7 @@ from robbdd_tools.protocol.run_folder import OWN_STEPS
 if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ExecutionSpec, Manifest, ScenarioSpec
 
-_FIX = "leave out --no-user-code if you trust this code, or run what does without it"
+_FIX = "leave out --no-user-code if you trust this code, or run scenarios without it"
 _FIX_TRUST = "trust the workspace if you trust this code"
 
 
