@@ -1,15 +1,8 @@
 """Commands start as forks."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-
 import pytest
 
-from fork_kit import fork_server
 
-
-@pytest.fixture(scope="session", autouse=True)
-def forks() -> Iterator[None]:
-    with fork_server():
-        yield
+@pytest.fixture(autouse=True)
+def quick_start(forks: None) -> None:
+    """Start ``fork_kit.ROBBDD`` as a fork."""

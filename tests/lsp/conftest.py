@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
 
@@ -10,14 +10,13 @@ import pytest
 import pytest_lsp
 from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 
-from fork_kit import ROBBDD_LSP, fork_server
+from fork_kit import ROBBDD_LSP
 from lsp_kit import Editor, begin_session
 
 
-@pytest.fixture(scope="session", autouse=True)
-def forks() -> Iterator[None]:
-    with fork_server():
-        yield
+@pytest.fixture(autouse=True)
+def quick_start(forks: None) -> None:
+    """Start ``fork_kit.ROBBDD_LSP`` as a fork."""
 
 
 @pytest.fixture
