@@ -30,6 +30,23 @@ PLAIN = {
     r"gives way": "yields, is replaced",
     r"STRANGER": "UNKNOWN_…",
     r"_bury|_?Doing": "what the function or the class does",
+    r"[Tt]ells? (whether|of|for|which|what|apart|them|who)": "Return whether …, determines, identifies",
+    r'"""(What|Which|Whose|Whoever)': "the noun: Contents of …, Kinds of …, Input of …",
+    r"what stands": "the text at …, the contents of …",
+    r"comes? along": "is built-in, is provided by",
+    r"passe[sd]? over": "skip, ignore",
+    r"in the place of": "instead of",
+    r"as it is written": "as written",
+    r"leads? nowhere": "is unresolved",
+    r"cannot be had|to be had": "is not available",
+    r"in vain": "without result",
+    r"yes-or-no": "Boolean",
+    r"see to it": "ensure",
+    r"behind one another": "one after another, row by row",
+    r"[Ll]east and (the )?largest": "smallest and largest",
+    r"to be filled in": "stub, placeholder",
+    r"like names": "similar names",
+    r"(of|for|in) which no": "without",
 }
 """Pattern of a word → what to write in its place."""
 

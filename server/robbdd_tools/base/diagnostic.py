@@ -56,7 +56,7 @@ class Fix:
 class Diagnostic:
     """One finding about one document.
 
-    ``code`` is stable (``syntax``, ``unknown-name``, ``shacl-…``); ``message`` names the fix where there is one.
+    ``code`` is stable (``syntax``, ``unknown-name``, ``shacl-…``); ``message`` names the fix if there is one.
     """
 
     uri: str

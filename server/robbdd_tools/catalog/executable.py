@@ -48,7 +48,7 @@ class Substitution:
 
 @dataclass(frozen=True, slots=True)
 class Implementation:
-    """What executes a behaviour: ``kind`` is ``catalog``, ``python`` or ``ros-action``; ``name`` is its name there.
+    """Implementation of a behaviour: ``kind`` is ``catalog``, ``python`` or ``ros-action``; ``name`` is its name there.
 
     ``origin`` is its source position, ``None`` for a graph without source text. ``replaced`` is what the model states
     where a run executes a catalog behaviour instead.

@@ -44,7 +44,7 @@ class Outputs:
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """What to run (models, or folders of them) and how.
+    """Models, or folders of models, to run, and options.
 
     ``repeat`` replaces the repetitions of executions. ``rerun_failed`` selects what failed in the last stored run;
     ``viewer`` opens a window on each scenario, one after another.

@@ -47,7 +47,7 @@ def main() -> None:
 
     send({"value": None})
     for line in sys.stdin:
-        # Whoever waits for the answer ends this process; should they be gone, it ends by itself.
+        # The parent kills this process on a timeout; without a parent, this timer ends it.
         faulthandler.dump_traceback_later(2 * TEMPLATE_SECONDS.value(), exit=True)
         answer = _answered(worker.answer, decoded(line))
         faulthandler.cancel_dump_traceback_later()

@@ -28,7 +28,7 @@ class AnalysisThread:
     """Executes urgent work (edits and requests) in order of arrival, other work when there is none.
 
     At a checkpoint, non-urgent work yields to urgent work, and work whose caller was cancelled ends. So a hover never
-    waits for the diagnostics of a large file, and nothing is computed in vain. An edit also ends at a checkpoint if the
+    waits for the diagnostics of a large file, and no result is wasted. An edit also ends at a checkpoint if the
     next item is another edit ``replacing`` the same text.
     """
 

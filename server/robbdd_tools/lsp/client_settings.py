@@ -100,7 +100,7 @@ async def follow_settings(ls: RobbddServer) -> None:
         entry = types.Registration(
             id="robbdd-settings", method=types.WORKSPACE_DID_CHANGE_CONFIGURATION, register_options=options
         )
-        # A client may refuse the subscription; its settings are read all the same.
+        # A client may refuse the subscription; its settings are still read.
         with suppress(JsonRpcException):
             await ls.client_register_capability_async(types.RegistrationParams(registrations=[entry]))
     await read_settings(ls)

@@ -41,7 +41,7 @@ class RunText:
 
 @dataclass(frozen=True, slots=True)
 class PlannedRun:
-    """What to execute, how often (``repeat``; ``None``: that of the model), and from which text."""
+    """Scenarios to execute, number of repetitions (``repeat``; ``None``: that of the model), and the text to use."""
 
     plan: Plan
     repeat: int | None

@@ -30,7 +30,7 @@ class Stores:
         return self._made(None) if path is None else store_beside(path)
 
     def replayable(self, uri: str) -> frozenset[str]:
-        """Return the IRIs of the variants that a document's store can replay, whoever ran them.
+        """Return the IRIs of the variants that a document's store can replay, from any run.
 
         A run is read again only when its results have changed.
         """

@@ -24,7 +24,7 @@ _ESCAPE = re.compile(r"\\(?:x([0-9a-f]{2})|u([0-9a-f]{4})|U([0-9a-f]{8}))")
 
 @dataclass(frozen=True, slots=True)
 class Crash:
-    """Where a process was: ``calls`` of its stack, outermost first, and the user code ``code`` that it had called.
+    """Position of a process: ``calls`` of its stack, outermost first, and the user code ``code`` that it had called.
 
     ``definition`` is where that is defined. Each is empty where it is not known.
     """

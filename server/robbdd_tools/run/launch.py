@@ -60,7 +60,7 @@ class Agent:
         self._mark = f"{os.getpid()}-{next(_numbers)}"
         self._base = folder / LOGS / f"agent-{number}"
         self.crash = Crash()
-        """Where the process was in the user's code when it ended, once its messages are at their end."""
+        """Position of the process in the user's code when it ended, available after its last message."""
         more = {MARK: self._mark, CRASH: str(self._base), TIME_LIMIT: str(timeout)}
         with self._log.stream as log:
             self._process = start(module, str(folder), *arguments, folder=self._work, log=log, more=more)

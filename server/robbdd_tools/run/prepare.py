@@ -41,7 +41,7 @@ paths = {FEATURES}
 
 @dataclass(frozen=True, slots=True)
 class RunRequest:
-    """What to run: a model, its name in reports, the seed, and the variants (all when ``None``).
+    """Input of a run: a model, its name in reports, the seed, and the variants (all when ``None``).
 
     ``scenarios`` selects scenarios within a variant. If the model has executions, they define the run: each executes
     its variant's scenarios, with its own seed if it has one; ``executions`` selects among them (all when ``None``).

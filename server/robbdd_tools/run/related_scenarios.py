@@ -130,7 +130,7 @@ def _links(model: AcceptanceModel, trees: Mapping[Iri, BehaviourTree]) -> Iterat
 
 @dataclass(frozen=True, slots=True)
 class _Setting:
-    """What scenarios must have in common, besides their values, to be judged from one execution."""
+    """Data that scenarios must share, besides their values, to be judged from one execution."""
 
     scene: SceneModel
     implementation: Implementation | None = None

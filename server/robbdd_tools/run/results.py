@@ -31,7 +31,7 @@ class ScenarioResult:
     judged: dict[int, ClauseJudged] = field(default_factory=dict[int, ClauseJudged])
     finished: Finished | None = None
     printed: str = ""
-    """What users' code printed, lines with their ends."""
+    """Output of users' code, lines with their line ends."""
 
     @property
     def verdict(self) -> Outcome:

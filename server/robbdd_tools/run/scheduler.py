@@ -71,7 +71,7 @@ class Policy:
 
 
 def _tasks(manifest: Manifest, indices: Iterable[int]) -> Iterator[tuple[int, ...]]:
-    """Group the scenarios that share an execution; each group takes the place of its first scenario."""
+    """Group the scenarios that share an execution; each group has the position of its first scenario."""
     together: dict[int | str, list[int]] = {}
     for index in indices:
         tree = manifest.scenarios[index].tree

@@ -59,7 +59,7 @@ class NoSuchRun(RobbddError):
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """What was run: the model and a digest of its graph.
+    """Subject of a run: the model and a digest of its graph.
 
     ``path`` is the model's path relative to the project's root, ``origin`` relative to the run folder; ``version`` is
     that of this package, ``simulator`` that of the engine. ``files`` are digests of the other used files, by their

@@ -189,7 +189,7 @@ def _reads_text(body: grammar.Expression, rules: Mapping[str, grammar.Expression
         case grammar.Use(rule):
             return _reads_text(rules[rule], rules)
         case grammar.Choice(parts) | grammar.Sequence(parts):
-            # The first option of a choice tells whether its rules make objects.
+            # The first option of a choice determines whether its rules make objects.
             return all(_reads_text(part, rules) for part in parts[:1]) and not any(map(_assigns, parts))
         case grammar.Optional(part):
             return _reads_text(part, rules)

@@ -23,7 +23,7 @@ def keep_in(path: Path) -> None:
 
 
 def begin(name: str, code: object) -> bytes:
-    """Note that ``code``, called ``name``, is being called; returns the note that ``end`` is to restore."""
+    """Record the start of a call of ``code``, named ``name``; returns the note that ``end`` restores."""
     if _page is None:
         return b""
     before = _page[:]
@@ -34,6 +34,6 @@ def begin(name: str, code: object) -> bytes:
 
 
 def end(before: bytes) -> None:
-    """Note that a call is over."""
+    """Record the end of a call."""
     if _page is not None:
         _page[:] = before

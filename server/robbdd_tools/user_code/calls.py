@@ -22,7 +22,7 @@ MAX_WORDS = 2000
 
 
 class UserCodeError(Exception):
-    """Users' code failed; the message tells the user what failed, how and where."""
+    """Users' code failed; the message describes the failure, its type and its place."""
 
     def __init__(self, message: str, fault: Fault) -> None:
         super().__init__(message)

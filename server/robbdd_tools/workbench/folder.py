@@ -1,4 +1,4 @@
-"""Where a run is kept: the project's store, another store, a separate folder, or nowhere."""
+"""Storage of a run: the project's store, another store, a separate folder, or none."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Keeping:
-    """Where to keep a run.
+    """Storage of a run.
 
     ``folder`` is a separate folder. Without it, the run goes to ``store`` (by default the project's), or to a temporary
     folder if ``keep`` is false.

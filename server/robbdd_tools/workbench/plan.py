@@ -140,7 +140,7 @@ class Coverage:
 
 @dataclass(frozen=True)
 class Plan:
-    """What to execute of some models.
+    """Selection of scenarios from some models.
 
     ``name`` is their common name in reports, ``path`` their file or folder, ``None`` for a text without a file.
     ``models`` are the files and folders if they are several.

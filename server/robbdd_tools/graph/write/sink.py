@@ -137,7 +137,7 @@ class Frame:
         self._placed = placed
 
     def begin(self) -> None:
-        """Tell the sink that the following triples come from this declaration."""
+        """Make this declaration the author of the following triples."""
         self.sink.begin((self._uri, self._placed.offset))
 
     def at(self, node: TreeNode) -> Location:
