@@ -35,13 +35,13 @@ ROBBDD_LSP = _command("robbdd_tools.lsp.main")
 
 @contextmanager
 def fork_server() -> Generator[None]:
-    """Let processes start as forks; without effect where there are none."""
+    """Start processes as forks; no effect on systems without fork."""
     if not CAN_FORK:
         yield
         return
     command = [sys.executable, "-m", "fork_server.serve", _ADDRESS]
     pipe = subprocess.PIPE
-    # In a session of its own: Ctrl-C ends the tests, which end the server.
+    # In a separate session: Ctrl-C ends the tests, which end the server.
     with subprocess.Popen(
         command, cwd=Path(__file__).parent, stdin=pipe, stdout=pipe, encoding="utf-8", start_new_session=True
     ) as server:

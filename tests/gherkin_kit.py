@@ -54,7 +54,7 @@ def edited(old: str, new: str, model: str = MODEL) -> str:
 
 
 def read_by_behave(text: str) -> list[Read]:
-    """Return the scenarios of a feature in behave's eyes; background steps come first."""
+    """Return the scenarios of a feature as parsed by behave; background steps first."""
     parsed: Any = import_module("behave.parser").parse_feature(text)
     assert parsed is not None
     found: list[Read] = []

@@ -1,4 +1,4 @@
-"""A hostile folder: beside its models lies a module of every name that an interpreter of ours may import."""
+"""A hostile folder: it contains a module of every name that one of our interpreters may import."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class HostileFolder:
             self._log.unlink(missing_ok=True)
 
     def _module(self, path: Path, name: str) -> None:
-        # Nothing is imported here: what the module needs might be planted, too.
+        # Import nothing here: imports of this module might be planted, too.
         path.write_text(
             f"with open({str(self._log)!r}, 'a') as log:\n    log.write({name!r} + '\\n')\n", encoding="utf-8"
         )

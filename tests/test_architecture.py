@@ -57,7 +57,7 @@ HOMES = {
     "rich": {"commands"},
     "pytest": {"pytest_plugin"},
 }
-# Layers that may sit beside one another and see each other; all others of one rank may not import each other.
+# Packages of one rank that may import each other; all others of one rank may not.
 NEIGHBOURS = {("features", "checks"), ("cli", "commands"), ("commands", "cli")}
 
 
@@ -107,7 +107,7 @@ def test_a_module_imports_only_from_layers_to_its_left() -> None:
 
 
 OBJECTS_OF_THE_API = {"workbench.model", "workbench.plan", "workbench.run"}
-"""Public objects that lead to each other: a model has plans, a plan has runs, and each knows where it comes from."""
+"""Public types that refer to each other: a model has plans, a plan has runs, and each refers back."""
 HUB_OF_THE_SERVER = "lsp.server"
 """The server's parts know the server, which holds them."""
 
@@ -180,7 +180,7 @@ PLANNING = {"Scheduler", "RunRequest", "SpecWriter", "Recording", "Relations", "
 
 
 def plans(path: Path) -> Iterator[str]:
-    """Yield what a module imports, other than for types, to plan or execute runs."""
+    """Yield the runtime imports of a module for planning or executing runs."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for_types = {
         id(node)
@@ -250,7 +250,7 @@ def test_the_version_is_told_without_loading_anything() -> None:
 
 
 def prints(path: Path) -> Iterator[str]:
-    """What a module prints with: ``print``, a standard stream's ``write``, a console of its own."""
+    """Return the calls with which a module prints: ``print``, a standard stream's ``write``, its own console."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Call):
             called = ast.unparse(node.func)

@@ -1,4 +1,4 @@
-"""docs/compatibility.md names every word of the language, and tells the truth about the models of others."""
+"""docs/compatibility.md names every word of the language, and is correct about models by others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""No command and no request reaches the network, whatever the files of a folder ask for."""
+"""No command and no request reaches the network, whatever the files of a folder contain."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ async def test_no_request_contacts_a_server(
     )
     for name in ("pickplace.bdd", "remote.bdd", "bench.scene", "bench.scenex", "pickplace.bddx", "remote.bddx"):
         await _ask_all(client, folder / name, contacts[1])
-    # The project's shapes, which ask for the network most, are checked by now.
+    # The project's shapes, the most likely to use the network, have been checked by now.
     model = types.TextDocumentIdentifier(path_to_uri(folder / "pickplace.bdd"))
     async with asyncio.timeout(PATIENCE):
         while "shapes-unchecked" not in await _codes(client, model):

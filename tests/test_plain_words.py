@@ -1,4 +1,4 @@
-"""Code, messages and pages are plain technical English: words of a private dialect do not come back."""
+"""Code, messages and pages are plain technical English: words of the former private dialect are banned."""
 
 from __future__ import annotations
 

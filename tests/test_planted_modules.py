@@ -1,4 +1,4 @@
-"""No module that lies beside the models is imported in place of one that we mean."""
+"""No module in the models' folder is imported instead of an intended one."""
 
 from __future__ import annotations
 

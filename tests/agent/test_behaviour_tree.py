@@ -1,4 +1,4 @@
-"""Behaviour trees in execution: what is tried, what is stamped, what is said of what was not reached."""
+"""Execution of behaviour trees: order of attempts, recorded events, reasons for unreached nodes."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def create(leaf):
 
 
 def stamps(folder: Path, decorator: str, count: int, *outcomes: str) -> tuple[TreeRun, list[tuple[str, int]]]:
-    """Tick a tree of leaves that take a tick and end with these outcomes; return it with what it stamped."""
+    """Tick a tree of leaves that take one tick and end with these outcomes; return it with its recorded events."""
     nodes = (pick("first"), PLACE, NodeSpec("t:whole", "whole", "leaf", problem="it is made"))
     tree = made(folder, AGAIN.format(decorator, count), *nodes).tree
     assert tree is not None

@@ -1,4 +1,4 @@
-"""Executions in the simulated world: what the physics does, what is recorded, what is said when it goes wrong."""
+"""Executions in the simulated world: the physics, the recording, the messages on failure."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_settled_things_stay_where_they_are() -> None:
 
 
 def test_a_servo_whose_target_nobody_moves_holds_still() -> None:
-    """After the last behaviour nothing commands the arm any more."""
+    """No controller commands the arm after the last behaviour."""
     trace = to_the_end(execution([pick_place(CUBE)]))
     tool = trace.positions[:, trace.column(PANDA)]
     assert np.linalg.norm(tool[-1] - tool[-20]) < 1e-4

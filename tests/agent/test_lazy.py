@@ -1,4 +1,4 @@
-"""behave drives, time decides: a step runs the world only as far as its own window, and judges there."""
+"""A behave step simulates only as far as its own window, and judges there."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def test_a_then_that_looks_back_does_not_run_on_and_one_with_a_horizon_does(tmp_
         assert all(run.clause(line, text).outcome is Outcome.HOLDS for line, _, text in thens)
         run.finish()
         spans.append(sent.simulated)
-    # The scenario ends one second after its behaviour; then come the two seconds of the horizon.
+    # The scenario ends one second after its behaviour; the horizon adds two seconds.
     assert spans[1] - spans[0] == pytest.approx(3.0, abs=0.2)
 
 

@@ -1,4 +1,4 @@
-"""Limits come from the user: the environment and the editor's setting."""
+"""Limits are set by the user: by the environment and the editor's setting."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Memory follows the project, not the keystrokes: what work leaves behind is freed, and caches stay small."""
+"""Memory depends on the project, not on the number of keystrokes: temporary data is freed, and caches stay small."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ time.sleep(600)
 
 
 class Recorder:
-    """A process that only notes what is asked of it."""
+    """A process that only records requests."""
 
     pid = 4711
 

@@ -42,7 +42,7 @@ def main(wanted: Sequence[str]) -> None:
 
 
 def _processor() -> str:
-    """Return number and kind of the processors, where the system tells."""
+    """Return number and type of the processors, if the system reports them."""
     import os
 
     try:

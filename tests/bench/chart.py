@@ -71,7 +71,7 @@ def scatter(
 
 
 def _step(largest: float) -> float:
-    """Return a round distance of ticks, of which at most six reach the largest value."""
+    """Return a round tick distance with at most six ticks up to the largest value."""
     power = 10.0 ** floor(log10(largest / 6))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power * 6 >= largest)
 

@@ -1,4 +1,4 @@
-"""A lean client of a language server in a process of its own, which notes when each message comes."""
+"""A minimal client of a language server in a separate process, which records the arrival time of each message."""
 
 from __future__ import annotations
 
@@ -114,9 +114,9 @@ class Client:
         self._send({"method": method, "params": parameters})
 
     def wait(self, wanted: Callable[[Message], bool]) -> tuple[float, Message]:
-        """Wait for a message, and return it and when it came; what came before the last ``forget`` counts, too.
+        """Wait for a message; return it with its arrival time. Messages since the last ``forget`` count, too.
 
-        Raises ``TimeoutError`` where the server has ended or says nothing any more.
+        Raises ``TimeoutError`` if the server has ended or is silent.
         """
         place = 0
         with self._changed:
@@ -134,7 +134,7 @@ class Client:
             return list(self._heard)
 
     def forget(self) -> None:
-        """Forget what has been heard."""
+        """Drop all received messages."""
         with self._changed:
             self._heard.clear()
 

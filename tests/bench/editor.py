@@ -1,7 +1,7 @@
-"""How soon an editor gets its answers from ``robbdd-lsp``, a process of its own, over standard input and output.
+"""Latency of ``robbdd-lsp`` for an editor, as a separate process, over standard input and output.
 
-What an editor waits for is wall time; beside it stands the processor time that the server spends, in which other work
-on the machine does not count.
+Latency is wall time; the server's processor time is measured as well, because other work on the machine does not affect
+it.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ PEER = {
 """Recorded figures of the server of secoro-dsl-nvim, on a machine of the same kind (2 cores at 2.5 GHz), not in this
 run: what it needs comes from no package registry. Files of the same length are not the same files."""
 ON_EVERY_STROKE = ("semanticTokens/full/delta", "inlayHint", "codeLens", "documentSymbol", "foldingRange")
-"""What VS Code asks for after each change of a text."""
+"""Requests of VS Code after each change of a text."""
 STAMPS = """import os, time
 from pathlib import Path
 from robbdd_tools.agent.execution import Execution
@@ -55,7 +55,7 @@ def take_verdict(self, line, verdict):
     return report(self, line, verdict)
 Execution.stamp, Execution.advance_until, ScenarioRun._report = 0.0, stamped, told
 """
-"""A user's step file that notes when the simulation has come as far as a clause needs."""
+"""A user's step file that records when the simulation has progressed as far as a clause needs."""
 
 
 @dataclass(slots=True)
@@ -117,7 +117,7 @@ class Session:
         return came - began
 
     def colour(self) -> None:
-        """Ask for the colours of the whole document, so that from now on only what has changed is sent."""
+        """Request the colours of the whole document, so that only changes are sent afterwards."""
         tokens = self.client.request("textDocument/semanticTokens/full", self.document)
         self._coloured = str(tokens["resultId"])
 
@@ -131,7 +131,7 @@ class Session:
         return {**self.document, "position": self.position(offset)}
 
     def measured(self, works: Sequence[Callable[[], float]]) -> Times:
-        """Do some things in turn, each of which returns the seconds waited."""
+        """Execute actions in turn, each of which returns its latency in seconds."""
         times = Times([], [])
         for work in works:
             before = self.client.processor_time()
@@ -170,7 +170,7 @@ def rows() -> Iterator[tuple[str, str]]:
 
 
 def with_peer(name: str, figure: str) -> tuple[str, str]:
-    """Return a row with the peer's figure, where there is one."""
+    """Return a row with the peer's figure, if any."""
     return name, f"{figure}; {PEER[name]}" if name in PEER else figure
 
 
@@ -208,7 +208,7 @@ def _import_time(module: str) -> float:
 
 
 def _one_file(text: str, name: str, typed: str, place: Callable[[str], int]) -> Iterator[tuple[str, str]]:
-    """Measure a long file, in the middle of which something is typed; ``place`` finds where."""
+    """Measure a long file with edits in the middle; ``place`` finds where."""
     with tempfile.TemporaryDirectory() as folder, Client(COMMAND) as client:
         (Path(folder) / "lab.scene").write_text(SCENE, encoding="utf-8")
         client.initialize(Path(folder))
@@ -237,7 +237,7 @@ def _one_file(text: str, name: str, typed: str, place: Callable[[str], int]) -> 
 
 
 def _judged(message: Message) -> tuple[int, int] | None:
-    """Return the scenario and the line of the clause that a message brings the verdict of."""
+    """Return the scenario and the line of the clause whose verdict a message contains."""
     if message.get("method") != "robbdd/runMessage":
         return None
     told: Message = message["params"]["message"]
@@ -257,7 +257,7 @@ def _refresh_behind(clauses: Collection[tuple[int, int]]) -> Callable[[Message],
 
 
 def _status() -> Iterator[tuple[str, str]]:
-    """Measure how soon a client hears of what a clause's simulation has shown."""
+    """Measure how soon a client receives the results of a clause's simulation."""
     with tempfile.TemporaryDirectory() as name:
         folder, stamps = Path(name) / "pickplace", Path(name) / "stamps"
         shutil.copytree(EXAMPLES / "pickplace", folder)
@@ -270,7 +270,7 @@ def _status() -> Iterator[tuple[str, str]]:
             client.wait(lambda message: message.get("method") == "textDocument/publishDiagnostics")
             client.request("workspace/executeCommand", {"command": "robbdd.run", "arguments": [{"uri": path.as_uri()}]})
             decided = {(int(index), int(line)): float(at) for index, line, at in map(str.split, stamps.open())}
-            # The answer may come before the last refresh.
+            # The answer may arrive before the last refresh.
             client.wait(_refresh_behind(decided))
             heard = client.heard()
     told = {clause: came for came, message in heard if (clause := _judged(message)) is not None}

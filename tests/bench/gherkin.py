@@ -14,7 +14,7 @@ from kit import EVENTS, SCENE, TEMPLATE
 UPSTREAM = {100: (46, 13), 1000: (355, 282), 10_000: (3491, 11067)}
 """Scenarios → milliseconds of the upstream prototype to expand and to render them, on 2 cores at 2.5 GHz."""
 MANY = 100_000
-"""Scenarios that show whether time and memory stay what they are."""
+"""Numbers of scenarios that show whether time and memory stay constant."""
 _SCRIPT = """
 import json, resource, shutil, sys, time
 from pathlib import Path

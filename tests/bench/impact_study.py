@@ -30,11 +30,11 @@ AGENTS = ("env:panda", "env:kinova", "env:ur10")
 SPEEDS = (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.35, 0.5)
 BENCH = "env:bench"
 PLACE = (0.5, 0.0)
-"""Where the tool comes down, m."""
+"""Position of the impact, m."""
 ABOVE = 0.12
-"""Height above the table from which it comes, m."""
+"""Height of the tool above the table at the start, m."""
 DRIVEN_ON = 0.02
-"""Distance that a controller which notices nothing goes on for, m."""
+"""Distance that a controller without contact detection continues, m."""
 BLOW = 0.05
 """Time after the touch over which the impulse is taken, s."""
 WATCHED = 0.5
@@ -63,7 +63,7 @@ def effective_mass(simulation: Simulation, robot: Robot) -> float:
 
 
 def strike(agent: str, speed: float, driven_on: float = 0.0) -> Impact:
-    """Bring an arm down on the table at a speed (m/s) of the tool and return what the table feels."""
+    """Move an arm down onto the table at a speed (m/s) of the tool and return the forces on the table."""
     scene = replace(SCENE, objects=(BENCH,), agents=(agent,), workspaces={BENCH_WS: (BENCH,)}, contains={})
     simulation = Simulation(build_world(scene, 1))
     robot = simulation.robots[agent]
@@ -89,7 +89,7 @@ def strike(agent: str, speed: float, driven_on: float = 0.0) -> Impact:
         remaining -= step if touched else 0.0
         height -= step
         joints = at(height, joints)
-        # Servos lag behind by their damping; the lead makes up for it, as in the catalog's behaviours.
+        # Servos lag because of their damping; the lead compensates for it, as in the catalog's behaviours.
         simulation.command(robot, joints + robot.lead * (joints - before) / TICK, closed)
         before = joints
         simulation.tick()

@@ -1,6 +1,6 @@
-"""``python -m tests.bench.inverse_kinematics``: our inverse kinematics beside that of mink.
+"""``python -m tests.bench.inverse_kinematics``: compare our inverse kinematics with that of mink.
 
-Needs ``pip install mink daqp``, which the product does not. Both bring the tool from one point of a path to the next,
+Needs ``pip install mink daqp``, which the product does not. Both move the tool from one point of a path to the next,
 0.03 m away, from the same joint positions to the same accuracy. The figures are for ``docs/simulation.md``.
 """
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 POINTS = 300
 PULL = 1e-3
-"""Cost of leaving the home posture, beside 1 for the tool's pose."""
+"""Cost of leaving the home posture, relative to 1 for the tool's pose."""
 
 
 class Mink:

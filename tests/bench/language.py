@@ -104,7 +104,7 @@ def _one_file(text: str, name: str, typing: Iterator[str]) -> Iterator[tuple[str
 
 
 def _uninterrupted(work: Callable[[], object]) -> float:
-    """Return the longest processor time of some work between two places where it can be left."""
+    """Return the longest processor time of some work between two checkpoints."""
     places = [time.process_time()]
     with watched(lambda: places.append(time.process_time())):
         work()
@@ -171,7 +171,7 @@ def _many_files() -> Iterator[tuple[str, str]]:
 
 
 def _project() -> Iterator[tuple[str, str]]:
-    """Measure a folder of many files that share a scene and import one another by tens, none of which is open yet."""
+    """Measure a folder of many unopened files that share a scene and import one another in groups of ten."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "lab.scene").write_text(SCENE, encoding="utf-8")

@@ -1,7 +1,7 @@
-"""``python -m tests.bench.placing_study [SEEDS [AGENT THING]]``: how often each arm brings each thing to each place.
+"""``python -m tests.bench.placing_study [SEEDS [AGENT THING]]``: success rates of each arm, object and place.
 
-A success: the thing is located at the goal, the goal was not collided with, the thing was not dropped, and the
-behaviour went through. Bins alternate with the seed. The figures are for ``docs/simulation.md``.
+Success means that the object is located at the goal, the goal was not collided with, the object was not dropped, and
+the behaviour succeeded. Bins alternate with the seed. The figures are for ``docs/simulation.md``.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Trial:
 
 
 def succeeds(trial: Trial) -> tuple[bool, bool, str]:
-    """Execute a trial; returns whether all went well, whether the thing is at the goal, and what went wrong."""
+    """Execute a trial; return whether it succeeded, whether the object is at the goal, and the problem, if any."""
     words = {"agent": trial.agent, "thing": trial.thing, "goal": trial.goal}
     run = execution([pick_place(trial.thing, trial.goal, trial.agent)], trial.scene(), trial.seed)
     trace = run.complete(run.advance_until(lambda _: False))
@@ -67,7 +67,7 @@ def succeeds(trial: Trial) -> tuple[bool, bool, str]:
 
 
 def trials(seeds: int) -> Iterator[Trial]:
-    """Yield all trials: ``seeds`` of each arm, thing and place."""
+    """Yield all trials: ``seeds`` of each arm, object and place."""
     for agent in AGENTS:
         for thing in (CUBE, BALL):
             for scale in SCALES:
@@ -79,7 +79,7 @@ def trials(seeds: int) -> Iterator[Trial]:
 
 
 def main(seeds: int, agent: str = "", thing: str = "") -> None:
-    """Print the successes of each arm, thing and place."""
+    """Print the successes of each arm, object and place."""
     chosen = [one for one in trials(seeds) if one.agent.endswith(agent) and one.thing.endswith(thing)]
     well: Counter[tuple[str, str, str]] = Counter()
     there: Counter[tuple[str, str, str]] = Counter()

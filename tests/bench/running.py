@@ -1,4 +1,4 @@
-"""How fast the physics goes, and how long a user waits for the first verdict."""
+"""Speed of the physics, and a user's waiting time for the first verdict."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def _first_verdict() -> float:
 
 
 def _cancelled() -> float:
-    """Return the longest time (s) that runs take to end when they are interrupted behind their first line."""
+    """Return the longest time (s) that runs take to end when interrupted after their first line."""
     longest = 0.0
     for _ in range(INTERRUPTIONS):
         with _run_of_the_example("--repeat", "100", "--jobs", "2") as process:

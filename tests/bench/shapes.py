@@ -38,7 +38,7 @@ def rows() -> Iterator[tuple[str, str]]:
 
 
 def _edits(text: str, name: str, old: str, count: int) -> tuple[str, str]:
-    """Measure edits of a text: more and more space behind the first word of the first ``old`` in its second half."""
+    """Measure edits of a text: growing space after the first word of the first ``old`` in its second half."""
     uri = f"{FOLDER}bench.bdd"
     project, validation = Project(), Validation()
     project.open(f"{FOLDER}lab.scene", 1, SCENE)
@@ -62,7 +62,7 @@ def _edits(text: str, name: str, old: str, count: int) -> tuple[str, str]:
 
 
 def _engines() -> Iterator[tuple[str, str]]:
-    """Compare rdflib's engine with that of Oxigraph, where it is installed, on one graph."""
+    """Compare rdflib's engine with that of Oxigraph, if installed, on one graph."""
     graph = _large_graph()
     native = _oxigraph(graph)
     for name in QUERIES:

@@ -1,4 +1,4 @@
-"""Events of a model stand for those of a behaviour by name, whatever the style of the name."""
+"""Events of a model are matched with those of a behaviour by name, in any naming style."""
 
 from __future__ import annotations
 

@@ -166,7 +166,7 @@ def test_has_config_of_a_workspace_is_that_of_all_its_carriers() -> None:
 
 
 def limited(trace: Trace, target: str, name: str, value: str) -> Trace:
-    """A trace in which an element has a configuration that says how to judge it."""
+    """A trace in which an element has a configuration of how to judge it."""
     return replace(trace, settings={(target, name): value})
 
 
@@ -325,7 +325,7 @@ def test_what_lies_in_a_bin_is_located_at_the_table_if_the_bin_is_composed_into_
 
 
 def test_a_bin_is_not_located_at_what_it_carries() -> None:
-    """Its middle lies in its own workspace, which must neither hold it nor take it from the table."""
+    """Its centre is in its own workspace, which must neither contain it nor remove it from the table."""
     on_table, fallen = still(2, (0.0, 0.0, 0.06)), still(2, (2.0, 0.0, -0.64))
     for contents in ({}, COMPOSED):
         assert located("table_ws", on_table, on_table, contents, "bin").robustness == pytest.approx(0.06)

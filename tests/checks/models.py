@@ -12,7 +12,7 @@ SETS = TEMPLATE.replace("var goal\n", "var goal\n    set var goals\n").replace(
     "        in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)",
     "        ( var y exists in <goals> ) such that { in-tray: holds(<part> is located at <y>, after <end>) }",
 )
-"""A template with a ``set var`` beside the others."""
+"""A template with an additional ``set var``."""
 
 
 def story(lines: str, template: str = TEMPLATE) -> str:
@@ -21,7 +21,7 @@ def story(lines: str, template: str = TEMPLATE) -> str:
 
 
 def marked(text: str, line: str, expected: str) -> str:
-    """Put a marker below the line that holds a piece of text, with carets under what stands in ``«…»``."""
+    """Put a marker below the line with a piece of text, with carets under the part in ``«…»``."""
     opened, closed = line.index("«"), line.index("»") - 1
     plain = line.replace("«", "").replace("»", "")
     assert text.count(plain) == 1, plain
@@ -47,9 +47,9 @@ def found(text: str, *codes: str) -> list[Diagnostic]:
 
 
 def fixed(text: str, code: str, title: str = "") -> str:
-    """Apply the first fix (whose title begins so) of the first finding with a code; see what it does.
+    """Apply the first fix (with this beginning of its title) of the first finding with a code; return the result.
 
-    The finding is gone afterwards and there is no error that was not there before.
+    The finding is gone afterwards and there is no new error.
     """
     case = fixture(text)
     before = fast_diagnostics(case.snapshot, case.uri)

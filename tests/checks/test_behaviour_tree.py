@@ -15,7 +15,7 @@ def linked(node: str, template: str = TEMPLATE) -> str:
 
 
 def other(text: str) -> str:
-    """A second template with names of its own, whose behaviour only picks."""
+    """A second template with its own names, whose behaviour only picks."""
     for old, new in (("fetch", "take"), ("on-bench", "there"), ("in-tray", "taken"), ("carry", "get")):
         text = text.replace(old, new)
     return text.replace(" and places at <goal>", "")

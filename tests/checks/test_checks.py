@@ -1,4 +1,4 @@
-"""Each rule beyond syntax, names and shapes finds its mistake and nothing else."""
+"""Each rule beyond syntax, names and shapes finds its mistake and no other."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Files that import each other are told so, where they do."""
+"""Files that import each other are reported at their imports."""
 
 from checks.models import found
 

@@ -40,7 +40,7 @@ def project(scene: str = SCENE) -> Project:
 
 
 def cold(text: str, scene: str = SCENE) -> list[Diagnostic]:
-    """Analyse a text with nothing kept; what was kept before is there again afterwards."""
+    """Analyse a text with empty caches; restore the caches afterwards."""
     fresh = project(scene)
     fresh.open(URI, 1, text)
     with memo.without_cache():

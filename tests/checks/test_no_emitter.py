@@ -1,4 +1,4 @@
-"""A clause that refers to an event which nothing emits says so at the event, with the events there are."""
+"""A clause on an event without an emitter is reported at the event, with the available events."""
 
 from __future__ import annotations
 

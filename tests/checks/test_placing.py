@@ -1,4 +1,4 @@
-"""What would keep a run from placing things is told where it is written."""
+"""Problems that would prevent placing objects in a run are reported where they are written."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_a_pose_that_places_nothing_is_reported(sound: str, broken: str, words: 
 
 
 def changed(sound: str, broken: str, expected: str) -> str:
-    """Return the instance with a part broken, marked where ``«…»`` stands."""
+    """Return the instance with a broken part, marked with ``«…»``."""
     assert INSTANCE.count(sound) == 1, sound
     text = INSTANCE.replace(sound, broken.replace("«", "").replace("»", ""))
     return marked(text, broken, expected)

@@ -1,4 +1,4 @@
-"""Each rule about what a model leaves out or says too much: one finding, at its place, that tells what to do."""
+"""Each rule about missing or redundant parts of a model gives one finding, at its place, with the fix."""
 
 import pytest
 

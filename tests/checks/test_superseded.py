@@ -1,4 +1,4 @@
-"""A mistake is told once: what a rule has found, no shape repeats; what no rule found, the shapes still tell."""
+"""A mistake is reported once: shapes do not repeat findings of rules, but report all others."""
 
 import pytest
 

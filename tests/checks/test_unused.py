@@ -1,4 +1,4 @@
-"""Rules about names that nobody uses; what another file may use is left alone."""
+"""Rules about unused names; names that another file may use are not reported."""
 
 import pytest
 

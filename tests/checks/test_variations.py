@@ -1,4 +1,4 @@
-"""Rules about what a variant gives to the variables of its template."""
+"""Rules about the values that a variant gives to its template's variables."""
 
 from checks.models import LINES, SETS, check, fixed, found, marked, story
 from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE

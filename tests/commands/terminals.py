@@ -32,7 +32,7 @@ def on_a_terminal(command: Sequence[str], columns: int, expected: int = 0, **var
         try:
             while part := os.read(ours, 65536):
                 written += part
-        except OSError:  # how a terminal says that nobody writes to it any more
+        except OSError:  # a terminal signals this way that its writers are gone
             pass
         os.close(ours)
     assert run.returncode == expected, written
@@ -40,6 +40,6 @@ def on_a_terminal(command: Sequence[str], columns: int, expected: int = 0, **var
 
 
 def screen_lines(written: str) -> list[str]:
-    """The lines that stay on the screen: without what was erased, the bar and the sequences around them."""
+    """The final lines of the screen: without erased text, the bar and control sequences."""
     kept = (CONTROL.sub("", line.rpartition("\x1b[2K")[2]) for line in written.split("\n"))
     return [line.rstrip() for line in kept if "━" not in line]

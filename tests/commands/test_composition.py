@@ -1,4 +1,4 @@
-"""A part that is brought from a tray to the table: where it is depends on what the scene composes."""
+"""A part is moved from a tray to the table: its location depends on the scene's composition."""
 
 from __future__ import annotations
 

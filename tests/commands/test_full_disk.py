@@ -1,4 +1,4 @@
-"""A disk that becomes full while ``robbdd run`` goes on: what was shown is kept, and the run can be resumed."""
+"""A disk that becomes full during ``robbdd run``: shown results are kept, and the run can be resumed."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_a_run_ends_with_the_reason_keeps_what_it_showed_and_can_be_resumed(fold
     with small_disk(store, 4096):
         process = start(folder, MODEL, "--jobs", "1", "--seed", "3", "--json", "full.json")
         assert process.stdout is not None
-        # The cube's two scenarios come first.
+        # The cube's two scenarios are first.
         shown = ""
         while len(holding(shown)) < 2:
             shown += process.stdout.readline()

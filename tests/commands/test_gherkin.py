@@ -135,7 +135,7 @@ def test_steps_are_printed_or_added_to_a_file(folder: Path) -> None:
 def test_plain_behave_gives_the_verdicts_of_a_run(tmp_path: Path) -> None:
     shutil.copy(PICKPLACE.with_name("bench.scene"), tmp_path)
     text = PICKPLACE.read_text(encoding="utf-8").replace("<cubes.cube0>, <balls.ball0>", "<cubes.cube0>")
-    # One clause that holds, one that is violated, groups, and a text that nobody can judge.
+    # One clause that holds, one that is violated, groups, and a text without a judge.
     text = text.replace(
         "        (\n            in-hand:",
         """        (
@@ -207,7 +207,7 @@ def test_a_folder_has_no_steps_of_its_own_without_a_file_beside_the_model(folder
 
 
 def behave_statuses(out: Path, elsewhere: Path) -> list[list[str]]:
-    """The verdict of each clause as plain behave tells it, run from another folder."""
+    """The verdict of each clause in plain behave, run from another folder."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("BEHAVE")}
     command = [sys.executable, "-m", "behave", "--format", "json", "--outfile", str(out / "report.json")]
     subprocess.run([*command, str(out / "features")], capture_output=True, cwd=elsewhere, env=environment)

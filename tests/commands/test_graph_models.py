@@ -1,4 +1,4 @@
-"""Models that are graphs, wherever a model may stand on the command line."""
+"""Graph models, wherever the command line accepts a model."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def test_a_context_that_may_not_be_fetched_ends_the_command(tmp_path: Path) -> N
 
 @pytest.fixture
 def address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """A server on this machine that hands out a context, and a cache of its own."""
+    """A local server of a context, and a separate cache."""
     (tmp_path / "served").mkdir()
     (tmp_path / "served" / "c.json").write_text('{"@context": {"ex": "https://example.org/"}}', encoding="utf-8")
     monkeypatch.setenv("ROBBDD_CACHE", str(tmp_path / "cache"))

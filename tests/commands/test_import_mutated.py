@@ -82,7 +82,7 @@ def errors_of(path: Path) -> Iterator[str]:
 
 
 def imported(graph: Graph, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
-    """Import a graph as ``m.bdd`` in a folder; return the exit code and what was reported."""
+    """Import a graph as ``m.bdd`` in a folder; return the exit code and the output."""
     source = folder / "m.ttl"
     source.write_text(serialize(graph, "ttl"), encoding="utf-8")
     code = main(["import", str(source), "-o", str(folder / "m.bdd")])

@@ -19,7 +19,7 @@ PARTS = ("template.ttl", "story.jsonld")
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Hold the template of a model as Turtle, its story as JSON-LD, each with blank nodes of its own."""
+    """A folder with a model's template as Turtle and its story as JSON-LD, each with its own blank nodes."""
     monkeypatch.chdir(tmp_path)
     head, rest = CELL[: CELL.index("ex:begin a")], CELL[CELL.index("ex:begin a") :]
     template, _, story = rest.partition("ex:story a")

@@ -1,4 +1,4 @@
-"""``--no-user-code`` refuses whatever would run Python code that came with a model, before anything of it runs."""
+"""``--no-user-code`` refuses all Python code of a model before any of it runs."""
 
 from __future__ import annotations
 

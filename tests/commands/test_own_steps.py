@@ -1,4 +1,4 @@
-"""Steps of users' own: what reaches them, and that a run keeps those that it was made with."""
+"""Users' own steps: their arguments, and that a run keeps the steps it was made with."""
 
 from __future__ import annotations
 

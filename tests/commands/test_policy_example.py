@@ -35,7 +35,7 @@ def test_policies_judge_their_clauses_the_same_in_physics_and_on_stored_traces(p
     assert main(["run", "pickplace.bddx", "--where", "thing = cube0", "--json", "run.json"]) == 0
     found = judgements(project / "run.json")
     assert {verdict for _, verdict, _ in found} == {"holds"}
-    # The built-in evaluator would tell the distance to a wall of the bin, which is less.
+    # The built-in evaluator would return the distance to a wall of the bin, which is less.
     assert all(margin is not None and margin > 0.1 for name, _, margin in found if name in ("at-source", "at-goal"))
     assert main(["judge", "latest", "pickplace.bddx", "--json", "judge.json"]) == 0
     assert judgements(project / "judge.json") == found

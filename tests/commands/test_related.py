@@ -132,7 +132,7 @@ def test_a_failed_pick_leaves_the_place_story_unknown(tmp_path: Path) -> None:
     error = cases["part-put"].find("error")
     assert error is not None
     assert LOST in (error.get("message") or "")
-    # One story by itself runs the tree as far as it needs, and comes to the same.
+    # A single story runs the tree as far as it needs, with the same result.
     assert run(tmp_path, "--scenario", "part-put") == [put]
     (taken,) = run(tmp_path, "--scenario", "part-taken")
     assert verdicts([taken])["part-taken"] == ["holds", "holds", "violated", "unknown"]
@@ -155,7 +155,7 @@ def test_plain_behave_gives_the_same_verdicts(tmp_path: Path) -> None:
 
 
 def said_by_behave(out: Path) -> dict[str, tuple[str, str]]:
-    """What plain behave says of each clause: its verdict and the words of a failure."""
+    """Plain behave's result for each clause: its verdict and the failure text."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("BEHAVE")}
     command = [sys.executable, "-m", "behave", "--format", "json", "--outfile", str(out / "report.json")]
     subprocess.run([*command, str(out / "features")], capture_output=True, env=environment)

@@ -32,7 +32,7 @@ def robbdd(folder: Path, *arguments: str, **environment: str) -> subprocess.Comp
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Holds a model of two scenarios and a run of them."""
+    """A folder with a model of two scenarios and a run of them."""
     folder = tmp_path_factory.mktemp("model")
     text = (EXAMPLES / "pickplace" / "pickplace.bdd").read_text(encoding="utf-8")
     (folder / "m.bdd").write_text(text.replace("<cubes.cube0>, <balls.ball0>", "<cubes.cube0>"), encoding="utf-8")

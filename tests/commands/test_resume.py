@@ -1,4 +1,4 @@
-"""Runs that end early, by a signal, a kill or a closed pipe: what was shown is kept, and they can go on."""
+"""Runs that end early, by a signal, a kill or a closed pipe: shown results are kept, and they can be resumed."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Holds the model of four scenarios, of which the ball's never end by themselves."""
+    """A folder with a model of four scenarios, of which the ball's never end by themselves."""
     for path in (EXAMPLES / "pickplace").iterdir():
         if path.is_file():
             shutil.copy(path, tmp_path)
@@ -113,14 +113,14 @@ def test_a_resumed_run_gives_the_results_of_one_that_was_not_interrupted(folder:
     refused = robbdd(folder, "run", "--resume", "--seed", "4")
     assert refused.returncode == 2
     assert "leave out --seed" in refused.stderr
-    # The steps are a part of what was run.
+    # The steps are part of the run.
     steps = folder / "steps" / "pickplace_steps.py"
     endless = steps.read_text(encoding="utf-8")
     steps.unlink()
     assert "the model's steps were changed since it began" in robbdd(folder, "run", "--resume").stderr
     steps.write_text(endless, encoding="utf-8")
 
-    # Let the ball's scenarios end, in the run's folder and beside the model alike.
+    # Let the ball's scenarios end, both in the run's folder and in the model's.
     sound = "def nothing():\n    pass\n"
     steps.write_text(sound, encoding="utf-8")
     copied = folder / FOLDER / "1" / "features" / "steps" / "model_steps.py"

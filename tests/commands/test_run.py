@@ -25,7 +25,7 @@ def robbdd(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Holds a model of two scenarios, of which physics contradicts the second: its bin is not the judged one."""
+    """A folder with a model of two scenarios, of which the second fails: its bin is not the judged one."""
     text = (EXAMPLES / "pickplace" / "pickplace.bdd").read_text(encoding="utf-8")
     text = text.replace("<goal>, after <evt-place-end>", "<judged>, after <evt-place-end>")
     text = text.replace("var goal", "var goal\n    var judged")

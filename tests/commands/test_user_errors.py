@@ -91,7 +91,7 @@ def test_a_policy_that_fails_on_stored_traces_is_reported_by_judge(tmp_path: Pat
     ran = robbdd("judge", "latest", "pickplace.bddx", folder=folder)
     assert ran.stdout.count(f'  File "{code}", line ') == 1, ran.stdout + ran.stderr
     assert ran.stdout.count("NameError") == 1
-    # The same where it ends the process that judges.
+    # The same if it ends the judging process.
     code.write_text(code.read_text(encoding="utf-8").replace("del np\n", "import os\n"), encoding="utf-8")
     line = edit(code, "CLEARANCE = 0.1\nimport os\n", "CLEARANCE = 0.1\nimport os\nos._exit(7)\n") + 2
     ran = robbdd("judge", "latest", "pickplace.bddx", folder=folder)

@@ -1,4 +1,4 @@
-"""``robbdd view`` and ``robbdd run --record``: pictures, or a sentence that says what to install."""
+"""``robbdd view`` and ``robbdd run --record``: pictures, or a sentence about what to install."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ def _without(*lines: str) -> str:
 
 
 def _swapped(*pairs: str) -> str:
-    """The model with some texts, each of which stands in it, replaced by the one behind it."""
+    """The model with some texts, each of which it contains, replaced."""
     text = MODEL
     for old, new in zip(pairs[::2], pairs[1::2], strict=True):
         assert old in text, old

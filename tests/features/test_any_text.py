@@ -1,4 +1,4 @@
-"""No request fails, whatever is left of a text: models of every file kind, cut and mixed up at random."""
+"""No request fails on damaged text: models of every file kind, cut and mixed at random."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from robbdd_tools.names.project import Project, Snapshot
 BROKEN = 6
 """Broken texts of each model."""
 PLACES = 6
-"""Cursors in each of them."""
+"""Cursors in each text."""
 
 
 def renamed(snapshot: Snapshot, uri: str, offset: int) -> object:

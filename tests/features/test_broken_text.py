@@ -41,7 +41,7 @@ Targets = dict[int, tuple[str, int] | None]
 
 @dataclass(frozen=True)
 class Model:
-    """One of the files, of which texts are changed while the others stay as they are."""
+    """One of the files, in which texts are replaced while the others stay unchanged."""
 
     name: str
 
@@ -62,7 +62,7 @@ class Model:
 
     @cached_property
     def blocks(self) -> list[Place]:
-        """The declarations behind the imports and namespaces."""
+        """The declarations after the imports and namespaces."""
         file = self.with_text(self.text).file(self.uri)
         assert file is not None
         placed = [one for one in file.declarations if not re.match(r"import|ns\b", one.declaration.text)]
@@ -100,7 +100,7 @@ class Model:
         found: Targets = {}
         for match in REFERENCES.finditer(self.text):
             if match.end() <= cut[0] or cut[1] <= match.start():
-                # The last part of a qualified name is what it leads to.
+                # The last part of a qualified name refers to its target.
                 last = match.end() - 2
                 place = last - (shift if cut[1] <= match.start() else 0)
                 target = definition(snapshot, self.uri, place)
@@ -169,7 +169,7 @@ def test_text_that_ends_half_way_keeps_all_that_stands_whole_above(model: Model)
 
 
 def tokens_above(tokens: list[Token], end: int, below: set[int], text: str) -> list[Token]:
-    """The tokens that end before a place, without those of references that lead to what stands behind it."""
+    """The tokens that end before a place, without references to later declarations."""
     whole = [token for token in tokens if token.span.end <= end]
     return [token for token in whole if text.rfind("<", 0, token.span.start) not in below]
 
@@ -195,7 +195,7 @@ def test_whatever_stands_next_is_offered_where_a_text_ends_and_where_the_word_is
 
 
 def declaration(snapshot: Snapshot, offered: Completion) -> tuple[str, int] | None:
-    """The file and the place where a name that is offered is declared."""
+    """The file and the place of the declaration of an offered name."""
     file = snapshot.file(offered.origin[0]) if offered.origin else None
     return (
         None

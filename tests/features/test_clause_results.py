@@ -1,4 +1,4 @@
-"""Results stand behind clauses and rows, aggregated over variations, and are marked when the text has changed."""
+"""Results are shown after clauses and rows, aggregated over variations, and marked when the text has changed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The snippets that are written by hand in the extension: each is sound where it may stand, as it is inserted."""
+"""The extension's hand-written snippets are valid where they are offered, as inserted."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PLACES = {
     "Model": "scene inst (ns=t) i {\n    scene: <s>\n%s\n}\n",
     "Body": "ktree (ns=t) k {\n    root: <world>\n%s\n}\n",
 }
-"""Where a snippet stands in a declaration; one that is not here is a declaration."""
+"""Place of a snippet in a declaration; a snippet not listed here is a declaration."""
 
 
 def snippets() -> list[tuple[str, str, str]]:
@@ -45,7 +45,7 @@ def snippets() -> list[tuple[str, str, str]]:
 
 
 def inserted(body: str) -> str:
-    """What stands there when nobody fills in the places; a place that is named again repeats its first text."""
+    """The inserted text with all placeholders unfilled; a repeated placeholder repeats its first text."""
     defaults: dict[str, str] = dict(re.findall(r"\$\{(\d+):([^}]*)\}", body))
     text = re.sub(r"\$\{\d+\|([^,|]*)[^}]*\}", r"\1", body)
     return re.sub(r"\$\{?(\d+)(?::[^}]*)?\}?", lambda match: defaults.get(match[1], ""), text)

@@ -1,4 +1,4 @@
-"""Completion offers what the grammar accepts at the cursor, by kind and scope of names."""
+"""Completion offers the tokens that the grammar accepts at the cursor, by kind and scope of names."""
 
 import re
 import subprocess

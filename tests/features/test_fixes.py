@@ -25,7 +25,7 @@ def titles(text: str) -> list[str]:
 
 
 TRIED = {*BROKEN, "model-file", "clause-undefined", "python-source", "unknown-namespace"}
-"""Codes with a fix; those of files that are no models are tried in tests of their own.
+"""Codes with a fix; those of files that are not models have their own tests.
 
 The fix of a clause without a step is a command, which writes such a file.
 """

@@ -1,4 +1,4 @@
-"""Hover tells what a name is, what it generates, what is known of its results."""
+"""Hover shows what a name is, what it generates, and its results."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ LAB = "file:///fixture/lab.scene"
 
 
 def marked(old: str, new: str, scene: bool = False) -> tuple[Fixture, str]:
-    """The model (or its scene) with a cursor put into some text."""
+    """The model (or its scene) with a cursor in some text."""
     text = SCENE if scene else MODEL
     assert old in text
     files = {"main.bdd": MODEL, "lab.scene": SCENE} | {"lab.scene" if scene else "main.bdd": text.replace(old, new, 1)}

@@ -1,4 +1,4 @@
-"""Refactorings change the text and leave the scenarios, and where they say so the graph, as they are."""
+"""Refactorings change the text but not the scenarios, nor the graph where they promise it."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ def scenarios(text: str) -> list[tuple[object, ...]]:
 
 
 def isomorphic(one: Any, other: Any) -> bool:
-    # rdflib's comparison comes without types.
+    # rdflib's comparison is untyped.
     compare: Any = import_module("rdflib.compare")
     return bool(compare.isomorphic(one, other))
 
 
 def offered(text: str) -> dict[str, str]:
-    """The titles of what is offered at the cursor, with the text that comes of each."""
+    """The titles of the refactorings at the cursor, with the resulting texts."""
     case = fixture(text)
     span = Span(case.cursor, case.cursor)
     return {fix.title: applied(case, fix)[case.uri] for fix in variation_refactorings(case.snapshot, case.uri, span)}
@@ -137,7 +137,7 @@ def with_clauses(then: str, given: str = "") -> str:
 
 
 def with_other_variant(text: str) -> str:
-    """A model with a second variant of the same template, which says nothing of its own."""
+    """A model with a second variant of the same template, which has no content of its own."""
     variant = MODEL[MODEL.index("        Scenario bench-to-tray") : MODEL.rindex("}")].replace("bench-to-tray", "other")
     end = text.rindex("}")
     return text[:end] + variant + text[end:]
@@ -195,7 +195,7 @@ def test_the_clauses_of_one_variant_of_several_move_to_a_copy_of_the_template(gi
     assert title == "Extract the clauses to a new template 'fetch-2'"
     assert scenarios(after) == scenarios(text)
     assert TEMPLATE in after
-    # What the other variant is made of has not changed.
+    # The other variant's parts have not changed.
     old, new = template_of(after, "fetch"), template_of(after, "fetch-2")
     others = without(after.replace(new, ""), "bench-to-tray")
     assert isomorphic(graph_of(others), graph_of(without(text, "bench-to-tray")))
@@ -321,6 +321,6 @@ def test_a_rename_changes_one_iri_of_the_graph_and_nothing_else(file: str, word:
 
 
 def _renamed(triples: str, old: str, new: str) -> str:
-    """Replace a local name wherever it stands in an IRI or a literal, by itself or in the name of a part."""
+    """Replace a local name everywhere in an IRI or a literal, alone or in the name of a part."""
     before = r"(?<![\w\-])|(?<=var-)|(?<=when-bhv-)"
     return re.sub(rf"(?:{before}){old}(?=-scen(?:ario|e)|(?![\w\-]))", new, triples)

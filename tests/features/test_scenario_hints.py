@@ -1,4 +1,4 @@
-"""The number of scenarios stands behind each variant."""
+"""A hint after each variant shows its number of scenarios."""
 
 from __future__ import annotations
 

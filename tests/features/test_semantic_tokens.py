@@ -1,4 +1,4 @@
-"""Words are told apart by what they mean, in every file kind, in broken text too."""
+"""Tokens are classified by meaning, in every file kind, also in broken text."""
 
 from __future__ import annotations
 

@@ -7,5 +7,5 @@ from pathlib import Path
 
 
 def launch_command(address: str, code: str) -> list[str]:
-    # The launcher needs nothing but the standard library: it starts in a fiftieth of a second.
+    # The launcher uses only the standard library: it starts in a fiftieth of a second.
     return [sys.executable, "-I", "-S", str(Path(__file__).with_name("launch.py")), address, code]

@@ -99,7 +99,7 @@ def serve(address: str) -> Request | None:
 
 
 def _read(connection: socket.socket) -> Request | None:
-    """Read a request; returns ``None`` where the launcher was killed meanwhile."""
+    """Read a request; return ``None`` if the launcher was killed in the meantime."""
     descriptors: list[int] = []
     try:
         head, descriptors, _, _ = socket.recv_fds(connection, LENGTH.size, 4)

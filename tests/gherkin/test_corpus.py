@@ -1,4 +1,4 @@
-"""Foreign models become the scenarios that the reference generates for them, and those that it loses."""
+"""Foreign models give the scenarios that the reference generates, and those that it omits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The user's templates: what they get, what they may not do, where an error is shown."""
+"""Users' templates: their data, their restrictions, the places of errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""User text comes back unchanged from every parser, and IRIs from tags."""
+"""User text is unchanged after every parser, and IRIs after tags."""
 
 from __future__ import annotations
 

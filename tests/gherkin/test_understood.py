@@ -1,4 +1,4 @@
-"""The sentence of a clause says what its data says, to a reader of the feature and to the agent alike."""
+"""The sentence of a clause means the same as its data, to a reader of the feature and to the agent."""
 
 from __future__ import annotations
 

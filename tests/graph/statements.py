@@ -1,4 +1,4 @@
-"""Graphs as lines of text, so that tests can say what a graph must state."""
+"""Graphs as lines of text, so that tests can list expected statements."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def statements(graph: Graph) -> set[str]:
 
 
 def of(graph: Graph, subject: str) -> list[str]:
-    """Return what is stated of one subject, sorted, without repeating it."""
+    """Return the statements about one subject, sorted, without the subject."""
     found = (line for line in statements(graph) if line.startswith(f"{subject} "))
     return sorted(line.removeprefix(f"{subject} ") for line in found)
 

@@ -1,4 +1,4 @@
-"""Models that others wrote build, conform, and contain the graphs that the prototype made of them."""
+"""Models by others build, conform, and contain the graphs of the prototype."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def models(*endings: str) -> list[Path]:
 
 
 def facts(graph: Graph) -> set[str]:
-    """Return the triples of the published vocabulary, generated names and blank nodes replaced by what they mean."""
+    """Return the triples of the published vocabulary; generated names and blank nodes are replaced by their meaning."""
     return {
         " ".join((text(graph, s), text(graph, p), text(graph, o)))
         for s, p, o in graph

@@ -1,4 +1,4 @@
-"""What a ``.bddx`` says comes back from the graph as plain data, from every format."""
+"""A ``.bddx`` is read back from the graph as plain data, from every format."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ ex:variant a bdd:ScenarioVariant ; bdd:of-template ex:moving ; bdd:has-variation
 ex:values a bdd:TaskVariation, bdd:TableVariation ; task:of-task ex:job ;
     bdd:variable-list ( ex:thing ex:place ex:who ) ; bdd:rows ( ( ex:cup ex:desk ex:arm ) ) .
 """
-"""A model that nobody wrote in RobBDD: other names, blank nodes, several types, events as OWL-Time instants."""
+"""A model that was not written in RobBDD: other names, blank nodes, several types, events as OWL-Time instants."""
 
 
 def findings(text: str, name: str = "model.ttl") -> list[Diagnostic]:
@@ -204,7 +204,7 @@ def serving(reply: Callable[[BaseHTTPRequestHandler], object]) -> Generator[tupl
 
 @pytest.fixture
 def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, list[str]]]:
-    """A server on this machine, with what was asked of it, and a cache of its own."""
+    """A local server with its recorded requests, and a separate cache."""
     monkeypatch.setenv("ROBBDD_CACHE", str(tmp_path / "cache"))
 
     def reply(answer: BaseHTTPRequestHandler) -> None:

@@ -1,4 +1,4 @@
-"""An editor may load the graph layer without paying for the libraries behind it."""
+"""Importing the graph layer does not load the libraries that it uses."""
 
 import pkgutil
 import subprocess

@@ -1,4 +1,4 @@
-"""After any edits, validating only what they touched finds what validating the whole graph finds.
+"""After any edits, incremental validation finds the same as validation of the whole graph.
 
 ``ROBBDD_FUZZ`` sets the number of edit sequences; a failure shrinks to few edits.
 """
@@ -43,7 +43,7 @@ lab:used a sh:NodeShape ; sh:targetClass bdd:ScenarioTemplate ; sh:property [
 
 
 def _pairs() -> list[dict[str, str]]:
-    """Models with the files they import: ours, and foreign ones where there are any."""
+    """Models with the files they import: ours, and foreign ones if available."""
     second = TEMPLATE.replace("fetch", "bring").replace("on-bench", "on-b").replace("in-tray", "in-t")
     both = MODEL + second + STORY.replace("fetch", "bring").replace("bench-to-tray", "again")
     pairs = [{"main.bdd": both, "lab.scene": SCENE}, {"main.bdd": EVERYTHING, "lab.scene": SCENE}]
@@ -69,7 +69,7 @@ EDIT = st.tuples(
 
 
 def edited(text: str, other: str, kind: str, where: float, what: float) -> str:
-    """Return a text after an edit of the kind that users make, most of which leave it whole."""
+    """Return a text after an edit of the kind that users make; most edits keep it valid."""
 
     def replaced(pattern: str, *choices: str) -> str:
         places = list(re.finditer(pattern, text))

@@ -1,4 +1,4 @@
-"""What a ``.scenex`` says comes back from the graph as plain data, whatever form it was written in."""
+"""A ``.scenex`` is read back from the graph as plain data, in whatever form it was written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A hundred structural defects planted one at a time, in a model and in what it imports: each is found on its token."""
+"""A hundred structural defects planted one at a time, in a model and its imports: each is found on its token."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ VARIANT = MODEL.replace(
 
 
 def project(**changed: str) -> Fixture:
-    """All files, of which some are changed, beginning with the one that is changed first (else with the execution)."""
+    """All files, some of them changed, starting with the first changed one (else with the execution)."""
     files = {"run.bddx": RUN, "cell.scenex": CELL, "arm.ktree": ARM, "main.bdd": VARIANT}
     named = {name.replace("_", "."): text for name, text in changed.items()}
     order = [*named, *(name for name in files if name not in named)]

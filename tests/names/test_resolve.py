@@ -1,4 +1,4 @@
-"""References lead to their declarations, or the diagnostics say why not."""
+"""References resolve to their declarations, or the diagnostics say why not."""
 
 import pytest
 

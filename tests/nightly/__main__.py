@@ -13,11 +13,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent.parent
 KEPT = ROOT / "build" / "nightly"
-"""Where findings are saved, each in a folder of its own."""
+"""Folder for findings, with a subfolder for each."""
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Do what the arguments say; returns the exit code."""
+    """Execute the arguments' tests; return the exit code."""
     sys.path.insert(0, str(ROOT / "tests"))
     from tests.nightly.fuzz import read_case, run_case
     from tests.nightly.targets import TARGETS
@@ -55,7 +55,7 @@ def _night(parts: Sequence[str], seed: int, seconds: float) -> int:
 
 
 def _run(part: str, seed: int, seconds: float) -> tuple[int, str]:
-    """Do one part; returns how many faults it shows and what it did."""
+    """Execute one part; return the number of faults found and a summary."""
     from tests.nightly import others
     from tests.nightly.fuzz import Finding, fuzz
     from tests.nightly.soak import judged, soak

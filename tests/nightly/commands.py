@@ -16,7 +16,7 @@ EXIT_CODES = frozenset({0, 1, 2})
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """How a command ended and what it printed."""
+    """Exit code and output of a command."""
 
     code: int
     output: str

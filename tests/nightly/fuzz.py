@@ -1,4 +1,4 @@
-"""Fuzzing: cases made from a seed and a number, checked in a process of their own, saved where one shows a fault."""
+"""Fuzzing: cases generated from a seed and a number, checked in a separate process, saved if one shows a fault."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Finding:
     said: str
 
     def save(self, target: Target, kept: Path) -> Path:
-        """Write input and error into a folder of their own, for ``--replay``; returns the folder."""
+        """Write input and error into a new folder, for ``--replay``; return the folder."""
         folder = kept / f"{self.target}-{self.seed}-{self.number}"
         write_case(folder, case(target, self.seed, self.number))
         (folder / "FINDING.txt").write_text(
@@ -71,7 +71,7 @@ def read_case(folder: Path) -> Files:
 
 
 def run_case(target: Target, files: Files) -> None:
-    """Check one case in a temporary folder; raises what the check raises."""
+    """Check one case in a temporary folder; exceptions of the check pass through."""
     with tempfile.TemporaryDirectory(prefix="robbdd-fuzz-") as name:
         write_case(Path(name), files)
         target.check(Path(name))

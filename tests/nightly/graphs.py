@@ -89,7 +89,7 @@ def _rewired(random: Random, text: str) -> str:
 
 
 def _check_importer(folder: Path) -> None:
-    """A graph is imported as sound text of the same graph, with what is lost reported, or refused with a message."""
+    """A graph is imported as valid text of the same graph, with losses reported, or refused with a message."""
     path = next(folder.glob("case.*"))
     done = robbdd(folder, "import", path.name, "-o", "out.bdd")
     if done.code:
@@ -108,7 +108,7 @@ def _check_importer(folder: Path) -> None:
 
 
 def _statements(triples: str) -> list[str]:
-    """Return triples with one name for all nodes that nobody names: blank ones, and those with a point."""
+    """Return triples with one name for all generated nodes: blank ones, and those with a dot."""
     return [_UNNAMED.sub("_", line) for line in triples.split("\n")]
 
 

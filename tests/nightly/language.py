@@ -33,7 +33,7 @@ PROJECTS = [SMALL] + [
 """Models that belong together, by file name."""
 ALL = [text for project in PROJECTS for text in project.values()]
 NAME = "case.txt"
-"""The file of a case that says which of the others is damaged."""
+"""The file of a case that names the damaged one."""
 
 
 def project_with(random: Random) -> tuple[dict[str, bytes], str]:

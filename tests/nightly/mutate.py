@@ -95,5 +95,5 @@ def damaged_bytes(random: Random, data: bytes, times: int = 6) -> bytes:
 
 
 def encoded(text: str) -> bytes:
-    """Return a text as the bytes of a file, whatever is in it."""
+    """Return a text as the bytes of a file, even if it is invalid Unicode."""
     return text.encode("utf-8", "surrogatepass")

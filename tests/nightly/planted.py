@@ -1,4 +1,4 @@
-"""Targets with planted faults: what the fuzzer itself is tested with."""
+"""Targets with planted faults, to test the fuzzer itself."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class Usage:
 
 
 def usage(pid: int) -> Usage:
-    """Return what a process and its descendants hold now; processes that end meanwhile are left out."""
+    """Return the resources of a process and its descendants; processes that end in the meantime are skipped."""
     found = [entry for process in _family(pid) if (entry := _held(process)) is not None]
     memory, descriptors, threads = zip(*found, strict=True)
     return Usage(memory, sum(descriptors), sum(threads))

@@ -79,7 +79,7 @@ URI = "MODEL"
 
 
 def _usual(random: Random) -> dict[str, Any]:
-    """Return parameters that have everything that any method asks for."""
+    """Return parameters with all fields that any method requires."""
     position = {"line": random.randrange(60), "character": random.randrange(80)}
     document = {"uri": URI, "languageId": "bdd", "version": random.randrange(5), "text": MODEL}
     item = {"name": "x", "kind": 5, "uri": URI, "range": {"start": position, "end": position}}

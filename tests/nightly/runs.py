@@ -1,4 +1,4 @@
-"""Fuzzing of what runs leave behind and of what they read: store, traces, messages, models of the simulator."""
+"""Fuzzing of the outputs and inputs of runs: store, traces, messages, models of the simulator."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _damaged_store(random: Random) -> Files:
 
 
 def _check_store(folder: Path) -> None:
-    """Every command that reads stored runs answers, or says what is wrong."""
+    """Every command that reads stored runs answers or reports an error."""
     database = store_beside(folder).database
     if database.exists():
         with suppress(DatabaseProblem):

@@ -25,7 +25,7 @@ INTERNAL_ERROR = -32603
 OWN_ERROR = re.compile(r"internal error|Exception in thread|ERROR (robbdd_tools|asyncio)\b|Fatal Python error")
 """What the server's log has where something failed that must not; pygls logs refused requests, too."""
 OF_RUNS = "clause-"
-"""What the codes of diagnostics begin with that come from runs: a check has none of them."""
+"""Prefixes of diagnostic codes from runs: a check has none of them."""
 AT_POSITION = (
     "completion",
     "hover",
@@ -148,7 +148,7 @@ class Session:
         return self.client.ask(method, parameters)
 
     def run(self, cancelled: bool) -> int:
-        """Begin a run of the example, and cancel it at once where it is to be ``cancelled``; returns its identifier."""
+        """Start a run of the example, and cancel it immediately if ``cancelled``; return its identifier."""
         document = self.documents[-2]
         self.asked["run"] += 1
         run = self._command("robbdd.run", {"uri": document.uri})
@@ -164,26 +164,26 @@ class Session:
         self.client.forget()
 
     def check_log(self) -> None:
-        """Raise ``Fault`` when the server has reported an error of its own."""
+        """Raise ``Fault`` if the server has reported an internal error."""
         said = self._log.read_text(encoding="utf-8", errors="replace")
         found = OWN_ERROR.search(said)
         if found:
             raise Fault(f"the server reports an error of its own:\n{said[found.start() :][:4000]}")
 
     def compare_with_check(self) -> None:
-        """Compare what is published about the open documents with a cold check of the same texts.
+        """Compare the published diagnostics of the open documents with a fresh check of the same texts.
 
-        Raises ``Fault`` where they still differ when the server has fallen silent.
+        Raises ``Fault`` if they still differ when the server has become silent.
         """
         expected = self._checked()
         for document in self.documents:
-            # Asks for diagnostics anew, also where nothing has changed since the last ones were forgotten.
+            # Requests diagnostics again, even without a change since the last ones were dropped.
             document.version += 1
             self._send(document)
         wanted = {document.uri: expected.get(document.uri, []) for document in self.documents}
 
         def published() -> dict[str, list[list[Any]]]:
-            # Files that are not open are published, too, whenever they have been looked at.
+            # Diagnostics of unopened files are published, too, after each validation.
             return {uri: found for uri, found in self._published().items() if uri in wanted}
 
         try:

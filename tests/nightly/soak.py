@@ -20,7 +20,7 @@ GROWTH = 0.10
 WARM_UP = 0.3
 """The part of a soak that fills the caches."""
 ROUNDS_OF_CHECK = 40
-"""Rounds after which what is published is compared with a check, and the memory is measured."""
+"""Rounds between two comparisons with a check and memory measurements."""
 ROUNDS_OF_RUN = 60
 POOL = min(32, (os.cpu_count() or 1) + 4)
 """Threads of asyncio's pool, which it starts one by one as they are needed."""
@@ -50,7 +50,7 @@ class Soak:
         return last / first - 1
 
     def report(self) -> str:
-        """Return what was done and measured, in a line."""
+        """Return a one-line summary."""
         first, last = self.settled()
         before, after = (statistics.median(used.total for used in part) / 2**20 for part in (first, last))
         return (

@@ -1,4 +1,4 @@
-"""Short forms of the nightly tools: every target, a soak, and that each tool notices what it is for."""
+"""Short versions of the nightly tools: every target, a soak, and that each tool detects its faults."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The built wheel and sdist work where there is no checkout."""
+"""The built wheel and sdist work without a checkout."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_an_installed_wheel_finds_its_grammars_metamodels_and_robots(built: Path, tmp_path: Path) -> None:
-    """The wheel goes into a fresh environment that borrows only the libraries of this one."""
+    """The wheel is installed into a fresh environment that only shares this one's libraries."""
     environment = tmp_path / "fresh"
     venv.create(environment, with_pip=True)
     scripts = environment / ("Scripts" if sys.platform == "win32" else "bin")
     python = scripts / "python"
     (wheel,) = built.glob("*.whl")
-    # As the extension asks for the wheel that it brings.
+    # As the extension requests the bundled wheel.
     wanted = f"robbdd-tools[video] @ {wheel.as_uri()}"
     subprocess.run([python, "-I", "-m", "pip", "install", "--quiet", "--no-deps", "--", wanted], check=True)
     code = "import sysconfig; print(sysconfig.get_path('purelib'))"

@@ -1,4 +1,4 @@
-"""Server and extension are released together: the extension installs the server of its own version."""
+"""Server and extension have the same version: the extension installs the server of its own version."""
 
 from __future__ import annotations
 

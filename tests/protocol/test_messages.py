@@ -114,7 +114,7 @@ def test_a_manifest_of_an_earlier_version_is_read(tmp_path: Path) -> None:
     path = tmp_path / "manifest.json"
     data = json.loads(path.read_text(encoding="utf-8"))
     (entry,) = data["scenarios"][0]["clauses"]
-    # It wrote the values for users' code beside the sentence, and nothing of what the sentence states.
+    # It wrote the values for users' code and the sentence, but not the sentence's data.
     del entry["statement"]
     entry["arguments"] = [{}]
     path.write_text(json.dumps(data), encoding="utf-8")

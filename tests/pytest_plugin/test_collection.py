@@ -40,7 +40,7 @@ def bench(pytester: pytest.Pytester) -> Path:
 
 
 def session(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
-    """Run pytest, without a plugin that warns when nobody configures it."""
+    """Run pytest, without a plugin that warns if it is not configured."""
     return pytester.runpytest_inprocess("-p", "no:asyncio", *arguments)
 
 

@@ -53,7 +53,7 @@ def cell(tmp_path: Path) -> Path:
 
 
 def run(cell: Path, *arguments: str) -> pytest.RunResult:
-    """Run pytest in a process of its own."""
+    """Run pytest in a separate process."""
     began = monotonic()
     command = [sys.executable, "-m", "pytest", "--robbdd", "-p", "no:asyncio", *arguments]
     done = subprocess.run(command, cwd=cell, capture_output=True, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""``python killed.py FOLDER``: begins a run, or goes on with the one that is there, to be killed at any instant.
+"""``python killed.py FOLDER``: start a run, or resume an existing one, to be killed at any instant.
 
 Everything is as in ``robbdd run``, but the agents are threads that need no time. Each execution that they begin is a
 line of the file ``begun``.
@@ -62,7 +62,7 @@ class QuickAgent:
         """Threads end by themselves."""
 
     def finish(self) -> None:
-        """A thread leaves no process behind."""
+        """A thread leaves no child process."""
 
 
 def main(folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""Executions as messages, without a simulator, and the rows that are stored of them."""
+"""Executions as messages, without a simulator, and their stored rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The log of an agent keeps the beginning and the end of what is written, and never holds up who writes."""
+"""An agent's log keeps the beginning and the end of the output, and never blocks the writer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Code of users that writes to the agent's message channel, prints without end or leaves processes behind."""
+"""Users' code that writes to the agent's message channel, prints endlessly or leaves processes running."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results that a run elsewhere wrote come back as they were."""
+"""Results written by a run elsewhere are read back unchanged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs that are killed at random instants, again and again. ``ROBBDD_KILLS`` says how often (30)."""
+"""Runs killed repeatedly at random instants. ``ROBBDD_KILLS`` is the number of kills (30)."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ SHOWN = re.compile(r"^e:v -- (\d+)  .*\n", re.MULTILINE)
 def start(folder: Path) -> subprocess.Popen[str]:
     environment = {**os.environ, "PYTHONPATH": str(DRIVER.parents[1])}
     command = [sys.executable, str(DRIVER), str(folder)]
-    # A file and no pipe: what was printed can be read when the process is gone, however much it is.
+    # A file instead of a pipe: all output can be read after the process is gone.
     with (folder / "printed").open("w", encoding="utf-8") as printed:
         return subprocess.Popen(command, stdout=printed, stderr=subprocess.STDOUT, env=environment, text=True)
 
 
 def ends_within(process: subprocess.Popen[str], seconds: float) -> bool:
-    """Return whether a process comes to its end in time; else it is killed."""
+    """Return whether a process ends in time; else kill it."""
     try:
         assert process.wait(seconds) == 0
     except subprocess.TimeoutExpired:
@@ -41,7 +41,7 @@ def ends_within(process: subprocess.Popen[str], seconds: float) -> bool:
 
 
 def ends_before(process: subprocess.Popen[str], folder: Path, results: int) -> bool:
-    """Return whether a process comes to its end before it has printed so many results; else it is killed then."""
+    """Return whether a process ends before it has printed so many results; else kill it then."""
     while process.poll() is None:
         if len(printed(folder)) >= results:
             _kill(process)
@@ -95,7 +95,7 @@ def test_killed_runs_lose_nothing_and_end_as_if_they_had_not_been(tmp_path: Path
         folder = tmp_path / "killed"
         folder.mkdir()
         before: set[int] = set()
-        # Starting takes longer than executing: most kills by the clock alone would come too early.
+        # Starting takes longer than executing: most kills by time alone would be too early.
         by_clock = kills % 2 == 0
         while not (
             ends_within(start(folder), chance.uniform(0.0, longest))

@@ -1,4 +1,4 @@
-"""Scenarios before they are run, told as their runs tell them."""
+"""Scenarios listed before a run equal those of the run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Messages of scenarios side by side come out in the manifest's order."""
+"""Messages of parallel scenarios are delivered in the manifest's order."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run folder tells the agent everything: seeds, places, events, lines of clauses."""
+"""A run folder contains all data for the agent: seeds, places, events, lines of clauses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The manifest tells how the Given clauses want the scene set up, with each scenario's values."""
+"""The manifest contains the configurations of Given clauses, with each scenario's values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results in the database: each finished execution at once, and nothing of it is lost or overwritten in silence."""
+"""Results in the database: each finished execution immediately, without loss or silent overwriting."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_an_execution_is_committed_when_its_end_has_been_taken(store: RunStore) 
             recording.take(message)
         assert place.status().finished == 0
         recording.take(end)
-        # Another process sees it, before anybody is told of it.
+        # Another process sees it before it is reported.
         assert place.status().finished == 1
 
 
@@ -209,7 +209,7 @@ def test_a_full_disk_in_mid_run_loses_nothing_that_was_finished(store: RunStore)
         filler.unlink()
         recording.close()
         assert place.status().finished == finished < COUNT
-        # With room again, the run goes on.
+        # With free space again, the run continues.
         with closing(Recording(place, MANIFEST)) as recording:
             for index in pending(recording.resume(Policy()), stops=False):
                 for message in execution(index):
@@ -223,7 +223,7 @@ def test_a_store_that_can_only_be_read_is_read(store: RunStore) -> None:
     recording = begun(place)
     for message in execution(0):
         recording.take(message)
-    # A killed process leaves its log behind, and the file system becomes read-only.
+    # A killed process leaves its log, and the file system becomes read-only.
     copy = store.folder.parent.with_name("copy")
     mount = store.folder.parent.with_name("readonly") / ".robbdd"
     shutil.copytree(store.folder.parent, copy)

@@ -79,7 +79,7 @@ def test_scenarios_with_the_same_values_share_an_execution(tmp_path: Path) -> No
     found = specs(
         tmp_path, story("take", robot=PANDA, part=PARTS), put, story("both", robot=PANDA, part=PARTS, goal=GOALS)
     )
-    # To take a thing, no matter where to, goes with the first that fits.
+    # Picking an object, wherever it is placed, joins the first group that fits.
     assert groups(found) == {
         "t:handling 1": ["takes -- 1", "puts -- 1", "boths -- 1"],
         "t:handling 3": ["takes -- 2", "puts -- 3", "boths -- 3"],

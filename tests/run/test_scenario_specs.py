@@ -1,4 +1,4 @@
-"""What the agent is told of a scenario: quantified givens, awaited events, steps that a template leaves out."""
+"""A scenario's data for the agent: quantified givens, awaited events, steps omitted by a template."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Several real agent processes: the same results whatever their number, and no fault takes the run down."""
+"""Several real agent processes: the same results for any number, and no fault ends the run."""
 
 from __future__ import annotations
 

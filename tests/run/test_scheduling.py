@@ -1,7 +1,7 @@
-"""Which process executes what, and what becomes of its messages: scripted agents in place of processes.
+"""Assignment of scenarios to processes, and handling of their messages: scripted agents instead of processes.
 
-A script says, word by word, what an agent does with a scenario: ``start``, a verdict on the clause of a line
-(``holds:5``), ``finish``, ``die`` (its process ends), ``late`` (time passes until its deadline), ``broken`` (it says
+A script lists, word by word, what an agent does with a scenario: ``start``, a verdict on the clause of a line
+(``holds:5``), ``finish``, ``die`` (its process ends), ``late`` (time passes until its deadline), ``broken`` (it reports
 that it cannot work), ``wait:NAME`` and ``go:NAME`` (one waits for the other), or any message as Python code.
 """
 
@@ -70,7 +70,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class ScriptedCrash:
-    """What a process leaves behind that ended within users' code: here nothing, or a given fault."""
+    """Crash data of a process that ended within users' code: here none, or a given fault."""
 
     left: Fault | None
 

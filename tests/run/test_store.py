@@ -1,4 +1,4 @@
-"""Stored runs: numbered folders beside the models, of which a bounded number is kept."""
+"""Stored runs: numbered folders in the models' project, in limited number."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_the_oldest_runs_make_room(tmp_path: Path) -> None:
         run.write_results({"complete": True, "scenarios": []})
         assert run.lock is not None
         run.lock.release()
-    # The newest one is not counted before it has come to its end.
+    # A live run does not count as completed.
     assert [run.number for run in store.runs()] == list(range(3, KEPT + 4))
 
 

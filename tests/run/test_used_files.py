@@ -1,4 +1,4 @@
-"""Files beside the graph that a run used."""
+"""Files, apart from the graph, that a run used."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robbdd_tools.run.used_files import changed
 
 @pytest.fixture
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The example with an arm and a behaviour of its own, in which these use further files."""
+    """The example with its own arm and behaviour, which use further files."""
     folder = shutil.copytree(EXAMPLES / "ownrobot", tmp_path / "cell")
     monkeypatch.chdir(folder)
     (folder / "helper.py").write_text("SPEED = 1.0\n", encoding="utf-8")

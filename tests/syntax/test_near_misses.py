@@ -1,4 +1,4 @@
-"""Mistakes that newcomers make have a message that says what to write, and a fix where that is certain."""
+"""Common mistakes of newcomers have a message with the correct form, and a fix if it is certain."""
 
 from __future__ import annotations
 

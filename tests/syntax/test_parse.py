@@ -1,4 +1,4 @@
-"""One chunk becomes a tree, or says what is wrong and keeps its names."""
+"""One chunk is parsed to a tree; on errors, the tree keeps its names."""
 
 import pytest
 from hypothesis import given

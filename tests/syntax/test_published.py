@@ -90,9 +90,9 @@ SCENE_IMPORT = 'import "lab.scene"\n'
 
 
 def shape(node: Any) -> Any:
-    """A tree without its spans; what the form itself says differently is made equal.
+    """A tree without its spans; differences of the form itself are normalised.
 
-    The published form leaves out a namespace that can be no other one, and says with each listed value what it is.
+    The published form omits a namespace that is unambiguous, and states the kind of each listed value.
     """
     if isinstance(node, Sequence) and not isinstance(node, str):
         return tuple(shape(entry) for entry in cast(Sequence[Any], node))

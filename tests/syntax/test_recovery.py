@@ -1,4 +1,4 @@
-"""All errors of a file are found, each once, and what is sound around them stays usable."""
+"""All errors of a file are found, each once, and the valid parts stay usable."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def faults(text: str) -> list[str]:
 
 
 def mended(text: str) -> str:
-    """Apply the fixes that come with the faults, from the last to the first."""
+    """Apply the fixes of the faults, from the last to the first."""
     for fault in reversed(parse_declaration("bdd", text).faults):
         assert fault.fix is not None, fault
         text = text[: fault.fix.span.start] + fault.fix.text + text[fault.fix.span.end :]
@@ -203,7 +203,7 @@ def test_a_missing_last_brace_is_reported_on_the_empty_line_where_it_would_stand
 
 
 def test_of_ten_planted_errors_nearly_all_are_reported_with_hardly_a_follow_up() -> None:
-    """An error counts as reported in its own line or in the next, where a parser may notice what is missing."""
+    """An error counts as reported in its own line or the next, where a parser may notice missing text."""
     from tests.bench.models import model
 
     text = model(160)

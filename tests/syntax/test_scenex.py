@@ -1,4 +1,4 @@
-"""Executable scenes and executions become trees, or say what is wrong and keep their names."""
+"""Executable scenes and executions are parsed to trees; on errors, the trees keep their names."""
 
 import pytest
 from hypothesis import given

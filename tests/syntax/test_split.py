@@ -1,4 +1,4 @@
-"""A text falls into its declarations, whatever is broken inside them."""
+"""A text is split into its declarations, even if they are broken."""
 
 from itertools import pairwise
 

@@ -25,6 +25,6 @@ print(faults)
 
 
 def test_rules_that_are_compiled_at_the_same_time_read_the_same_text() -> None:
-    # A fresh interpreter: what a parser has compiled stays compiled.
+    # A fresh interpreter: compiled parsers are cached for the process.
     done = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, cwd=Path(__file__).parents[1])
     assert (done.stdout.strip(), done.stderr) == ("[]", "")

@@ -75,7 +75,7 @@ def test_a_trace_comes_back_equal_to_the_last_bit(trace: Trace) -> None:
 
 
 def older(data: bytes, *missing: str) -> bytes:
-    """Return a packed trace as a version wrote it that did not know some fields, none of which holds an array."""
+    """Return a packed trace as written by a version without some fields, none of which contains an array."""
     size = int.from_bytes(data[:8], "little")
     head = json.loads(data[8 : 8 + size])
     for name in missing:

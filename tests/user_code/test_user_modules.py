@@ -1,4 +1,4 @@
-"""How modules of users are found: behind Python's library and ours, and never in place of others."""
+"""Search path of users' modules: after Python's library and ours, never replacing others."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ NOTEBOOK = Path(__file__).parents[2] / "examples" / "notebook" / "tall_bins.ipyn
 
 
 def executed(path: Path = NOTEBOOK) -> dict[str, Any]:
-    """Return a notebook with the outputs that its code cells have now; raises what they raise."""
+    """Return a notebook with the current outputs of its code cells; exceptions of cells pass through."""
     notebook = json.loads(path.read_text(encoding="utf-8"))
     names: dict[str, Any] = {"__name__": "__main__"}
     count = 0
@@ -28,7 +28,7 @@ def executed(path: Path = NOTEBOOK) -> dict[str, Any]:
 
 
 def _outputs(source: str, names: dict[str, Any], count: int) -> list[dict[str, Any]]:
-    """Execute a cell as Jupyter does: what it prints, and the value of an expression at its end."""
+    """Execute a cell as Jupyter does; return its output and the value of an expression at its end."""
     body = ast.parse(source).body
     end = body[-1]
     last = end.value if isinstance(end, ast.Expr) else None

@@ -29,7 +29,7 @@ KNOWN_BEFORE = {
     "python-source": r"No module named |has no attribute ",
     "catalog-entry": r"the catalog has no ",
 }
-"""Codes of findings → what a run gives as the reason of unknown clauses."""
+"""Codes of findings → the reason of unknown clauses in a run."""
 PHYSICAL = (
     r"event \S+ never occurred",
     r"the execution was stopped after",

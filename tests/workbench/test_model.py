@@ -1,4 +1,4 @@
-"""Models are loaded from files, folders and texts; what is wrong with them is data with places."""
+"""Models are loaded from files, folders and texts; their errors are data with places."""
 
 from __future__ import annotations
 

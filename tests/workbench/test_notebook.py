@@ -1,4 +1,4 @@
-"""The example notebook runs, and the outputs that it is stored with are those that it has."""
+"""The example notebook runs, and its stored outputs are correct."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A plan says which scenarios are executed, in which order, with which seeds and how often."""
+"""A plan determines the executed scenarios, their order, seeds and repetitions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What failed is executed again as it was: the same seeds, whoever chose them."""
+"""Failed scenarios are executed again with the same seeds, from whatever source."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run executes a catalog behaviour in place of one that a simulation does not have, and its results state it."""
+"""A run executes a catalog behaviour instead of an unavailable one, and its results record it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ BUILT_IN = "https://example.org/robbdd/execution/built-in"
 
 @pytest.fixture
 def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The example with a ROS action in place of the catalog's behaviour, and a clause that a ROS topic decides."""
+    """The example with a ROS action instead of the catalog's behaviour, and a clause that a ROS topic decides."""
     model = shutil.copytree(EXAMPLES / "pickplace", tmp_path / "cell") / "pickplace.bddx"
     text = model.read_text(encoding="utf-8").replace('catalog "pick-place"', 'bhv action: "/cell/pick"')
     topic = 'obs policy (ns=exec) by-topic for <pick-place.in-hand> { trinary topic: "/held" }\n'

@@ -1,4 +1,4 @@
-"""Belts: they carry by friction alone, at their speed; an arm takes what has come to rest at the stop."""
+"""Belts carry by friction alone, at their speed; an arm picks objects at rest at the stop."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Contact forces: every physics step counts, gripped parts belong to the agent, resting is no force of the agent."""
+"""Contact forces: every physics step counts, gripped parts belong to the agent, resting exerts no force."""
 
 from __future__ import annotations
 

@@ -24,11 +24,11 @@ BENCH = "env:bench"
 KINOVA, CYLINDER = "env:kinova", "env:cylinder1"
 GRAVITY = 9.81
 MARGIN = 0.03
-"""Share of the bound 2 μ N on either side of which a part must hold or slip."""
+"""Distance from the bound 2 μ N, as a share, at which a part must hold or slip."""
 
 
 def bench(agent: str, *things: str, **settings: float) -> SceneSpec:
-    """Return a scene of an arm and things on a bench; ``settings`` are those of the first thing."""
+    """Return a scene of an arm and objects on a bench; ``settings`` are those of the first object."""
     config = tuple(ConfigSpec(things[0], name, f"{value:.6f}") for name, value in settings.items())
     workspaces = {BENCH_WS: (BENCH,)}
     return replace(SCENE, agents=(agent,), objects=(*things, BENCH), workspaces=workspaces, contains={}, config=config)
@@ -45,10 +45,10 @@ def own_arm(scene: SceneSpec, folder: Path, text: str) -> ScenarioSpec:
 
 
 class Held:
-    """A thing in the air between the pads of an arm, which close on it without gravity."""
+    """An object in the air between the pads of an arm, which close on it without gravity."""
 
     def __init__(self, simulation: Simulation, thing: str, force: float | None = None) -> None:
-        """``force`` (N) is that of each finger, by default what the arm's model has."""
+        """``force`` (N) is that of each finger, by default that of the arm's model."""
         self.simulation, self.thing = simulation, thing
         self.model, self.data = simulation.model, simulation.data
         (self.robot,) = simulation.robots.values()
@@ -71,11 +71,11 @@ class Held:
             self.simulation.tick()
 
     def height(self) -> float:
-        """Return how high (m) the thing is above the tool's centre."""
+        """Return the height (m) of the object above the tool's centre."""
         return float(self.data.body(self.thing).xpos[2] - self.data.site_xpos[self.robot.tool][2])
 
     def slip(self, seconds: float = 1.0) -> float:
-        """Return how far (m) the thing slides down in the grip under gravity."""
+        """Return the distance (m) that the object slides down in the grip under gravity."""
         before = self.height()
         self.model.opt.gravity[2] = -GRAVITY
         self.wait(seconds)
@@ -145,7 +145,7 @@ def test_a_part_that_slips_is_lost(friction: float, mass: float, carried: bool) 
 
 
 def pushed(thing: str, speed: float, *config: ConfigSpec) -> list[float]:
-    """Return where (m) a thing on the bench is, tick after tick, once it was pushed along y."""
+    """Return the positions (m) of an object on the bench, tick by tick, after a push along y."""
     scene = replace(bench(PANDA, thing), config=config)
     simulation = Execution(scenario(scene), []).simulation
     start = int(simulation.model.body(thing).dofadr[0])
@@ -171,7 +171,7 @@ def test_a_ball_comes_to_rest_on_any_board(board: str) -> None:
 
 
 def test_the_smoother_of_two_surfaces_brings_the_rolling_resistance_of_the_other() -> None:
-    """A contact of geoms as a file has them: what the engine makes of it."""
+    """A contact of geoms in a file: the engine's resulting parameters."""
     ball = '<body pos="0 0 0.009"><freejoint/><geom size="0.01" friction="0.6 0.005 0.0005" condim="6"/></body>'
     board = '<geom type="box" size="1 1 0.1" pos="0 0 -0.1" friction="0.2 0.001 0.0001" priority="-3"/>'
     spec = mujoco.MjSpec.from_string(f"<mujoco><worldbody>{ball}{board}</worldbody></mujoco>")

@@ -1,4 +1,4 @@
-"""Grasps of objects as they lie."""
+"""Grasps of objects in different orientations."""
 
 from __future__ import annotations
 

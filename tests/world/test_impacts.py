@@ -1,4 +1,4 @@
-"""Blows on a fixed table, short: what the impact study in docs/simulation.md claims."""
+"""Impacts on a fixed table: a short form of the impact study in docs/simulation.md."""
 
 from __future__ import annotations
 

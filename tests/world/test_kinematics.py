@@ -42,10 +42,10 @@ def modified(d: float, theta: float, a: float, alpha: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class Published:
-    """What the maker publishes: d (m), offset (rad), a (m), alpha (rad) of each joint, and what stands around them.
+    """The manufacturer's parameters: d (m), offset (rad), a (m), alpha (rad) of each joint, and the adjacent frames.
 
-    ``base`` is the frame of the first joint's predecessor in the base, ``tool`` the tool in the flange's frame;
-    radius and height (m) bound the poses below the base's axis that are tried.
+    ``base`` is the frame of the first joint's predecessor in the base, ``tool`` the tool in the flange's frame; radius
+    and height (m) bound the tried poses below the base's axis.
     """
 
     link: Callable[[float, float, float, float], FloatArray]
@@ -194,7 +194,7 @@ def test_a_motion_keeps_the_speed_limits_and_ends_at_its_goal(name: str, data: s
 
 
 def test_where_a_joint_comes_to_its_limit_the_tool_stays_on_its_path() -> None:
-    """So near to its base the Panda's elbow has to turn aside; straight ahead of that lies another posture."""
+    """So near to its base, the Panda's elbow has to turn aside; straight ahead, the path leads to another posture."""
     robot = ROBOTS["franka-panda"]
     arm, limits = arm_of(robot), np.array(robot.velocity_limits)
     above = ToolPose(0.2554, 0.1582, 0.150, -0.3571)

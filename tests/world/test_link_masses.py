@@ -120,6 +120,6 @@ def test_links_have_the_published_masses_and_inertias(name: str, links: tuple[Li
         principal = data.body(link.body).ximat.reshape(3, 3)
         xx, yy, zz, xy, xz, yz = link.inertia
         tensor = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
-        # The published link 4 of the Panda is no body's: its largest moment is corrected by 9 %.
+        # The published link 4 of the Panda is physically impossible: its largest moment is corrected by 9 %.
         tolerance = 0.0012 if link.body == "link4" else 2e-6
         assert principal @ np.diag(body.inertia) @ principal.T == pytest.approx(tensor, abs=tolerance)

@@ -1,4 +1,4 @@
-"""Given poses at which things are in one another are reported; nothing is pushed apart in silence."""
+"""Overlapping initial poses are reported; nothing is silently pushed apart."""
 
 from __future__ import annotations
 

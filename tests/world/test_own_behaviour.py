@@ -1,4 +1,4 @@
-"""Users' own behaviours: executed, their events stamped, their errors told as theirs."""
+"""Users' own behaviours: executed, their events recorded, their errors attributed to them."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def test_an_error_in_the_code_is_told_as_the_users(tmp_path: Path, code: str, wo
     execution = run(tmp_path, code)
     assert not execution.run_behaviour(0)
     assert re.search(words, execution.broken), execution.broken
-    # Nothing is known of what would have come after: the scenario does not come to its end.
+    # Later events are unknown: the scenario does not finish.
     assert "t:end" not in [stamp.name for stamp in execution.trace.events]
 
 

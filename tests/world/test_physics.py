@@ -35,7 +35,7 @@ def to_the_end(run: Execution) -> Trace:
 
 
 def penetration(run: Execution) -> float:
-    """Return how deep (m) anything is in anything else; what sleeps has no contacts, so that they are found anew."""
+    """Return the largest penetration (m); sleeping bodies have no contacts, so contacts are computed again."""
     model = run.simulation.model
     data = mujoco.MjData(model)
     data.qpos[:] = run.simulation.data.qpos
@@ -72,7 +72,7 @@ def test_a_thing_that_was_set_down_is_at_rest_and_not_inside_anything() -> None:
 
 @pytest.mark.parametrize("thing", [BALL, CUBE, "env:cylinder1", "env:bottle1"])
 def test_a_falling_thing_gains_no_energy(thing: str) -> None:
-    """Kinetic plus potential energy of a thing dropped from 0.25 m, at the end of every step."""
+    """Kinetic plus potential energy of an object dropped from 0.25 m, at the end of every step."""
     simulation = execution(scene=replace(SCENE, objects=(thing, "env:bench"), workspaces={}, contains={})).simulation
     model, data = simulation.model, simulation.data
     body = model.body(thing)

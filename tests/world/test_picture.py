@@ -1,4 +1,4 @@
-"""Pictures: files that viewers read, of scenes with their workspaces, and plain words where nothing can render."""
+"""Pictures: files that viewers can read, of scenes with their workspaces, and a clear message if nothing can render."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where things stand at the start."""
+"""Initial places of objects."""
 
 from __future__ import annotations
 

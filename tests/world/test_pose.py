@@ -1,4 +1,4 @@
-"""Poses of frames that lie at an offset in another one."""
+"""Poses of frames at an offset in another one."""
 
 from __future__ import annotations
 

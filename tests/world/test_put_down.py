@@ -1,4 +1,4 @@
-"""Places at which a behaviour may put a thing down, in a world that is not stepped."""
+"""Places where a behaviour may put an object down, in a world that is not stepped."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ WITH_TRAY = SceneSpec(
 )
 AWAY = (0.0, 2.0, 0.0)
 CLEAR = {"bin1": (0.0, 3.0, 0.0), "bin2": (0.0, -3.0, 0.0)}
-"""Bins that leave a table to other things."""
+"""Bins that leave a table to other objects."""
 TURNED = (sqrt(0.5), 0.0, 0.0, sqrt(0.5))
 """A quarter turn to the left, as a quaternion (w, x, y, z)."""
 Place = tuple[float, float, float]
@@ -35,7 +35,7 @@ Place = tuple[float, float, float]
 def world(
     scene: SceneSpec = SCENE, turned: tuple[str, ...] = (), /, **places: tuple[float, float, float]
 ) -> Simulation:
-    """Make a world with things at given places (m): cube, ball, bin1 or tray1; the ball is away otherwise."""
+    """Create a world with objects at given places (m): cube, ball, bin1 or tray1; by default the ball is far away."""
     simulation = Simulation(build_world(scene, 1))
     for name, place in ({"ball1": AWAY} | places).items():
         address = simulation.model.jnt_qposadr[simulation.model.body(f"env:{name}").jntadr[0]]

@@ -1,4 +1,4 @@
-"""A robot hits itself and what it stands on; parts that are always close to each other do not count."""
+"""A robot collides with itself and its pedestal; parts that are always close to each other do not count."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Executable scenes: files as objects, poses along frames, samples from distributions, and what is wrong with them."""
+"""Executable scenes: files as objects, poses along frames, samples from distributions, and their errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where bases, tables and bins stand, and which part of a table lies before a robot: by numbers."""
+"""Poses of bases, tables and bins, and the part of a table in front of a robot, in numbers."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def scenario(
 
 
 def pick_place(thing: str = CUBE, workspace: str = BIN_WS, agent: str = PANDA) -> Call:
-    """Return the behaviour that brings a thing to a workspace."""
+    """Return the behaviour that moves an object to a workspace."""
     return Call("pick-place", {"agent": agent, "object": thing, "workspace": workspace})
 
 
