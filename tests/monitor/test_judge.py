@@ -76,7 +76,7 @@ def test_a_missing_event_is_unknown() -> None:
 
 def test_a_window_without_samples_is_unknown_and_could_not_have_been_violated() -> None:
     found = judge(ABOVE, {"thing": "ball"}, During("a", "a"), trace_of({"ball": still(3)}, {"a": 0.05}), {})
-    assert found == unknown("no sample was taken in the window", Cause.EMPTY, "its window holds no sample")
+    assert found == unknown("no sample was taken in the window", Cause.EMPTY, "its window contains no sample")
 
 
 def test_a_unit_may_depend_on_the_trace() -> None:

@@ -49,7 +49,7 @@ def test_a_predicate_that_never_varied_in_any_execution_could_not_have_failed(
 
 
 def test_an_empty_window_is_told_in_the_results_of_every_scenario() -> None:
-    said = "its window holds no sample"
+    said = "its window contains no sample"
     found = of_run(ClauseJudged(0, 5, "unknown", None, "", None, "no sample was taken in the window", None, said))
     document = found.as_json()
     assert not schema_errors("run.schema.json", document)
