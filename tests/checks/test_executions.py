@@ -69,7 +69,7 @@ def test_a_sound_execution_has_no_finding() -> None:
         ("horizon: 0.5", "horizon: -0.5", "-0.5", "a horizon cannot be -0.5: write a number of at least 0"),
         ("offset: 0.02", "offset: -1", "-1", "a time offset cannot be -1: write a number of at least 0"),
         ("1 cm", "-1 cm", "-1", "a distance cannot be -1: write a number of at least 0"),
-        ("1 cm", "300 mm", "300 mm", "no distance lies between these bounds: the lower one comes first"),
+        ("1 cm", "300 mm", "300 mm", "the bounds are reversed: the lower one comes first"),
         ("repeat: 1", "repeat: 0", "0", "the number of repetitions cannot be 0: write a whole number of at least 1"),
         ("seed: 1", "seed: -1", "-1", "a seed cannot be -1: write a whole number from 0 to 4294967295"),
         ("seed: 1", "seed: 1.5", "1.5", "a seed cannot be 1.5: write a whole number from 0 to 4294967295"),

@@ -21,7 +21,7 @@ KNOWN_BEFORE = {
     "no-evaluator": r"no step definition for ",
     "no-emitter": r"nothing in the scenario emits ",
     "not-simulated": r"the ROS action '|its verdicts come from the ROS topic |no ROS",
-    "setting": r"there is no configuration '|cannot be configured: | has no \w+: that is of ",
+    "setting": r"there is no configuration '|cannot be configured: | has no \w+: it applies to ",
     "single-element": r"needs one \w+, not a set of them",
     "no-room": r"there is room for ",
     "execution-fit": r"does not execute '|a distance is between two elements",

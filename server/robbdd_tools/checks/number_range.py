@@ -111,7 +111,7 @@ def _swapped(site: Site, policy: tree.Policy) -> Iterator[Diagnostic]:
         edits = tuple(
             Edit(site.uri, site.span(old), written_text(site, new)) for old, new in ((low, high), (high, low))
         )
-        message = "no distance lies between these bounds: the lower one comes first"
+        message = "the bounds are reversed: the lower one comes first"
         yield finding(site, low, Severity.ERROR, CODE, message, fixes=(Fix("Swap the bounds", edits),))
 
 

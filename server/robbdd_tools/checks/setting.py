@@ -109,7 +109,7 @@ def _wrong_targets(scenario: Scenario) -> Iterator[Diagnostic]:
                 for node, element in written_elements(scenario.site, written):
                     if not _has(element, name.text):
                         what = f"'{element.name}' ({_kind(element)}) has no {name.text}"
-                        message = f"{what}: that is of {setting_of(name.text).target}"
+                        message = f"{what}: it applies to {setting_of(name.text).target}"
                         related = (related_to(site, name, "the configuration"),)
                         yield finding(scenario.site, node, Severity.WARNING, CODE, message, related)
 

@@ -79,8 +79,8 @@ def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
     docs/semantics.md is its definition.
 
     With ``t_e`` the time of the selected occurrence of an event and ``h`` the horizon: ``before``: the last sample in
-    ``[0, t_e]``, or all in ``[t_e - h, t_e]``; ``after``: the first sample in ``[t_e, ∞)``, or all in ``[t_e, t_e +
-    h]``; ``from a until b``: all in ``[t_a, t_b]``.
+    ``[0, t_e]``, or all in ``[t_e - h, t_e]``; ``after``: the first sample in ``[t_e, ∞)``, or all in
+    ``[t_e, t_e + h]``; ``from a until b``: all in ``[t_a, t_b]``.
     """
     for event, iteration in occurrences(constraint):
         if iteration == LAST and event in trace.pending:

@@ -87,7 +87,7 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
         case name if thing is None and robot is None:
             raise SceneError(f"'{config.target}', which should have {name} = {config.value}, is not in the scene")
         case name:
-            raise SceneError(f"'{config.target}' has no {name}: that is of {SETTINGS[name].target}")
+            raise SceneError(f"'{config.target}' has no {name}: it applies to {SETTINGS[name].target}")
 
 
 def _loose(found: Configured) -> list[str]:
