@@ -129,7 +129,7 @@ class Fixture:
 
 
 def fixture(text: str) -> Fixture:
-    """Make a project of a fixture's text; without ``//-`` it is one ``main.bdd`` beside ``lab.scene``."""
+    """Create a project from a fixture's text; without ``//-``, the text is one ``main.bdd``, next to ``lab.scene``."""
     parts = re.split(r"^//- (\S+)\n", text, flags=re.MULTILINE)
     files = dict(zip(parts[1::2], parts[2::2], strict=True)) if len(parts) > 1 else {"main.bdd": text}
     files.setdefault("lab.scene", SCENE)
@@ -170,7 +170,7 @@ def assert_diagnostics(found: list[Diagnostic], case: Fixture) -> None:
 
 
 def corpus(*endings: str) -> list[Path]:
-    """Return the foreign models named by ``ROBBDD_CORPUS``; skips the test where it is not set."""
+    """Return the foreign models named by ``ROBBDD_CORPUS``; skip the test if it is not set."""
     folder = os.environ.get("ROBBDD_CORPUS")
     if not folder:
         pytest.skip("ROBBDD_CORPUS is not set: no foreign models to read")
@@ -188,8 +188,8 @@ def make_endless(model: Path) -> None:
 
 
 def schema_errors(name: str, document: object) -> list[str]:
-    """Return what a document violates of one of the documented JSON Schemas."""
-    # jsonschema comes without types.
+    """Return a document's violations of one of the documented JSON Schemas."""
+    # jsonschema is untyped.
     validator: Any = import_module("jsonschema").Draft202012Validator
     schema = json.loads((DOCS / "schemas" / name).read_text(encoding="utf-8"))
     as_sent = json.loads(json.dumps(document))
@@ -197,7 +197,7 @@ def schema_errors(name: str, document: object) -> list[str]:
 
 
 def make_fifo(path: Path) -> None:
-    """Make a named pipe in a folder; skips the test where there are none."""
+    """Create a named pipe in a folder; skip the test on systems without them."""
     if sys.platform == "win32":
         pytest.skip("Windows has no named pipes in folders")
     os.mkfifo(path)

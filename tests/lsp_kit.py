@@ -15,9 +15,9 @@ from kit import EXAMPLES
 from robbdd_tools.base.files import path_to_uri
 
 PATIENCE = 300.0
-"""Seconds that a test waits for what will come, far more than a slow machine needs."""
+"""Seconds that a test waits for an expected message, far more than a slow machine needs."""
 CLIENTS = pytest.mark.parametrize("client", ["visual-studio-code", "neovim", "emacs"], indirect=True)
-"""For tests whose answer depends on what the client can do."""
+"""For tests whose answer depends on the client's capabilities."""
 ASKED = (
     types.WORKSPACE_INLAY_HINT_REFRESH,
     types.WORKSPACE_CODE_LENS_REFRESH,

@@ -47,6 +47,23 @@ PLAIN = {
     r"to be filled in": "stub, placeholder",
     r"like names": "similar names",
     r"(of|for|in) which no": "without",
+    r"that which": "the noun",
+    r"(goes|go|going|went) on with": "continue, resume",
+    r"went through": "succeeded, completed",
+    r"gave way": "yielded",
+    r"(comes?|came|coming) to (its|their) end": "end, finish",
+    r"at hand": "current",
+    r"lies there": "is at the place, exists",
+    r"takes? hold|lets? go": "grip, release",
+    r"as they come": "on arrival, in order of arrival",
+    r"decides everything": "is the seed of, determines",
+    r"has the say": "takes precedence",
+    r"there already": "existing, already defined",
+    r"moving pictures?": "video",
+    r"beside (the|a|its|their|it|them|each|every) (model|file|trace|text|clause)s?": "in the folder of, next to",
+    r"in the words of": "as …, in the form of",
+    r"looks? anew|judged anew|asked anew": "again",
+    r"whosoever|whatsoever": "any",
 }
 """Pattern of a word → what to write in its place."""
 

@@ -24,7 +24,7 @@ DEFECTS = (
     (MAIN, "{ <arms.panda> }", "{ <arms.panda>, <parts.nut> }", "parts.nut"),
     (MAIN, GOAL, "var <fetch.goal>: { <places.bench_ws>, 3 }", "3"),
 )
-"""File, what is written there, what stands there instead, and the text that the finding must be on."""
+"""File, original text, replacement, and the text that the finding must be on."""
 SCENE_DEFECTS = (
     ("{ object bolt, object nut }", "{ }", "parts", ()),
     ("{ obj <furniture.tray> }", "{ }", "tray_comp", ()),
@@ -37,7 +37,7 @@ SCENE_DEFECTS = (
     ("{ obj <furniture.tray> }", "{ obj <furniture.tray> ws <places.tray_ws> }", "places.tray_ws", ("tray_ws",)),
     ("obj <furniture.bench>", "obj <bench>", "bench", ()),
 )
-"""What the imported scene says, what stands there instead, the text of the finding, those of its other ends."""
+"""Text of the imported scene, its replacement, the text of the finding, and its related texts."""
 HARMLESS = ("unused", "no-scenario", "catalog-models", "no-model")
 """Codes that the sound model has as well."""
 
@@ -48,7 +48,7 @@ def block(text: str, number: int) -> str:
 
 
 def planted(defect: int, number: int) -> dict[str, str]:
-    """Return the files with a defect in one block, which is given a name of its own as all blocks are."""
+    """Return the files with a defect in one block, which gets its own name like all blocks."""
     file, old, new, _ = DEFECTS[defect]
     texts = {BASE: EVENTS, MAIN: 'import "base.bdd"\n' + EVENTS.partition("Task")[0]}
     for place in range(BLOCKS):

@@ -1,4 +1,4 @@
-"""SPARQL over a model's graph: prefixes, order, ready queries against facts told from the text, nothing fetched."""
+"""SPARQL over a model's graph: prefixes, order, built-in queries checked against the text, nothing fetched."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The source map leads from what a graph states to the token that states it."""
+"""The source map maps a graph's statements to their tokens."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Text → graph → text → graph is the identity; what a foreign graph says besides is told, triple by triple."""
+"""Text → graph → text → graph is the identity; further triples of a foreign graph are reported one by one."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def project(tmp_path: Path) -> Path:
 
 
 def check(folder: Path) -> list[Diagnostic]:
-    """Return what is found, without remarks on models, which every scene without a .scenex has."""
+    """Return the findings, without remarks on models, which every scene without a .scenex has."""
     uri = (folder / "models" / "main.bdd").as_uri()
     loaded = Project()
     loaded.load(uri)
@@ -49,7 +49,7 @@ def check(folder: Path) -> list[Diagnostic]:
 
 
 def words(folder: Path) -> list[tuple[str, str, str]]:
-    """File, code and message of what is found."""
+    """File, code and message of each finding."""
     return [(found.uri.rpartition("/")[2], found.code, found.message) for found in check(folder)]
 
 

@@ -1,4 +1,4 @@
-"""What an execution says of the margins of its clauses."""
+"""Margin ranges of the clauses in an execution."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_an_evaluator_that_fails_has_no_range() -> None:
 
 
 def held_before(ball: list[float], node: str, sentence: str = LEFT, role: str = "then") -> bool | None:
-    """Tell it of a ball at some heights over the left bin; a node begins at 0.1 s, the event occurs at 0.3 s."""
+    """Return the message for a ball at some heights over the left bin; node at 0.1 s, event at 0.3 s."""
     events = (EventStamp("t:tree", 0.1), EventStamp("t:e", 0.3))
     still = heights([0.0] * len(ball))
     trace = replace(trace_of({"ball": heights(ball), "bin1": still, "bin2": still}), events=events)

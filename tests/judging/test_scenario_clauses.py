@@ -1,4 +1,4 @@
-"""A clause is what the manifest states; its sentence is read where a person wrote it, or an earlier version ran."""
+"""A clause is read from the manifest; its sentence is parsed only if edited by hand or from an earlier version."""
 
 from __future__ import annotations
 

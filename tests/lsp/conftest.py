@@ -1,4 +1,4 @@
-"""A server in a process of its own, with a client over standard input and output."""
+"""A server in a separate process, with a client over standard input and output."""
 
 from __future__ import annotations
 

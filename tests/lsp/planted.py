@@ -29,7 +29,7 @@ LOG = Path(tempfile.mkdtemp(prefix="robbdd-test-")) / "server.log"
 
 
 class State:
-    """What a test may ask for."""
+    """Parameters of a test's request."""
 
     def __init__(self) -> None:
         self.begun = 0

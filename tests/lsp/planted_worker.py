@@ -1,4 +1,4 @@
-"""The validation process with faults planted in it: words in a text make it raise, end, or never come to an end."""
+"""The validation process with planted faults: words in a text make it raise, exit, or hang."""
 
 from __future__ import annotations
 

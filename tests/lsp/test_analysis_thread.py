@@ -1,4 +1,4 @@
-"""The analysis thread leaves what nobody will see, and nothing that somebody still has to see."""
+"""The analysis thread abandons superseded work, and only that."""
 
 import asyncio
 import threading

@@ -1,4 +1,4 @@
-"""Changes of texts that a client asks for, over the wire."""
+"""Text changes requested by a client, over the wire."""
 
 from __future__ import annotations
 
@@ -104,6 +104,6 @@ async def test_parts_are_laid_out_and_names_linked(editor: Editor) -> None:
     )
     assert linked is not None
     assert len(linked.ranges) == 5
-    # The executions in the file beside it observe this one: typing here would not change them.
+    # The executions in the other file observe this one: typing here would not change them.
     observed = types.LinkedEditingRangeParams(**editor.at("var   thi", after=True))
     assert await editor.client.text_document_linked_editing_range_async(observed) is None

@@ -1,4 +1,4 @@
-"""Executions of a ``.bddx`` in the tree of tests: listed, run by themselves, each with results of its own."""
+"""Executions of a ``.bddx`` in the test tree: listed, run separately, each with its own results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The picture of a model's graph, as a client asks for it."""
+"""The picture of a model's graph, as requested by a client."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files that nobody has opened and that import what is open: they are found, renamed and counted as users."""
+"""Unopened files that import open ones: they are found, renamed and counted as users."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A newer work replaces an older one of its key, yet something comes to its end however many there are."""
+"""A newer task replaces an older one of its key, but some task always finishes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from robbdd_tools.lsp.latest_wins import MAX_REPLACED, LatestWins
 
 
 class Bench:
-    """Numbered works that wait until they are let go, and what became of them."""
+    """Numbered tasks that wait until released, and their outcomes."""
 
     def __init__(self) -> None:
         self.newest = LatestWins(asyncio.create_task)

@@ -1,4 +1,4 @@
-"""What a client can rely on whatever it asks for: errors stay inside, cancelled work ends, the loop stays free."""
+"""Guarantees for every request: errors are contained, cancelled work ends, the event loop stays free."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ async def test_a_cancelled_request_is_answered_and_its_work_is_left(editor: Edit
     for name, answer in (("waiting", waiting), ("running", running)):
         cancel(editor, name)
         assert (await refused(answer)).code == REQUEST_CANCELLED
-    # The thread is free again, and what was still waiting is never begun.
+    # The thread is free again, and waiting work is never started.
     assert await hover(editor) is not None
     seen = await state(editor)
     assert (seen.begun, seen.left) == (1, 1)

@@ -18,7 +18,7 @@ def given(**fields: Any) -> Parameters:
 
 
 class Fields:
-    """What pygls makes of a JSON object, as far as we use it."""
+    """pygls' form of a JSON object, as far as used."""
 
     def __init__(self, fields: dict[str, Any]) -> None:
         self._fields = fields

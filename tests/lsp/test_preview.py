@@ -1,4 +1,4 @@
-"""The preview of a model's Gherkin, as a client asks for it."""
+"""The preview of a model's Gherkin, as requested by a client."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ BROKEN = "obj set (ns=nowhere) parts { object bolt }\n"
 
 
 def pulling() -> types.ClientCapabilities:
-    """What VS Code can do since its client asks for diagnostics."""
+    """Capabilities of VS Code since its client pulls diagnostics."""
     found = client_capabilities("visual-studio-code")
     assert found.text_document is not None
     assert found.workspace is not None
@@ -151,7 +151,7 @@ async def test_what_only_an_importer_may_use_is_not_called_unused_in_a_file_that
     assert codes(first[pull_editor.uri]) == []
 
     async def now(kind: types.FileChangeType) -> list[str]:
-        """What is told of the closed file after a change of the one that imports it."""
+        """The reports on the closed file after a change of its importer."""
         change = types.FileEvent(uri=path_to_uri(execution), type=kind)
         client.workspace_did_change_watched_files(types.DidChangeWatchedFilesParams(changes=[change]))
         told = dict[str, Any]()

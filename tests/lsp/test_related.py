@@ -1,4 +1,4 @@
-"""Related scenarios in an editor: each story's clauses show what one execution of their tree has told."""
+"""Related scenarios in an editor: each story's clauses show results of one execution of their tree."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ async def test_three_stories_show_what_one_execution_told(client: LanguageClient
     names = ["at-source", "in-hand", "still-in-hand", "at-goal", "goal-untouched", "on-bench", "in-bin"]
     assert list(found) == names
     assert all(label.startswith("✔") for label in found.values()), found
-    # The thing is found on the bench by two stories, at one moment of one execution.
+    # Two stories find the object on the bench, at one moment of one execution.
     assert found["at-source"] == found["on-bench"]
 
 

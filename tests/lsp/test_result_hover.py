@@ -1,4 +1,4 @@
-"""Hover on what was judged: the last result, and for clients that show pictures the moment and the margin over time."""
+"""Hover on a judged clause: the last result, and for clients that show pictures the moment and the margin over time."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PICTURE = re.compile(r"!\[([^]]*)\]\(data:([^;]*);base64,([^)]*)\)")
 MOST = 100_000
 """Letters of a hover that VS Code reads."""
 SOON = ("<thing> is located at <goal>, after <evt-place-end>", "<thing> is located at <goal>, after <evt-pick-end>")
-"""An edit after which the goal is asked for before the thing can be there."""
+"""An edit after which the goal clause is evaluated before the object can be there."""
 
 
 @pytest_asyncio.fixture

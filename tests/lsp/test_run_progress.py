@@ -23,7 +23,7 @@ SHOWN, REFUSED, UNKNOWN = "shown", "refused", "unknown"
 
 @pytest.fixture
 def told() -> Told:
-    """What the client was told of progress, as kind and value."""
+    """Kind and value of each progress message sent to the client."""
     return []
 
 

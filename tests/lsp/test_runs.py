@@ -1,4 +1,4 @@
-"""Runs from an editor: results where the clauses stand, as they come, again after a restart, stale after an edit."""
+"""Runs from an editor: results at the clauses, immediately, again after a restart, stale after an edit."""
 
 from __future__ import annotations
 

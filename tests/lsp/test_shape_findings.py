@@ -1,4 +1,4 @@
-"""What the shapes found stays in its place while the text around it is edited, and comes while typing never ends."""
+"""Shape findings move with their text during edits, and arrive even while the user keeps typing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def finding(text: str) -> Diagnostic:
 
 
 def shown(text: str, *answers: Answer) -> list[Diagnostic]:
-    """What is shown in a text after some answers, all of which are about the model."""
+    """The findings shown in a text after some answers, all of which are about the model."""
     findings, project = ShapeFindings(), Project()
     for revision in range(3):
         findings.request(MAIN, revision, {MAIN: MODEL})

@@ -1,4 +1,4 @@
-"""Validation beside the server: a project's and an editor's shapes, a process that dies, work that is outdated."""
+"""The validation process: shapes of a project and an editor, crashes, outdated work."""
 
 from __future__ import annotations
 

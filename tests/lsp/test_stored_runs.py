@@ -1,4 +1,4 @@
-"""Stored runs and their traces, as clients ask for them."""
+"""Stored runs and their traces, as requested by clients."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from robbdd_tools.features.run_verdicts import JudgedScenario, Results
 
 
 async def session(folder: Path) -> LanguageClient:
-    """A client of a server of its own."""
+    """A client with its own server."""
     client = make_test_lsp_client()
     # The type of its further arguments is left open.
     await cast(Any, client).start_io(sys.executable, "-m", "robbdd_tools.lsp.main", "--stdio")
@@ -46,7 +46,7 @@ async def until(so: Callable[[], Awaitable[bool]]) -> None:
 
 
 def report_ended_run(editor: Editor, number: int) -> None:
-    """Do what a client does that watches files."""
+    """Send the notifications of a client that watches files."""
     results = editor.path.parent / ".robbdd" / "runs" / str(number) / "results.json"
     change = types.FileEvent(path_to_uri(results), types.FileChangeType.Created)
     editor.client.workspace_did_change_watched_files(types.DidChangeWatchedFilesParams([change]))

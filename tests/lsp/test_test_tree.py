@@ -1,4 +1,4 @@
-"""The tree of tests, as a client asks for it, and runs of what is chosen in it."""
+"""The test tree, as requested by a client, and runs of selected items."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ async def tests(editor: Editor, **params: object) -> Any:
 
 
 def written(editor: Editor, place: Any) -> str:
-    """The text from where a place begins to the end of its line."""
+    """The text from the start of a place to the end of its line."""
     start = place["range"]["start"]
     line: bytes = editor.text.split("\n")[int(start["line"])].encode("utf-16-le")
     return line[2 * int(start["character"]) :].decode("utf-16-le")

@@ -27,7 +27,7 @@ def _ignore(*_: object) -> None:
 
 
 async def untrusted(folder: Path) -> Editor:
-    """Open the example, with code of its own beside it, in a client that does not trust it."""
+    """Open the example, with its own Python code, in a client that does not trust it."""
     shutil.copytree(EXAMPLES / "pickplace", folder / "pickplace")
     (folder / "pickplace" / "steps").mkdir()
     (folder / "pickplace" / "steps" / "pickplace_steps.py").write_text(MINE, encoding="utf-8")

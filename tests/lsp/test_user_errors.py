@@ -23,7 +23,7 @@ FIRST = 'print("begin") or arguments["workspace"]'
 
 
 class Cell:
-    """The example with a behaviour of its own, which looks for an argument that it does not get."""
+    """The example with its own behaviour, which reads an argument that it does not get."""
 
     def __init__(self, client: LanguageClient, folder: Path) -> None:
         self.client = client

@@ -1,4 +1,4 @@
-"""Folders that come and go, files that others change, and what the client is asked to show anew."""
+"""Workspace folders added and removed, external file changes, and refresh requests to the client."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ ABOVE = Predicate(
 
 @dataclass(frozen=True)
 class Holds:
-    """The predicate *above* of a thing, which has a path of heights."""
+    """The predicate *above* of an object, which has a path of heights."""
 
     thing: str
     time: TimeConstraint
@@ -53,7 +53,7 @@ Clause = Holds | Joined
 
 @dataclass(frozen=True)
 class Story:
-    """What happened: heights by thing, one per sample, and stamped events."""
+    """Heights by object, one per sample, and stamped events."""
 
     paths: dict[str, list[float]]
     events: tuple[tuple[str, float, int], ...]
@@ -61,7 +61,7 @@ class Story:
     executions: Mapping[str, int] = field(default_factory=dict[str, int])
     """Events of a behaviour tree to how often what emits them was begun."""
     pending: tuple[str, ...] = ()
-    """Events of which it is not known which occurrence is the last."""
+    """Events whose last occurrence is unknown."""
 
     @property
     def trace(self) -> Trace:
@@ -73,7 +73,7 @@ class Story:
 
 
 def by_the_monitor(clause: Clause, story: Story) -> Verdict:
-    """Judge a clause with what is under test."""
+    """Judge a clause with the implementation under test."""
     match clause:
         case Holds(thing, time):
             return judge(ABOVE, {"thing": thing}, time, story.trace, {})

@@ -18,7 +18,7 @@ TARGET = 0.9
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Do what the arguments say; returns the exit code."""
+    """Execute the command; return the exit code."""
     parser = argparse.ArgumentParser("python -m tests.mutants", description=__doc__)
     parser.add_argument("--sample", metavar="N", type=int, help="this many random mutants of each room (default: all)")
     parser.add_argument("--seed", metavar="N", type=int, default=1, help="chooses the sample (default: 1)")

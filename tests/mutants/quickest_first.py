@@ -12,7 +12,7 @@ DURATIONS = Path("mutmut-stats.json")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Sort the tests by their durations in seconds; tests that have not been measured come first."""
+    """Sort the tests by their durations in seconds; unmeasured tests come first."""
     if DURATIONS.exists():
         durations: dict[str, float] = json.loads(DURATIONS.read_text(encoding="utf-8"))["duration_by_test"]
         items.sort(key=lambda item: durations.get(item.nodeid, 0.0))

@@ -11,7 +11,7 @@ class Room:
 
     name: str
     modules: tuple[str, ...] = ("*",)
-    """Names of its modules, without ``.py``; ``*`` is all of them."""
+    """Names of its modules, without ``.py``; ``*`` means all of them."""
 
     reading_source: tuple[str, ...] = ()
     """Tests that read the source of the modules, and so cannot be run on mutants."""
@@ -42,4 +42,4 @@ ROOMS = {
         ),
     )
 }
-"""By name. ``gherkin`` stands for the selection of scenarios, ``world`` for placement, ``run`` for the scheduler."""
+"""Rooms by name. ``gherkin`` is the selection of scenarios, ``world`` is placement, ``run`` is the scheduler."""

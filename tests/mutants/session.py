@@ -1,4 +1,4 @@
-"""One mutmut session for one room, in a folder with a copy of what the room's tests read."""
+"""One mutmut session for one room, in a folder with a copy of the files that the room's tests read."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.mutants.rooms import Room
 
 ROOT = Path(__file__).parent.parent.parent
 WORK = ROOT / "build" / "mutants"
-"""Each room's session has a folder of its own here; mutmut keeps its results in them."""
+"""Parent folder of the rooms' sessions; mutmut keeps its results there."""
 
 _READ = ("tests", "grammar", "metamodels", "examples", "docs")
 _SETTINGS = """
@@ -34,14 +34,14 @@ process_isolation = "forkserver"
 use_git_change_detection = false
 """
 _QUICK = {"CI": "1", "ROBBDD_FUZZ": "10"}
-"""The same examples for every mutant; few sequences of edits, each of which takes a third of a second."""
+"""The same examples for every mutant; few sequences of edits, as each takes a third of a second."""
 _PROGRESS = re.compile(r"^[⠀-⣿].*\n", re.MULTILINE)
 """The lines of mutmut's spinner."""
 _HUNK = re.compile(r"^@@ -(\d+)")
 
 
 class SessionFailed(Exception):
-    """mutmut could not measure a room, for instance because a test fails without a mutant; says what mutmut printed."""
+    """mutmut could not measure a room, for instance because a test fails without a mutant; has mutmut's output."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class Session:
         return [Mutant(name, statuses[name]) for name in sorted(names)]
 
     def place(self, name: str, diff: str) -> str:
-        """Return where a mutant changes the code, as ``path:line``."""
+        """Return the place of a mutant's change, as ``path:line``."""
         module, _, function = name.partition("__mutmut_")[0].rpartition(".")
         path = f"{module.replace('.', '/')}.py"
         if not (self.folder / "src" / path).exists():
@@ -137,7 +137,7 @@ class Session:
 
 
 def sample(names: Sequence[str], size: int | None, seed: int) -> list[str]:
-    """Return that many random mutants, or all of them when there are no more or no size is given."""
+    """Return that many random mutants, or all of them if there are no more or no size is given."""
     return list(names) if size is None or size >= len(names) else random.Random(seed).sample(list(names), size)
 
 

@@ -1,4 +1,4 @@
-"""After any edits, what is known of a file equals what a cold analysis of the same text finds.
+"""After any edits, the analysis of a file equals a fresh analysis of the same text.
 
 ``ROBBDD_FUZZ`` sets the number of edit sequences (``make fuzz`` sets a large one); a failure shrinks to few edits.
 """
@@ -35,7 +35,7 @@ FEWEST = 6
 
 
 def _texts() -> list[dict[str, str]]:
-    """Pairs of model and scene that users would have open together: ours, and foreign ones where there are any."""
+    """Pairs of model and scene that users would have open together: ours, and foreign ones if available."""
     pairs = [{"main.bdd": MODEL, "lab.scene": SCENE}, {"main.bdd": long_story(120), "lab.scene": SCENE}]
     folder = EXAMPLES / "pickplace"
     pairs.append({path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.[bs]*"))})

@@ -159,7 +159,7 @@ def _record(folder: Path, target: Path) -> None:
     """Write the pictures; failures do not affect verdicts."""
     for render, what, of in (
         (render_violations, "picture", "violated clauses"),
-        (render_videos, "moving picture", "scenarios"),
+        (render_videos, "video", "scenarios"),
     ):
         try:
             count = render(folder, target)
