@@ -17,7 +17,7 @@ from robbdd_tools.graph.acceptance_model import AcceptanceModel, Iri, Variant
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """A user's selection: the conjunction of ``where`` and at most one of the other criteria.
+    """A user's selection: ``where`` filters the scenarios, and at most one other criterion reduces them further.
 
     ``first`` and ``sample`` are numbers of scenarios of the whole model, ``strength`` is that of a covering array per
     variant; ``seed`` determines the sample.

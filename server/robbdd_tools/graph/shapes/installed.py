@@ -28,7 +28,7 @@ def load_shapes() -> Graph:
 
 
 def assign_targets(shapes: Graph) -> None:
-    """Move targets from node shapes to their property shapes, which is equivalent.
+    """Give each property shape the targets of its node shapes and detach it from them, which is equivalent.
 
     pyshacl evaluates a nested shape separately for each focus node, but a shape with targets once for all of them; this
     makes validation several times as fast.

@@ -55,7 +55,7 @@ class Sink:
         return Literal(lexical, datatype=URIRef(expand(datatype or kinds[type(value)])))
 
     def claim(self, node: URIRef, location: Location) -> bool:
-        """Reserve a node for one declaration; return whether it was free."""
+        """Reserve a node for one declaration; return whether no other declaration has it."""
         first = self.claims.setdefault(node, location)
         if first != location:
             self.clashes.append((node, location, first))
