@@ -1,0 +1,67 @@
+"""Everything that is reported of a model, as text: places, names, related places and what each fix changes.
+
+The words of messages and titles are left out, so that they can be improved without a change here.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from checks.models import fixes_of
+from kit import FOLDER, Fixture, fixture
+from robbdd_tools.base.diagnostic import Diagnostic, Fix
+from robbdd_tools.base.document import Document, Span
+from robbdd_tools.features.diagnostics import fast_diagnostics
+
+HEADING = "//== reported\n"
+"""Begins the expected report below the text of a fixture."""
+ACCEPT = "ROBBDD_ACCEPT"
+"""Environment variable: when set, the reports are written anew; read what changed before you commit it."""
+OF_CATALOG = ("catalog-models", "no-model")
+"""Codes of findings that count what the catalog has; their numbers are left out."""
+MOST_FIXES = 2
+"""Fixes of a finding that are shown: there may be one for each word of the catalog."""
+_NAMED = re.compile(r"'[^']*'|\d[\d,.]*")
+
+
+def check_report(path: Path) -> None:
+    """Compare what is reported of a model with what stands below it in its file."""
+    text, _, expected = path.read_text(encoding="utf-8").partition(HEADING)
+    found = "".join(f"{line}\n" for line in reported(fixture(text)))
+    if ACCEPT in os.environ:
+        path.write_text(text + HEADING + found, encoding="utf-8", newline="\n")
+    assert found == expected or ACCEPT in os.environ
+
+
+def reported(case: Fixture) -> Iterator[str]:
+    """Yield the report on all files of a fixture, in the order of their names."""
+    for uri in sorted(case.project.texts()):
+        for entry in fast_diagnostics(case.snapshot, uri):
+            yield from _finding(case, entry)
+
+
+def _finding(case: Fixture, entry: Diagnostic) -> Iterator[str]:
+    named = " ".join(name for name in _NAMED.findall(entry.message) if name[0] == "'" or entry.code not in OF_CATALOG)
+    yield f"{entry.code} {entry.severity.name.lower()} {_place(case, entry.uri, entry.span)} {named}".rstrip()
+    for related in entry.related:
+        yield f"  see {_place(case, related.uri, related.span)}"
+    for fix in fixes_of(case, entry)[:MOST_FIXES]:
+        yield f"  fix {' and '.join(_changes(case, fix))}"
+
+
+def _changes(case: Fixture, fix: Fix) -> Iterator[str]:
+    if fix.new_file is not None:
+        yield f"new {fix.new_file.uri.removeprefix(FOLDER)} {json.dumps(fix.new_file.text, ensure_ascii=False)}"
+    for edit in fix.edits:
+        yield f"{_place(case, edit.uri, edit.span)} -> {json.dumps(edit.text, ensure_ascii=False)}"
+
+
+def _place(case: Fixture, uri: str, span: Span) -> str:
+    text = case.project.texts()[uri][1] if uri in case.project.texts() else ""
+    at = Document(uri, 0, text).position(span.start)
+    placed = json.dumps(text[span.start : span.end], ensure_ascii=False)
+    return f"{uri.removeprefix(FOLDER)}:{at.line + 1}:{at.column + 1} {placed}"
