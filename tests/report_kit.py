@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from checks.models import fixes_of
@@ -28,10 +28,10 @@ MOST_FIXES = 2
 _NAMED = re.compile(r"'[^']*'|\d[\d,.]*")
 
 
-def check_report(path: Path) -> None:
-    """Compare what is reported of a model with what stands below it in its file."""
+def check_report(path: Path, report: Callable[[Fixture], Iterator[str]] | None = None) -> None:
+    """Compare a report on a model, by default that of its findings, with what stands below the model in its file."""
     text, _, expected = path.read_text(encoding="utf-8").partition(HEADING)
-    found = "".join(f"{line}\n" for line in reported(fixture(text)))
+    found = "".join(f"{line}\n" for line in (report or reported)(fixture(text)))
     if ACCEPT in os.environ:
         path.write_text(text + HEADING + found, encoding="utf-8", newline="\n")
     assert found == expected or ACCEPT in os.environ
@@ -46,9 +46,9 @@ def reported(case: Fixture) -> Iterator[str]:
 
 def _finding(case: Fixture, entry: Diagnostic) -> Iterator[str]:
     named = " ".join(name for name in _NAMED.findall(entry.message) if name[0] == "'" or entry.code not in OF_CATALOG)
-    yield f"{entry.code} {entry.severity.name.lower()} {_place(case, entry.uri, entry.span)} {named}".rstrip()
+    yield f"{entry.code} {entry.severity.name.lower()} {place(case, entry.uri, entry.span)} {named}".rstrip()
     for related in entry.related:
-        yield f"  see {_place(case, related.uri, related.span)}"
+        yield f"  see {place(case, related.uri, related.span)}"
     for fix in fixes_of(case, entry)[:MOST_FIXES]:
         yield f"  fix {' and '.join(_changes(case, fix))}"
 
@@ -57,10 +57,11 @@ def _changes(case: Fixture, fix: Fix) -> Iterator[str]:
     if fix.new_file is not None:
         yield f"new {fix.new_file.uri.removeprefix(FOLDER)} {json.dumps(fix.new_file.text, ensure_ascii=False)}"
     for edit in fix.edits:
-        yield f"{_place(case, edit.uri, edit.span)} -> {json.dumps(edit.text, ensure_ascii=False)}"
+        yield f"{place(case, edit.uri, edit.span)} -> {json.dumps(edit.text, ensure_ascii=False)}"
 
 
-def _place(case: Fixture, uri: str, span: Span) -> str:
+def place(case: Fixture, uri: str, span: Span) -> str:
+    """Return file, line, column and text of a span."""
     text = case.project.texts()[uri][1] if uri in case.project.texts() else ""
     at = Document(uri, 0, text).position(span.start)
     placed = json.dumps(text[span.start : span.end], ensure_ascii=False)
