@@ -256,7 +256,7 @@ class BehaviourRun:
         self.simulation.restart()
 
     def stamp(self, name: str, iteration: int = 0) -> None:
-        """Record that an emitter, by its name, emits its event now, in an iteration as of event stamps."""
+        """Record the event of an emitter at the current time, with its iteration."""
         self.stamps.append(EventStamp(name, self.simulation.time, iteration))
 
     def _emit(self, event: str) -> None:

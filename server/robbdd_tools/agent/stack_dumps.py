@@ -1,6 +1,7 @@
-"""Dumps the stack of this process where it crashes, leaves at once or takes too long, for its parent to read.
+"""Dump this process's stack for its parent when it crashes, exits or takes too long.
 
-The interpreter's own fault handler writes it: in a signal handler, or in a thread that does not need the interpreter.
+The interpreter's own fault handler writes the dump: in a signal handler, or in a thread that does not need the
+interpreter.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ _limit = 0.0
 
 
 def install() -> None:
-    """Dump the stack where this process crashes from now on, or is not ready within ``STARTUP`` seconds.
+    """Dump the stack if this process crashes, or is not ready within ``STARTUP`` seconds.
 
-    Without effect in a process that is started by hand.
+    No effect in a process started by hand.
     """
     global _file, _limit
     base, limit = os.environ.pop(CRASH, ""), os.environ.pop(LIMIT, "0")
@@ -35,12 +36,12 @@ def install() -> None:
 
 
 def watch() -> None:
-    """Dump the stack when the time that a scenario may take is over."""
+    """Dump the stack when a scenario's time limit expires."""
     _watch(_limit)
 
 
 def rest() -> None:
-    """Dump no stack for taking too long, and forget an earlier one."""
+    """Cancel the dump for the time limit, and delete an earlier one."""
     if _file is not None:
         faulthandler.cancel_dump_traceback_later()
         _file.truncate(0)
@@ -53,7 +54,7 @@ def _watch(seconds: float) -> None:
 
 
 def _dump_before_leaving(file: BinaryIO) -> None:
-    """Let ``os._exit``, which no handler sees, dump the stack first; not in the children of this process."""
+    """Make ``os._exit``, which bypasses all handlers, dump the stack first; not in child processes."""
     leave, own = os._exit, os.getpid()
 
     def dump_and_leave(status: int) -> None:

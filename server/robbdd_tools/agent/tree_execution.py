@@ -149,7 +149,7 @@ class TreeRun:
             yield
 
     def _tick(self) -> set[object]:
-        """Tick the tree once; returns the ids of the behaviours that were ticked."""
+        """Tick the tree once; return the ids of the ticked behaviours."""
 
         def tick() -> set[object]:
             return {behaviour.id for behaviour in self._root.tick()}
@@ -165,7 +165,7 @@ class TreeRun:
             raise UserError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
 
     def _take_note(self, ticked: Iterable[Behaviour], before: Mapping[UUID, Status]) -> None:
-        """Stamp what has begun or ended with this tick; ``before`` has the statuses before it."""
+        """Record events for nodes that started or ended in this tick; ``before`` has their previous statuses."""
         for behaviour in ticked:
             iri = self._iris.get(behaviour.id)
             if before.get(behaviour.id) is not Status.RUNNING:
@@ -213,7 +213,7 @@ def _events_of(node: NodeSpec) -> tuple[str, ...]:
 
 
 def _may_repeat(behaviour: Behaviour) -> bool:
-    """Whether a tree may execute a behaviour again: only sequences and selectors with memory are known not to."""
+    """Return whether a tree may execute a behaviour again, false only below sequences and selectors with memory alone."""
     above = islice(_upwards(behaviour), 1, None)
     return not all(type(one) in COMPOSITES.values() and cast("Sequence | Selector", one).memory for one in above)
 

@@ -94,7 +94,7 @@ def viewed_policy(policy: Policy, *, viewer: bool) -> Policy:
 def conclude(run: Run, outputs: Outputs, ended_by: int) -> int:
     """Write the reports of a run, print where it is kept, and return the exit code. Raises ``OSError``."""
     results = run.progress
-    # First of all: a report that cannot be written costs no result.
+    # Print this first: a report that cannot be written loses no result.
     if run.place.kept:
         print_note(f"kept as {f'run {run.number}' if run.number else run.folder}")
         if not results.complete and results.cause is not Cause.STOPPED:

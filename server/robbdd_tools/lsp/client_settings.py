@@ -62,7 +62,7 @@ class Settings:
         self._substitutions = {folder: texts for folder, texts in self._substitutions.items() if folder in folders}
 
     def substitutions(self, uri: str) -> dict[str, str]:
-        """Return the catalog behaviours that runs of a model execute in place of implementations of its ``.bddx``."""
+        """Return the catalog behaviours that a model's runs execute instead of implementations of its ``.bddx``."""
         return self._substitutions.get(self._folder_of(uri), {})
 
     def shapes(self, uri: str) -> EditorShapes:

@@ -14,7 +14,7 @@ from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.run.launch import Agent
 
 GRACE = 0.5
-"""Seconds beyond a deadline that a process has to dump its stack, until it is ended."""
+"""Seconds that a process has after a deadline to dump its stack before it is killed."""
 
 
 @dataclass(slots=True, eq=False)
@@ -56,9 +56,9 @@ class AgentWorker:
         self.agent.kill()
 
     def fault(self, limit: float, spec: ScenarioSpec | None, sources: Mapping[str, str]) -> Fault | None:
-        """Return the user's code that the ended process was in, if it was; see ``Crash.fault``.
+        """Return the error in the user's code that ended the process, if any; see ``Crash.fault``.
 
-        ``limit`` are the seconds that it had, ``spec`` is the scenario that it had begun.
+        ``limit`` is the process's time limit (s), ``spec`` the scenario that it had begun.
         """
         ended = f"timed out after {limit:g} s" if self.timed_out else f"the process ended with {self.agent.exit()}"
         return self.agent.crash.fault(ended, spec, sources)

@@ -1,4 +1,4 @@
-"""Finds the user's code that an agent process was in when it crashed, was killed or took too long."""
+"""Find the user's code that an agent process was executing when it crashed, was killed or took too long."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _ESCAPE = re.compile(r"\\(?:x([0-9a-f]{2})|u([0-9a-f]{4})|U([0-9a-f]{8}))")
 
 @dataclass(frozen=True, slots=True)
 class Crash:
-    """Position of a process: ``calls`` of its stack, outermost first, and the user code ``code`` that it had called.
+    """State of a process at its end: ``calls`` of its stack, outermost first, and the called user code ``code``.
 
-    ``definition`` is where that is defined. Each is empty where it is not known.
+    ``definition`` is the place of that code. Each is empty if unknown.
     """
 
     calls: tuple[Frame, ...] = ()
@@ -34,7 +34,7 @@ class Crash:
     definition: tuple[Frame, ...] = ()
 
     def fault(self, message: str, spec: ScenarioSpec | None, sources: Mapping[str, str]) -> Fault | None:
-        """Describe a crash in the user's code; ``None`` for one that is not known to be in there.
+        """Describe a crash in the user's code; ``None`` if the crash is not known to be there.
 
         ``sources`` maps copies of files of steps to the originals, as absolute paths.
         """
@@ -47,7 +47,7 @@ class Crash:
 
 
 def take_crash(base: Path, folder: Path) -> Crash:
-    """Read and delete what a process that worked in ``folder`` left behind; ``base`` is what ``CRASH`` named."""
+    """Read and delete the crash files of a process that worked in ``folder``; ``base`` is the value of ``CRASH``."""
     dumped, noted = _take(dump_file(base)), _take(call_file(base))
     code, file, line, *_ = (*noted.decode("utf-8", "replace").split("\0"), "", "", "")
     definition = (_frame(str(folder / file), line),) if line.isdecimal() else ()
@@ -55,7 +55,7 @@ def take_crash(base: Path, folder: Path) -> Crash:
 
 
 def _from_own(frames: tuple[Frame, ...]) -> tuple[Frame, ...]:
-    """Return the calls from the first one of the user's on, without those of this package."""
+    """Return the calls from the user's first one on, without those of this package."""
     kept = (frame for frame in frames if not is_ours(frame.file) and not Path(frame.file).name.startswith("<"))
     return tuple(dropwhile(lambda frame: not frame.own, kept))
 
@@ -71,9 +71,9 @@ def _take(path: Path) -> bytes:
 
 
 def _calls(dump: str, folder: Path) -> Iterator[Frame]:
-    """Yield the calls, innermost first, of the thread that crashed; of the main thread where none did.
+    """Yield the calls, innermost first, of the crashed thread, else of the main thread.
 
-    The names of files are relative to ``folder`` where they are relative.
+    Relative file names are relative to ``folder``.
     """
     threads: list[tuple[str, list[Frame]]] = []
     for line in dump.splitlines():
@@ -88,7 +88,7 @@ def _calls(dump: str, folder: Path) -> Iterator[Frame]:
 
 
 def _existing(folder: Path, file: str) -> str:
-    """Return the path of a file of a dump, which escapes letters beyond ASCII as Python does, but no backslashes."""
+    """Return the path of a file in a dump, which escapes non-ASCII letters as Python does, but no backslashes."""
     path = folder / file
     if not path.exists():
         path = folder / _ESCAPE.sub(lambda found: chr(int(found[1] or found[2] or found[3], 16)), file)
@@ -102,7 +102,7 @@ def _frame(file: str, line: str, function: str = "") -> Frame:
 
 
 def _origin(code: str, spec: ScenarioSpec | None) -> str:
-    """Return the IRI of what names the code in the model; empty for steps."""
+    """Return the IRI of the element that names the code in the model; empty for steps."""
     if spec is None:
         return ""
     named: list[tuple[str, str]] = []

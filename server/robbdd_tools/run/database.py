@@ -103,7 +103,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
             content TEXT NOT NULL,
             PRIMARY KEY (run, id)
         ) WITHOUT ROWID""",
-        # printed is what users' code printed.
+        # printed is the output of users' code.
         "ALTER TABLE execution ADD COLUMN printed TEXT NOT NULL DEFAULT ''",
     ),
 )

@@ -114,7 +114,7 @@ class Agent:
         return f"the agent process ended unexpectedly with {self.exit()}" + (f": {tail}" if tail else "")
 
     def exit(self) -> str:
-        """Return the exit code of the ended process in words."""
+        """Return the exit code of the ended process as text."""
         return describe_exit(self._process.wait())
 
     def terminate(self) -> None:

@@ -98,7 +98,7 @@ class Recording:
                 "UPDATE run SET state = ?, ending = '', timeout = ?, stop_on_failure = ?, jobs = ? WHERE number = ?",
                 (RUNNING, policy.timeout, policy.stop_on_failure, policy.jobs, number),
             )
-            # What is repaired is not reported again; what is not fails again.
+            # A repaired error must not be reported again; one that remains will occur again.
             connection.execute("DELETE FROM fault WHERE run = ? AND shared", (number,))
             (self._simulator,) = connection.execute("SELECT simulator FROM run WHERE number = ?", (number,)).fetchone()
             results = restored(connection, number, self.manifest)

@@ -57,7 +57,7 @@ class RunResults:
     faults: dict[str, Fault] = field(default_factory=dict[str, Fault])
     """Errors in users' code by their ``id``."""
     shared_faults: set[str] = field(default_factory=set[str])
-    """Those of code that all scenarios load."""
+    """The ``id`` of errors in code that all scenarios load."""
     _vacuity: Vacuity = field(default_factory=Vacuity)
 
     def __post_init__(self) -> None:
@@ -99,7 +99,7 @@ class RunResults:
         return closing
 
     def drop_unfinished(self) -> None:
-        """Forget the verdicts of executions that are not finished."""
+        """Drop the verdicts of unfinished executions."""
         for scenario in self.scenarios:
             if scenario.finished is None:
                 scenario.judged.clear()

@@ -1,6 +1,6 @@
-"""Notes which code of the user is being called, where it outlives the process: a mapped file.
+"""Record the user's code being called in a mapped file, which survives the process.
 
-A process that is killed, as the system does when memory runs out, writes nothing any more; what it has mapped stays.
+A process that the system kills, as when memory runs out, can write nothing; a mapped file keeps its contents.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _page: mmap.mmap | None = None
 
 
 def keep_in(path: Path) -> None:
-    """Keep the notes of this process in a file. Raises ``OSError``."""
+    """Use a file for the notes of this process. Raises ``OSError``."""
     global _page
     with path.open("w+b") as file:
         file.truncate(NOTE_SIZE)

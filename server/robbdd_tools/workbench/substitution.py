@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ScenarioSpec
 
 EXECUTES_ALL = "pick-place"
-"""The catalog behaviour that executes the others, too."""
+"""The catalog behaviour that can replace all others."""
 
 
 def parse_substitution(text: str) -> tuple[str, str]:
@@ -60,7 +60,7 @@ def substitute(model: AcceptanceModel, substitutions: Mapping[str, str]) -> Acce
 
 
 def substitutions_of(scenarios: Iterable[ScenarioSpec]) -> dict[str, str]:
-    """Return what was substituted in planned scenarios: IRI of the implementation to catalog behaviour."""
+    """Return the substitutions of planned scenarios: IRI of the implementation to catalog behaviour."""
     executed = (spec.execution.implementation for spec in scenarios if spec.execution is not None)
     return {one.iri: one.name for one in executed if one.substitution is not None}
 
