@@ -213,7 +213,7 @@ def _events_of(node: NodeSpec) -> tuple[str, ...]:
 
 
 def _may_repeat(behaviour: Behaviour) -> bool:
-    """Return whether a tree may execute a behaviour again, false only below sequences and selectors with memory alone."""
+    """Return true unless all composites above a behaviour are sequences and selectors with memory."""
     above = islice(_upwards(behaviour), 1, None)
     return not all(type(one) in COMPOSITES.values() and cast("Sequence | Selector", one).memory for one in above)
 
