@@ -3,7 +3,7 @@ import * as vscode from "vscode";
 import type { LanguageClient } from "vscode-languageclient/node";
 import { openFiles } from "./written";
 import { type Lookup, OWN, findServer } from "./lookup";
-import { complain, warn } from "./notices";
+import { complain, inform, warn } from "./notices";
 import { type ServerState, afterInstallation, notInstalled } from "./presentation";
 import { isRunNotification } from "./runs/messages";
 import type { RunMonitor } from "./runs/monitor";
@@ -81,7 +81,7 @@ export class Server implements vscode.Disposable {
     const lookup = this.lookup;
     if (lookup?.found === true && lookup.origin !== OWN) {
       const used = `The language server ${lookup.command} (from ${lookup.origin}) is in use`;
-      void vscode.window.showInformationMessage(`${used}; it takes precedence over one of the extension's own.`);
+      inform(`${used}; it takes precedence over one of the extension's own.`);
       return this.isRunning();
     }
     const before = this.state;

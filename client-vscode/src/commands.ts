@@ -7,6 +7,7 @@ import type { ReplayView } from "./panels/replay/view";
 import type { StudyView } from "./panels/study/view";
 import type { PreviewView } from "./preview/view";
 import { RUNNABLE, modelFor, openModel } from "./models";
+import { inform } from "./notices";
 import { newProject } from "./projects";
 import type { RunOptionsChooser } from "./runs/chooser";
 import type { RunMonitor } from "./runs/monitor";
@@ -82,7 +83,7 @@ async function replayTest(replays: ReplayView, tests: TestingView, target: unkno
   const test = isRecord(target) && "test" in target ? target["test"] : target;
   const recording = tests.recording(test as vscode.TestItem);
   if (recording === undefined) {
-    void vscode.window.showInformationMessage("A story has no execution of its own: replay one of its scenarios.");
+    inform("A story has no execution of its own: replay one of its scenarios.");
     return;
   }
   await replays.open(recording);

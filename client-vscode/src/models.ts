@@ -1,5 +1,6 @@
 // Determine the model of a command.
 import * as vscode from "vscode";
+import { withoutIcons } from "./literal";
 
 const MODELS = "**/*.bdd";
 const NOT_THERE = "**/{node_modules,.venv,.robbdd}/**";
@@ -48,7 +49,7 @@ export async function show(uri: vscode.Uri): Promise<void> {
 
 async function choose(models: readonly vscode.Uri[]): Promise<vscode.Uri | undefined> {
   const items = models
-    .map((uri) => ({ label: vscode.workspace.asRelativePath(uri), uri }))
+    .map((uri) => ({ label: withoutIcons(vscode.workspace.asRelativePath(uri)), uri }))
     .sort((one, other) => one.label.localeCompare(other.label));
   return (await vscode.window.showQuickPick(items, { title: "RobBDD", placeHolder: "Which model?" }))?.uri;
 }

@@ -3,6 +3,7 @@ import * as vscode from "vscode";
 import type { Server } from "./client";
 import { show } from "./models";
 import { reach } from "./milestones";
+import { complain, warn } from "./notices";
 import { isRecord } from "./values";
 
 interface Template {
@@ -17,7 +18,7 @@ export async function newProject(server: Server): Promise<void> {
   }
   const answer = await server.request("robbdd/templates", {});
   if (!Array.isArray(answer) || !answer.every(isTemplate)) {
-    void vscode.window.showWarningMessage("The RobBDD language server knows no templates. Is it of this version?");
+    warn("The RobBDD language server knows no templates. Is it of this version?");
     return;
   }
   const template = await vscode.window.showQuickPick(
@@ -33,7 +34,7 @@ export async function newProject(server: Server): Promise<void> {
   const begun = await server.request("robbdd/newProject", { template: template.label, uri: folder.toString() });
   const problem = isRecord(begun) ? begun["problem"] : "the server did not answer";
   if (typeof problem === "string") {
-    void vscode.window.showErrorMessage(`No project was created: ${problem}`);
+    complain(`No project was created: ${problem}`);
     return;
   }
   reach("projectBegun");

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import json
+from xml.etree import ElementTree
 
 import pytest
 
-from robbdd_tools.base.printable import printable, printable_json
+from robbdd_tools.base.printable import printable, printable_json, printable_python, printable_xml
 
 
 @pytest.mark.parametrize(
@@ -50,3 +52,23 @@ def test_json_is_read_as_the_same(indent: int | None) -> None:
     assert json.loads(text) == document
     assert all(printable(line) == line for line in text.split("\n"))
     assert "ü 日本" in text
+
+
+COMMANDS = "a ##vso[task.complete]b\n  ::error::c\n::d ##[group]"
+
+
+def commands_in(text: str) -> list[str]:
+    return [line for line in text.split("\n") if line.lstrip().startswith("::") or "##[" in line or "##vso[" in line]
+
+
+def test_documents_hold_no_command_and_are_read_as_the_same() -> None:
+    root = ElementTree.Element("a", b=COMMANDS.replace("\n", " "))
+    root.text = COMMANDS
+    xml = ElementTree.tostring(root, encoding="unicode")
+    assert commands_in(xml)
+    shown = ElementTree.fromstring(printable_xml(xml))
+    assert commands_in(printable_xml(xml)) == []
+    assert (shown.text, shown.get("b")) == (root.text, root.get("b"))
+    code = f'"""{COMMANDS}"""'
+    assert commands_in(printable_python(code)) == []
+    assert ast.literal_eval(printable_python(code)) == COMMANDS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import csv
 import io
 import json
@@ -171,3 +172,52 @@ def test_half_characters_are_refused_where_a_format_cannot_hold_them(tmp_path: P
         done = robbdd("graph", "half.json", "--format", form, folder=tmp_path)
         assert (done.returncode, done.stdout) == (2, "")
         assert rf"{form} cannot hold \ud800" in done.stderr
+
+
+COMMANDS = r"a\n::error::forged\n  ::set-output name=x::y ##vso[task.complete]##[error]"
+
+
+def turtle(tmp_path: Path, role: str) -> Path:
+    text = robbdd("graph", PICKPLACE, "--format", "ttl").stdout
+    assert "line operator" in text
+    (tmp_path / "m.ttl").write_text(text.replace("line operator", role), encoding="utf-8")
+    return tmp_path / "m.ttl"
+
+
+@pytest.mark.parametrize("form", ["ttl", "nt", "xml", "json-ld", "svg"])
+def test_a_literal_of_a_graph_is_no_command_to_a_ci_service(tmp_path: Path, form: str) -> None:
+    done = robbdd("graph", turtle(tmp_path, COMMANDS), "--format", form)
+    assert done.returncode == 0, done.stderr
+    lines = (done.stdout + done.stderr).splitlines()
+    assert [line for line in lines if line.lstrip().startswith("::") or re.search(r"##[\w-]*\[", line)] == []
+    if form != "svg":
+        expected = COMMANDS.replace(r"\n", "\n")
+        assert any(str(term) == expected for term in parse(done.stdout, form).objects())
+
+
+def test_findings_and_pictures_of_a_graph_act_on_no_terminal(tmp_path: Path) -> None:
+    model = turtle(tmp_path, COMMANDS + r"\u001B[2J\u009B2J")
+    for arguments in (("check",), ("graph", "--format", "svg"), ("graph", "--format", "ttl")):
+        done = robbdd(arguments[0], model, *arguments[1:])
+        assert not set("\x1b\x9b") & set(done.stdout + done.stderr)
+
+
+def test_a_picture_of_half_characters_is_valid(tmp_path: Path) -> None:
+    document = robbdd("graph", PICKPLACE, "--format", "json-ld").stdout
+    assert "line operator" in document
+    (tmp_path / "half.json").write_text(document.replace("line operator", r"a\ud800b"), encoding="utf-8")
+    done = robbdd("graph", "half.json", "--format", "svg", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert ElementTree.fromstring(done.stdout.encode()).tag.endswith("svg")
+
+
+def test_steps_of_a_hostile_sentence_are_no_command_and_valid_python(tmp_path: Path) -> None:
+    model = model_with(
+        "in-hand: holds(<thing> is held by <robot>, after <evt-pick-end>)",
+        "'so ##vso[task.complete] it is' after <evt-pick-end>",
+        tmp_path,
+    )
+    text = robbdd("steps", model).stdout
+    assert "##vso" not in text
+    strings = [str(node.value) for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Constant)]
+    assert any("so ##vso[task.complete] it is" in string for string in strings)

@@ -1,5 +1,6 @@
 // Ask for the options of a run, and remember them for each workspace folder.
 import * as vscode from "vscode";
+import { withoutIcons } from "../literal";
 import { type Amount, type OptionName, type RunOptions, numberProblem, optionsIn, substitutionProblem, summaryOf, typedNumber, withOption, wordsOf } from "./options";
 
 const KEY = "robbdd.runOptions";
@@ -36,9 +37,9 @@ function folderOf(model: vscode.Uri): string {
 
 function entries(options: RunOptions): Entry[] {
   const summary = summaryOf(options);
-  const option = (label: string, action: OptionName): Entry => ({ label, description: wordsOf(options, action), action });
+  const option = (label: string, action: OptionName): Entry => ({ label, description: withoutIcons(wordsOf(options, action)), action });
   return [
-    { label: "$(play) Run", description: summary, action: "run" },
+    { label: "$(play) Run", description: withoutIcons(summary), action: "run" },
     option("$(filter) Values", "where"),
     option("$(list-filter) Scenarios", "amount"),
     option("$(sync) Repetitions", "repeat"),

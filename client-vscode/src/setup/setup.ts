@@ -1,6 +1,7 @@
 // Install the language server for the user: progress, cancellation, errors, and updates.
 import * as vscode from "vscode";
 import { searchFolders } from "../lookup";
+import { inform } from "../notices";
 import type { Installed } from "../presentation";
 import { surroundings } from "../surroundings";
 import { type PrivateServer, bundledWheel, discardAbandoned, installedServer, workingFolder } from "./environments";
@@ -56,11 +57,7 @@ export class Setup {
     }
     this.offered = wanted;
     const message = `RobBDD: this version of the extension needs ${wanted}; ${server.package} is installed.`;
-    void vscode.window.showInformationMessage(message, "Update").then((choice) => {
-      if (choice !== undefined) {
-        update();
-      }
-    });
+    inform(message, { Update: update });
   }
 
   private wanted(): Wanted {

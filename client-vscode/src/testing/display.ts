@@ -1,5 +1,6 @@
 // The editor's side of the test tree: its items, its runs, its addresses and places.
 import * as vscode from "vscode";
+import { withoutControls } from "../literal";
 import type { RunMessage, RunNotification } from "../runs/messages";
 import type { Sink } from "./follower";
 import type { Factory } from "./items";
@@ -51,7 +52,7 @@ export function sinkOf(run: vscode.TestRun, onEnd: () => void = () => undefined)
     },
     output: (line, item) => {
       open(() => {
-        run.appendOutput(`${line}\r\n`, undefined, item);
+        run.appendOutput(`${withoutControls(line)}\r\n`, undefined, item);
       });
     },
     end: () => {

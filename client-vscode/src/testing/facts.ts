@@ -1,4 +1,5 @@
 // Data of a listed test, and its item's label, description and order.
+import { withoutIcons } from "../literal";
 import type { Facts, Source } from "./items";
 import type { ListedTest, Place } from "./listing";
 
@@ -64,7 +65,7 @@ export function itemId(uri: string, listed: ListedTest, position?: number): stri
 
 export function labelOf(listed: ListedTest): string {
   const role = listed.role ?? "";
-  return role === "" ? listed.name : `${role.charAt(0).toUpperCase()}${role.slice(1)} ${listed.name}`;
+  return withoutIcons(role === "" ? listed.name : `${role.charAt(0).toUpperCase()}${role.slice(1)} ${listed.name}`);
 }
 
 /** Sort key in text order: declarations by place, others by number; files last. */

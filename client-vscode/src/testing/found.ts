@@ -1,6 +1,7 @@
 // Results from outside this window's runs: those kept by the server, and those of a file.
 import * as vscode from "vscode";
 import type { Server } from "../client";
+import { complain, inform, warn } from "../notices";
 import { normal, sinkOf } from "./display";
 import { type FoundScenario, isFoundResults, showResults } from "./results";
 import type { OpenRun } from "./runner";
@@ -51,13 +52,13 @@ export class ResultsElsewhere {
     const { problem, scenarios, left } = answer;
     const name = vscode.workspace.asRelativePath(chosen);
     if (problem !== null) {
-      void vscode.window.showErrorMessage(`RobBDD: ${problem}`);
+      complain(`RobBDD: ${problem}`);
     } else if (scenarios.length === 0) {
-      void vscode.window.showWarningMessage(`RobBDD: ${name} has no results of a scenario in this workspace.`);
+      warn(`RobBDD: ${name} has no results of a scenario in this workspace.`);
     } else {
       await this.show(scenarios.map(normalised), name, true);
       const rest = left > 0 ? `; ${left} of scenarios outside the workspace are left out` : "";
-      void vscode.window.showInformationMessage(`RobBDD: ${scenarios.length} results of ${name} are shown${rest}.`);
+      inform(`RobBDD: ${scenarios.length} results of ${name} are shown${rest}.`);
       await vscode.commands.executeCommand("workbench.view.testing.focus");
     }
   }

@@ -1,6 +1,7 @@
 // Runs of the server in the Testing view: those started in it, and those started elsewhere.
 import * as vscode from "vscode";
 import type { Server } from "../client";
+import { withoutControls } from "../literal";
 import type { RunNotification } from "../runs/messages";
 import type { Refusal, RunMonitor } from "../runs/monitor";
 import { picturesOf, problemOf, recordedIn } from "./answers";
@@ -131,7 +132,7 @@ export class TestRunner implements vscode.Disposable {
         follower.refuse(only.flatMap((wanted) => this.tree.wanted(uri, wanted)), problem);
       }
       for (const line of command === "robbdd.record" ? recordingWords(answer) : []) {
-        run.appendOutput(`${line}\r\n`);
+        run.appendOutput(`${withoutControls(line)}\r\n`);
       }
     });
     await Promise.race([executed, cancelled]);

@@ -13,6 +13,8 @@ _CI_PREFIX = re.compile(r"##(?=[\w-]*\[)")
 """Start of CI commands that are recognised anywhere in a line: ``##[error]``, ``##vso[task…]``, ``##teamcity[``."""
 _CI_LINE = re.compile(r"\A(\s*):(?=:)")
 """Start of commands to GitHub's runner, recognised at the start of a line: ``::error::``."""
+_CI_LINES = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
+"""The same at the start of any line of a document."""
 
 
 def printable(line: str) -> str:
@@ -36,10 +38,25 @@ def printable_json(document: object, indent: int | None = None) -> str:
 
 
 def printable_terms(text: str) -> str:
-    """Return Turtle or N-Triples with the same characters escaped as in these formats; only line ends stay."""
-    if text.replace("\n", "").isprintable():
-        return text
-    return "".join(f"\\U{ord(one):08X}" if one != "\n" and _is_hidden(one) else one for one in text)
+    """Return Turtle or N-Triples with the same text escaped as in these formats; only line ends stay."""
+    if not text.replace("\n", "").isprintable():
+        text = "".join(f"\\U{ord(one):08X}" if one != "\n" and _is_hidden(one) else one for one in text)
+    return _without_commands(text, r"\\u003A", r"\\u0023")
+
+
+def printable_xml(text: str) -> str:
+    """Return XML without CI commands in its texts and attributes; it parses to the same document."""
+    return _without_commands(text, "&#58;", "&#35;")
+
+
+def printable_python(text: str) -> str:
+    """Return Python source without CI commands in its string literals, which keep their values."""
+    return _without_commands(text, r"\\x3a", r"\\x23")
+
+
+def _without_commands(text: str, colon: str, hash_sign: str) -> str:
+    """Replace the signs that begin CI commands by what a format reads as the same sign."""
+    return _CI_LINES.sub(rf"\1{colon}", _CI_PREFIX.sub(rf"#{hash_sign}", text))
 
 
 def _is_hidden(character: str) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from robbdd_tools.base.printable import printable_python
 from robbdd_tools.commands import FAILED, OK
 from robbdd_tools.commands.models import valid_model
 from robbdd_tools.commands.output import fail, print_document, print_line
@@ -23,7 +24,7 @@ def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> 
     wanted = free_patterns(model) if undefined else patterns(model)
     try:
         if target is None:
-            print_document(skeleton(wanted, None, path.name)[0])
+            print_document(printable_python(skeleton(wanted, None, path.name)[0]))
             return OK
         new = add_steps(wanted, target, path.name)
     except SyntaxError as error:

@@ -1,6 +1,8 @@
 // Let the user choose a recorded execution, and read the server's list.
 import * as vscode from "vscode";
 import type { Server } from "../../client";
+import { withoutIcons } from "../../literal";
+import { inform } from "../../notices";
 import { type StoredRun, type StoredScenario, isRuns, outcome } from "../runs";
 import type { Recording } from "./messages";
 
@@ -16,7 +18,7 @@ export async function chooseRecording(server: Server, uri: string): Promise<Reco
   const items = scenarios.filter(({ trace }) => trace).map((scenario) => ({ ...described(scenario), scenario }));
   if (run === undefined || items.length === 0) {
     if (run !== undefined) {
-      void vscode.window.showInformationMessage(`Run ${run.run} keeps no recorded execution.`);
+      inform(`Run ${run.run} keeps no recorded execution.`);
     }
     return undefined;
   }
@@ -30,14 +32,15 @@ export async function chooseRun(server: Server, uri: string, title: string): Pro
   const answer = await server.request("robbdd/runs", { uri });
   const runs = isRuns(answer) ? answer.runs.filter(({ problem }) => problem === null).reverse() : [];
   if (runs.length === 0) {
-    void vscode.window.showInformationMessage("There is no stored run yet: run a scenario first.");
+    inform("There is no stored run yet: run a scenario first.");
     return undefined;
   }
-  const items = runs.map((run) => ({ label: `Run ${run.run}`, description: `${run.path}: ${outcome(run)}`, run }));
+  const items = runs.map((run) => ({ label: `Run ${run.run}`, description: withoutIcons(`${run.path}: ${outcome(run)}`), run }));
   return items.length === 1 ? runs[0] : (await vscode.window.showQuickPick(items, { title }))?.run;
 }
 
 function described({ name, values, verdict, repetition }: StoredScenario): vscode.QuickPickItem {
   const again = repetition > 1 ? `, repetition ${repetition}` : "";
-  return { label: `${SIGNS[verdict]} ${name.replace(/^[^:]*:/, "")}${again}`, detail: values };
+  const shown = withoutIcons(name.replace(/^[^:]*:/, ""));
+  return { label: `${SIGNS[verdict]} ${shown}${again}`, detail: withoutIcons(values) };
 }

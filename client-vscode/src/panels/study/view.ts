@@ -1,6 +1,7 @@
 // The results of a stored run over its variations, in a panel with links to the replay of each execution.
 import * as vscode from "vscode";
 import type { Server } from "../../client";
+import { complain } from "../../notices";
 import { isRecord } from "../../values";
 import { Panel, beside } from "../panel";
 import { chooseRun } from "../replay/choice";
@@ -65,7 +66,7 @@ export class StudyView implements vscode.Disposable {
     const file = vscode.Uri.joinPath(vscode.Uri.parse(run.folder), "results.json");
     const results = readResults(await textOf(file));
     if (results === undefined) {
-      void vscode.window.showErrorMessage(`RobBDD: ${file.fsPath} contains no results of this version.`);
+      complain(`RobBDD: ${file.fsPath} contains no results of this version.`);
       return false;
     }
     const studied: StudiedRun = { uri, run: run.run };

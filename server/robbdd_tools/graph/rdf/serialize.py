@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, cast
 
-from robbdd_tools.base.printable import printable, printable_json, printable_terms
+from robbdd_tools.base.printable import printable, printable_json, printable_terms, printable_xml
 from robbdd_tools.graph.rdf.canonical import canonical
 from robbdd_tools.graph.rdf.contexts import ContextLoader, Json, UnknownContext
 from robbdd_tools.graph.rdf.json_ld import context_for, expanded
@@ -61,7 +61,11 @@ def serialize(graph: Graph, format: str) -> str:
         # Not splitlines, which also splits at control characters within a text.
         lines = ordered.serialize(format="nt").rstrip("\n").split("\n")
         return printable_terms("".join(sorted(f"{line}\n" for line in lines if line)))
-    text = printable_terms(_turtle(ordered)) if format == "ttl" else ordered.serialize(format=FORMATS[format])
+    text = (
+        printable_terms(_turtle(ordered))
+        if format == "ttl"
+        else printable_xml(ordered.serialize(format=FORMATS[format]))
+    )
     return text.strip("\n") + "\n"
 
 
