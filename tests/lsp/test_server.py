@@ -9,6 +9,7 @@ import pytest
 from lsprotocol import types
 
 from lsp_kit import CLIENTS, PATIENCE, Editor
+from robbdd_tools.lsp.handlers import create_server
 
 
 @CLIENTS
@@ -142,3 +143,14 @@ async def test_any_text_is_answered(editor: Editor, text: str) -> None:
     async with asyncio.timeout(PATIENCE):
         while editor.uri not in editor.client.diagnostics:
             await asyncio.sleep(0.02)
+
+
+def test_messages_hold_no_links_and_no_control_characters(monkeypatch: pytest.MonkeyPatch) -> None:
+    server = create_server()
+    sent: list[types.ShowMessageParams] = []
+    monkeypatch.setattr(server, "window_show_message", sent.append)
+    try:
+        server.warn("no scenario [here](command:y)\x1b[2J")
+    finally:
+        server.stop()
+    assert [one.message for one in sent] == ["no scenario [here]\u200b(command:y)\\x1b[2J"]

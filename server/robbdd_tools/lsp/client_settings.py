@@ -123,6 +123,6 @@ async def read_settings(ls: RobbddServer) -> None:
         if (problem := ls.settings.set(folder, section))
     )
     for problem in problems:
-        ls.window_show_message(types.ShowMessageParams(type=types.MessageType.Warning, message=problem))
+        ls.warn(problem, types.MessageType.Warning)
     if ls.settings.patterns != before:
         await ls.settings_changed()

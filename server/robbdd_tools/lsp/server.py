@@ -17,6 +17,7 @@ from pygls.lsp.server import LanguageServer
 from robbdd_tools import __version__
 from robbdd_tools.base.checkpoint import Abandoned
 from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.base.printable import printable
 from robbdd_tools.features.clause_results import clause_diagnostics
 from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.run_verdicts import NOTHING, Results
@@ -249,9 +250,11 @@ class RobbddServer(LanguageServer):
             paths = [path for path in paths if file is not None and file.is_relative_to(path)]
         return sorted(paths, key=lambda path: -len(path.parts))
 
-    def warn(self, message: str) -> None:
+    def warn(self, message: str, kind: types.MessageType = types.MessageType.Error) -> None:
         """Show the user why something was not done."""
-        self.window_show_message(types.ShowMessageParams(type=types.MessageType.Error, message=message))
+        # VS Code turns [words](command:…) in messages into links; the words may be a user's. The space has no width.
+        shown = printable(message).replace("](", "]\u200b(")
+        self.window_show_message(types.ShowMessageParams(type=kind, message=shown))
 
     def exit_code(self) -> int:
         """Return the process's exit code, see ``Protocol.exit_code``."""
