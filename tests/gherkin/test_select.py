@@ -142,3 +142,14 @@ def test_an_empty_variation_gives_nothing() -> None:
 def test_generation_is_lazy() -> None:
     huge = variant(Product((Iri("x:a"),), (Selection("permutations", tuple(range(40)), 20, False),)))
     assert len(list(islice(Selected(MODEL, [huge], Wanted()).scenarios(huge), 3))) == 3
+
+
+def test_a_sample_may_come_from_a_variant_far_behind() -> None:
+    sizes = [numbers(1), numbers(0), numbers(1), numbers(60)]
+    assert len(selected(Wanted(sample=40), *sizes)) == 40
+
+
+def test_a_single_variable_is_covered_by_each_of_its_values() -> None:
+    assert selected(Wanted(strength=1), numbers(3)) == [(0,), (1,), (2,)]
+    found = selected(Wanted(strength=1), numbers(2, 3))
+    assert ({row[0] for row in found}, {row[1] for row in found}, len(found)) == ({0, 1}, {0, 1, 2}, 3)

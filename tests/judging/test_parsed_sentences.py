@@ -99,3 +99,31 @@ def test_no_text_raises(text: str) -> None:
 @given(st.text(alphabet='()"andor not', max_size=60))
 def test_no_arrangement_of_parentheses_raises(text: str) -> None:
     read_clause(f"( {text} )")
+
+
+@pytest.mark.parametrize(
+    ("written", "value"),
+    [
+        (r"a \"quoted\" word", 'a "quoted" word'),
+        (r"back\\slash", "back\\slash"),
+        (r"two\nlines\r\tand a tab", "two\nlines\r\tand a tab"),
+        (r"\u00e9t\u00e9", "été"),
+        (r"\q", "q"),
+    ],
+)
+def test_what_a_backslash_escapes_is_read(written: str, value: str) -> None:
+    found = fluent(f'"env:bin" has config "label" = "{written}" before event "t:e"')
+    assert found.arguments["value"] == value
+
+
+def test_parentheses_of_several_groups_are_not_taken_for_one() -> None:
+    held = '"env:cube" is held by "env:arm" after event "t:e"'
+    at = f'{AT} after event "t:e"'
+    found = read_clause(f"( {at} or {held} ) and ( {held} or {at} )")
+    assert isinstance(found, Junction)
+    assert found.operator == "and"
+    assert [one.operator for one in found.operands if isinstance(one, Junction)] == ["or", "or"]
+    found = read_clause(f"not ( {at} ) and not ( {held} )")
+    assert isinstance(found, Junction)
+    assert [one.operator for one in found.operands if isinstance(one, Junction)] == ["not", "not"]
+    assert read_clause(f") {at} (") == Text(f") {at} (")

@@ -10,13 +10,14 @@ import pytest
 
 from monitor.traces import still, trace_of
 from robbdd_tools.agent.execution import Execution
+from robbdd_tools.catalog.api import Region
 from robbdd_tools.catalog.executable import Implementation
 from robbdd_tools.judging.decisions import decide
 from robbdd_tools.judging.scenario_clauses import judged_clause, stated_by_step
 from robbdd_tools.monitor.policy import Observation, Policy, Provider, Rule
 from robbdd_tools.monitor.time import After, During
 from robbdd_tools.monitor.trace import Trace
-from robbdd_tools.monitor.verdict import Outcome, Verdict
+from robbdd_tools.monitor.verdict import Cause, Outcome, Verdict
 from robbdd_tools.protocol.clauses import Clause, Fluent, Junction, Text, fluents_of
 from robbdd_tools.protocol.specs import ClauseSpec, ExecutionSpec, ScenarioSpec
 from world.worlds import BIN_WS, CUBE, PANDA, execution, pick_place, scenario
@@ -266,3 +267,72 @@ def test_users_code_gets_what_fills_the_slots_and_quantified_variables_of_its_cl
     clause = judged_clause(replace(located, named=arguments), STATED, spec)
     found = decide(clause, moving([0.2, 0.4]), {}, {"t:a", "t:b"})
     assert (found.outcome, found.robustness, found.reason) == (Outcome.VIOLATED, pytest.approx(-0.1), "")
+
+
+def test_a_workspace_is_observed_at_its_first_region_which_turns_with_its_carrier() -> None:
+    quarter = [0.5**0.5, 0.0, 0.0, 0.5**0.5]
+    trace = moving([0.2, 0.2])
+    trace = replace(trace, orientations=np.array([[[1.0, 0, 0, 0], quarter]] * 2))
+    regions = {
+        "env:other_ws": (),
+        "env:bin_ws": (
+            ("env:bin", Region((0.0, -0.1, 0.0), (0.1, 0.1, 0.1))),
+            ("env:bin", Region((9.0, 0, 0), (1, 1, 1))),
+        ),
+    }
+    clause = as_judged(SENTENCE, STATED, spec_of(targets=("t:var-thing", "env:bin_ws")))
+    found = decide(clause, trace, regions, {"t:a", "t:b"})
+    # The region lies 0.1 m ahead of the turned bin, and so 0.1 m from the cube.
+    assert found.robustness == pytest.approx(0.4)
+
+
+def test_what_is_observed_must_be_one_element() -> None:
+    spec = replace(spec_of(), values={"t:var-thing": [CUBE, "env:bin"]})
+    found = judged(spec, moving([0.2]))
+    assert found.cause is Cause.UNOBSERVED
+    assert "t:var-thing is ['env:cube1', 'env:bin']" in found.reason
+
+
+def test_a_provider_without_a_rate_or_of_another_kind_sees_nothing() -> None:
+    for provider, words in (
+        (replace(TRUTH, rate=None), "env:cube1"),
+        (replace(TRUTH, rate=-1.0), "env:cube1"),
+        (Provider("x:p", "entity-state"), "ROS entity states"),
+        (Provider("x:p", "transforms", source="map"), "ROS transforms 'map'"),
+    ):
+        found = judged(spec_of(provider=provider), moving([0.2]))
+        assert found.cause is Cause.UNOBSERVED
+        assert words in found.reason
+
+
+def test_a_comparison_that_does_not_exist_is_unobserved() -> None:
+    for rule in (Rule("distance", form="near", bounds=(0.5,)), Rule("distance", form="between", bounds=(0.5,))):
+        found = judged(spec_of(rule), moving([0.2]))
+        assert (found.outcome, found.cause) == (Outcome.UNKNOWN, Cause.UNOBSERVED)
+        assert f"'{rule.form}'" in found.reason
+
+
+def test_observations_as_far_apart_as_allowed_are_evidence() -> None:
+    slow = Observation("x:slow", replace(TRUTH, rate=2.0), ("env:bin",))
+    fast = Observation("x:fast", TRUTH, (CUBE,))
+    spec = spec_of(replace(NEAR, max_time_offset=0.4))
+    assert spec.execution is not None
+    policy = replace(spec.execution.policies[0], observations=(slow, fast))
+    found = judged(replace(spec, execution=replace(spec.execution, policies=(policy,))), moving([0.2] * 5))
+    assert found.outcome is Outcome.HOLDS
+
+
+def test_answers_of_code_that_are_no_margins_are_refused_with_the_place_of_the_function(tmp_path: Path) -> None:
+    for module, body, words in (
+        ("too_many", "return [1.0, 2.0, 3.0]", "each of the 2 samples"),
+        ("infinite", "return [1.0, float('inf')]", "1 are not"),
+        ("complex_one", "return 1j", "each of the 2 samples"),
+    ):
+        found = by_code(tmp_path, module, body)
+        assert found.cause is Cause.USER_CODE
+        assert words in found.reason
+        assert found.fault is not None
+        assert found.fault.place is not None
+        assert (found.fault.place.line, found.fault.origin) == (4, "x:policy")
+    assert by_code(tmp_path, "whole_numbers", "return [1, 2]").robustness == 1.0
+    assert by_code(tmp_path, "unsigned", "return np.uint8(3)").robustness == 3.0

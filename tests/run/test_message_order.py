@@ -33,3 +33,18 @@ def test_what_is_finished_is_not_lost_when_its_turn_never_comes() -> None:
     assert list(order.finished()) == story(2)
     order.forget(2)
     assert list(order.finished()) == []
+
+
+def test_forgotten_scenarios_are_those_from_a_number_on() -> None:
+    order = OrderedMessages([0, 3, 5])
+    for index in (3, 5):
+        assert [due for message in story(index) for due in order.take(index, message)] == []
+    order.forget(5)
+    assert [due for message in story(0) for due in order.take(0, message)] == [*story(0), *story(3)]
+    assert list(order.finished()) == []
+
+
+def test_after_the_last_turn_nothing_is_due() -> None:
+    order = OrderedMessages([2])
+    assert [due for message in story(2) for due in order.take(2, message)] == story(2)
+    assert list(order.take(2, ScenarioStarted(2))) == []

@@ -7,12 +7,13 @@ from pathlib import Path
 
 from gherkin_kit import model_of
 from kit import EVENTS
-from robbdd_tools.catalog.executable import Implementation
+from robbdd_tools.catalog.executable import Implementation, SceneInstance
 from robbdd_tools.gherkin.feature_files import whole_plan
-from robbdd_tools.graph.acceptance_model import Execution, Iri
+from robbdd_tools.graph.acceptance_model import BehaviourTree, Execution, Iri, TreeNode
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.protocol.specs import ScenarioSpec
 from robbdd_tools.run.prepare import RunRequest, lay_out, prepare
+from robbdd_tools.run.related_scenarios import Relations, roots_of
 
 TREE = "Behaviour Tree (ns=t) handling { sequence whole { node pick node place } }\n"
 
@@ -142,3 +143,52 @@ def test_executions_of_one_setting_go_together(tmp_path: Path) -> None:
         "t:handling 3": ["t:c 1"],
         "t:handling 3.2": ["t:c 2"],
     }
+
+
+def test_executions_in_different_settings_do_not_go_together() -> None:
+    one = {"robot": PANDA, "part": "<parts.nut>"}
+    model = model_of(EVENTS + TREE + TEMPLATES + story("take", **one) + story("put", **one, goal="<places.tray_ws>"))
+    take, put = (story.variants[0].iri for story in model.stories)
+    plain = Execution(Iri("https://example.org/t/a"), take, Implementation("t:builtin", "catalog", "pick-place"))
+    others = (
+        replace(plain, seed=7),
+        replace(plain, timeout=9.0),
+        replace(plain, implementation=Implementation("t:other", "catalog", "pick-place")),
+        replace(plain, scene=SceneInstance("t:cell", (), (), (), (), (), "t:root")),
+    )
+    for number, other in enumerate((plain, *others)):
+        executions = (plain, replace(other, iri=Iri("https://example.org/t/b"), variant=put))
+        relations = Relations(replace(model, executions=executions))
+        together = relations.group(take, plain.iri, 1) is relations.group(put, executions[1].iri, 1)
+        assert together is (number == 0), other
+
+
+def test_scenarios_in_different_scenes_do_not_go_together() -> None:
+    one = {"robot": PANDA, "part": "<parts.nut>"}
+    model = model_of(EVENTS + TREE + TEMPLATES + story("take", **one) + story("put", **one, goal="<places.tray_ws>"))
+    take, put = (story.variants[0] for story in model.stories)
+    found = Relations(model)
+    assert found.group(take.iri, None, 1) is found.group(put.iri, None, 1) is not None
+    bare = replace(put, scene=replace(put.scene, objects=()))
+    stories = (model.stories[0], replace(model.stories[1], variants=(bare,)))
+    found = Relations(replace(model, stories=stories))
+    assert found.group(take.iri, None, 1) is not found.group(put.iri, None, 1)
+
+
+def test_the_roots_of_a_tree_that_code_makes_are_all_its_nodes() -> None:
+    nodes = (Iri("t:one"), Iri("t:two"))
+    root = TreeNode(Iri("t:one"), "sequence")
+    assert roots_of(BehaviourTree(Iri("t:tree"), nodes)) == tuple(TreeNode(node, "leaf") for node in nodes)
+    assert roots_of(BehaviourTree(Iri("t:tree"), nodes, root)) == (root,)
+
+
+def test_a_scenario_without_a_tree_has_neither_node_nor_group() -> None:
+    model = model_of(EVENTS + TREE + TEMPLATES + story("take", robot=PANDA, part=PARTS))
+    (variant,) = model.stories[0].variants
+    linked = Relations(model).node(variant)
+    assert linked is not None
+    assert (linked.node.endswith("handling.pick"), linked.is_root) == (True, False)
+    alone = Relations(replace(model, trees=()))
+    assert alone.node(variant) is None
+    assert alone.group(variant.iri, None, 1) is None
+    assert alone.behaviours == {}
