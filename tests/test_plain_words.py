@@ -64,6 +64,19 @@ PLAIN = {
     r"in the words of": "as …, in the form of",
     r"looks? anew|judged anew|asked anew": "again",
     r"whosoever|whatsoever": "any",
+    r"by whose|of whom": "name the noun",
+    r"put down to": "attributed to",
+    r"whatever (comes|stands|happens)": "in any case",
+    r"Take in": "Read, add, update with",
+    r"Say (what|that|which|why|whether|how)": "Report, describe, return",
+    r"what is said|what (it|they) (says?|tells?|holds?)": "the noun: the contents, the value, the text",
+    r"wrong way round": "reversed",
+    r"[Ss]hall": "must, has to",
+    r"speaks? of": "mentions, refers to, uses",
+    r"nobody has": "no one has, un…ed",
+    r"comes? back": "is returned, reappears",
+    r"put together": "assembled, combined",
+    r"[Ww]hoever": "anyone who, the client that",
 }
 """Pattern of a word → what to write in its place."""
 
