@@ -36,7 +36,7 @@ async function buildTests() {
     // The editor and the server are played by the tests.
     alias: { vscode: "./test/vscode.kit.ts", "vscode-languageclient/node": "./test/languageclient.kit.ts" },
     logOverride: { "import-is-undefined": "error" },
-    // These load files that lie beside them.
+    // These load files from their own folder.
     external: ["vscode-oniguruma", "vscode-textmate"],
   });
 }

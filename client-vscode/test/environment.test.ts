@@ -12,7 +12,7 @@ test("an answer is passed on without a word", async () => {
   assert.deepEqual(await asked(() => Promise.resolve("/usr/bin/python3")), { answer: "/usr/bin/python3", warnings: [] });
 });
 
-test("an extension that rejects or throws is left out, and the log tells why", async () => {
+test("an extension that rejects or throws is ignored, and the log has the reason", async () => {
   const told = ["The stub failed: no such environment. It is ignored."];
   const error = new Error("no such environment");
   assert.deepEqual(await asked(() => Promise.reject(error)), { answer: undefined, warnings: told });
@@ -22,7 +22,7 @@ test("an extension that rejects or throws is left out, and the log tells why", a
   assert.deepEqual({ answer, warnings }, { answer: undefined, warnings: told });
 });
 
-test("an extension that never answers is left out after the limit", async () => {
+test("an extension that never answers is ignored after the limit", async () => {
   const { answer, warnings } = await asked(() => new Promise<string>(() => undefined), 20);
   assert.equal(answer, undefined);
   assert.deepEqual(warnings, ["The stub failed: there was no answer within 0.02 s. It is ignored."]);

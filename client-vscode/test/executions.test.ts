@@ -44,7 +44,7 @@ test("executions are listed below their file, their scenarios as those of the va
   assert.equal(world.item("fetch.bddx", "by-ours", "part = cube1", "Then held").place, null);
 });
 
-test("executions are run by themselves, the file with all of them", async () => {
+test("executions run separately, the file runs all of them", async () => {
   const world = executing();
   await world.tree.expand(undefined);
   await world.tree.expand(world.item("fetch.bddx", "by-ours"));

@@ -112,7 +112,7 @@ test("a comment swallows keywords and quotes", async () => {
   assert.deepEqual(await tokens("source.robbdd", `// Then: "it's`), [`// Then: "it's → comment.line.double-slash`]);
 });
 
-test("an escaped quote does not end a template's text, where placeholders stand out", async () => {
+test("an escaped quote does not end a template's text, where placeholders are highlighted", async () => {
   const found = await tokens("source.robbdd", String.raw`pred("a \"{r}\" b", r=<robot>)`);
   assert.ok(found.includes(String.raw`\" → constant.character.escape`));
   assert.ok(found.includes("{r} → constant.other.placeholder"));
@@ -120,7 +120,7 @@ test("an escaped quote does not end a template's text, where placeholders stand 
   assert.ok(found.includes("robot → variable.other.property"));
 });
 
-test("declarations of a .bdd file name what they declare", async () => {
+test("declarations of a .bdd file highlight their names", async () => {
   await expectTokens(
     "source.robbdd",
     [
@@ -202,7 +202,7 @@ test("a scene shows its sets and their members", async () => {
   );
 });
 
-test("a unit is one behind a number or a vector only", async () => {
+test("a word is a unit only after a number or a vector", async () => {
   await expectTokens(
     "source.robbdd.scenex",
     "xyz: (0, 1, 2) mm  mass: 1.5 kg\nmodel m as mjcf { sys path = 'a.xml' }",
@@ -280,7 +280,7 @@ for (const [kind, scope] of Object.entries(SCOPES)) {
   });
 }
 
-/** What a snippet inserts when nobody fills in its places. */
+/** The text of a snippet with unfilled placeholders. */
 function expand(body: string): string {
   return body
     .replaceAll(/\$\{\d+\|([^,|]*)[^}]*\}/g, "$1")

@@ -24,7 +24,7 @@ test("a picture is fitted into the middle of its window and not enlarged", () =>
   assert.equal(fitted({ width: 7680, height: 100 }, WINDOW, 0.5).scale, 0.5);
 });
 
-test("zooming keeps what stands under the pointer, within limits", () => {
+test("zooming keeps the point under the pointer, within limits", () => {
   const view = { x: 30, y: -20, scale: 0.5 };
   const larger = zoomed(view, 2, 130, 80);
   assert.deepEqual(larger, { x: -70, y: -120, scale: 1 });
@@ -41,7 +41,7 @@ test("a node in view moves nothing, one outside comes in by the shortest way", (
   assert.deepEqual(revealed(shifted, { x: 0, y: 50, width: 2000, height: 10 }, WINDOW), { x: 16, y: 7, scale: 1 });
 });
 
-test("a picture that does not show the whole model as it is says so", () => {
+test("a picture that does not show the whole current model has a remark", () => {
   assert.equal(remark(PICTURE), "");
   assert.match(remark({ ...PICTURE, problem: "line 3: oh" }), /^Out of date.*line 3: oh.*the last picture without errors/);
   assert.match(remark({ ...PICTURE, svg: "", problem: "line 3: oh" }), /nothing to draw yet/);

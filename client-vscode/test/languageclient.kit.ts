@@ -1,4 +1,4 @@
-// Servers without processes: the tests' build puts this in place of "vscode-languageclient/node".
+// Servers without processes: the tests' build uses this instead of "vscode-languageclient/node".
 import { World } from "./testing.kit";
 import type { Question } from "../src/testing/listing";
 
@@ -17,9 +17,9 @@ interface ClientOptions {
   readonly middleware: { readonly executeCommand: (name: string, values: unknown[]) => Promise<unknown> };
 }
 
-/** Starts at once, and answers what it has answers for; the Testing view gets the tests of a `World`. */
+/** Starts immediately, and returns prepared answers; the Testing view gets the tests of a `World`. */
 export class LanguageClient {
-  /** Every client that was made, the latest last. */
+  /** All created clients, the latest last. */
   static readonly made: LanguageClient[] = [];
   /** What servers answer, by the request's method. */
   static readonly answers = new Map<string, (params: never) => unknown>();

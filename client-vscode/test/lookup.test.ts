@@ -71,7 +71,7 @@ test("a relative entry of PATH is never used", () => {
   assert.match(outcome(machine(["./robbdd-lsp", "robbdd-lsp"], { searchPath: ".::bin" })), /was not found/);
 });
 
-test("an untrusted workspace brings no server of its own", () => {
+test("an untrusted workspace cannot provide a server", () => {
   const around = machine(["/srv/cell/.venv/bin/robbdd-lsp", "/envs/robots/bin/robbdd-lsp"], {
     trusted: false,
     python: "/envs/robots/bin/python",
@@ -115,7 +115,7 @@ test("a missing server says what can be done and where it was looked for", () =>
   ]);
 });
 
-test("on Windows the programs lie in Scripts and end in .exe", () => {
+test("on Windows the programs are in Scripts and end in .exe", () => {
   const windows = (python: string, program: string) =>
     outcome(
       machine([program], { platform: "win32", python, folders: ["C:\\cell"], searchPath: "", home: "C:\\Users\\ada" }),

@@ -43,7 +43,7 @@ test("every menu leads to a command", () => {
   assert.deepEqual(used.filter((command) => !declared.has(command)), []);
 });
 
-test("what is about a file, or the workspace, is offered only where there is one", () => {
+test("commands on a file or the workspace are offered only where there is one", () => {
   for (const { command, title } of contributes.commands.filter((one) => /File|Gherkin|Graph|Replay|Study/.test(one.title))) {
     const executions = title.includes("This File") ? " || editorLangId == robbdd-bddx" : "";
     assert.ok([`editorLangId == robbdd${executions}`, "false"].includes(palette.get(command) ?? ""), title);
@@ -52,7 +52,7 @@ test("what is about a file, or the workspace, is offered only where there is one
   assert.equal(palette.get("robbdd.openModel"), "workspaceFolderCount > 0");
 });
 
-test("the readme tells of every command of the palette", () => {
+test("the readme lists every command of the palette", () => {
   const told = [...text("README.md").matchAll(/^\| RobBDD: (.*?) \|/gm)].map(([, title]) => title);
   const offered = contributes.commands.filter(({ command }) => palette.get(command) !== "false");
   assert.deepEqual(told.sort(), offered.map(({ title }) => title).sort());

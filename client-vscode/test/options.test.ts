@@ -1,4 +1,4 @@
-// Run with Options…: what the user sets reaches the server, and is there again the next time.
+// Run with Options…: the user's options reach the server, and are remembered.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { argumentsOf, numberProblem, optionsIn, summaryOf, typedNumber, withOption } from "../src/runs/options";
@@ -55,7 +55,7 @@ test("only one of the amounts is sent", async () => {
   assert.deepEqual(asked, [{ uri, first: 5 }, { uri, pairwise: 2 }, { uri }]);
 });
 
-test("a user who gives up runs nothing, and what was refused or given up changes nothing", async () => {
+test("cancelling runs nothing, and refused or cancelled input changes nothing", async () => {
   open();
   await run(MODEL, ["Repetitions", "Processes"], ["0"]);
   assert.deepEqual(editor.problems, ["A whole number above 0, or nothing."]);
@@ -64,7 +64,7 @@ test("a user who gives up runs nothing, and what was refused or given up changes
   assert.deepEqual(asked, [{ uri: MODEL.toString() }]);
 });
 
-test("the Testing view runs what is chosen there with options", async () => {
+test("the Testing view runs the selected tests with options", async () => {
   open();
   await editor.controller.resolveHandler(undefined);
   editor.choices.push("Processes", "Run");
@@ -73,7 +73,7 @@ test("the Testing view runs what is chosen there with options", async () => {
   assert.deepEqual(asked, [{ uri: MODEL.toString(), only: [{ variant: "t:fetch" }, { variant: "t:sort" }], jobs: 2 }]);
 });
 
-test("catalog behaviours in place of implementations are sent by name, and typing errors are refused", async () => {
+test("catalog behaviours instead of implementations are sent by name, and typing errors are refused", async () => {
   open();
   await run(MODEL, ["Behaviours", "Run"], ["pick-server=pick-place, exec:other = place"]);
   assert.deepEqual(asked, [{ uri: MODEL.toString(), bhv: { "pick-server": "pick-place", "exec:other": "place" } }]);
@@ -83,7 +83,7 @@ test("catalog behaviours in place of implementations are sent by name, and typin
   assert.equal(offered(), "with pick-server=pick-place, exec:other = place");
 });
 
-test("what is remembered is used as far as it is usable", () => {
+test("the valid part of remembered options is used", () => {
   assert.deepEqual(optionsIn(undefined), {});
   assert.deepEqual(optionsIn({ repeat: 0, jobs: "2", seed: 1.5, where: "", amount: { kind: "pairwise", number: 4 } }), {});
   assert.deepEqual(argumentsOf(optionsIn({ seed: 0, amount: { kind: "sample", number: 7 } })), { seed: 0, sample: 7 });

@@ -1,4 +1,4 @@
-// The pages of all panels, as the extension makes them from names that users' files have.
+// The pages of all panels, as the extension creates them from names in users' files.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
@@ -64,7 +64,7 @@ function nonceOf({ webview: { html, options } }: WebviewPanel, script: string): 
   return nonce;
 }
 
-test("every page lets in its own script by a nonce that no other page has, whatever names it shows", async () => {
+test("every page allows its own script by a unique nonce, whatever names it shows", async () => {
   const nonces: string[] = [];
   for (const [name, script] of [...Object.entries(PAGES), ...Object.entries(PAGES)]) {
     nonces.push(nonceOf(await opened(name), script));
@@ -72,7 +72,7 @@ test("every page lets in its own script by a nonce that no other page has, whate
   assert.equal(new Set(nonces).size, nonces.length);
 });
 
-test("a page that comes back in another window has a nonce of its own, too", async () => {
+test("a page restored in another window has its own nonce, too", async () => {
   const state = { uri: MODEL.toString(), recording: { uri: MODEL.toString() }, studied: { uri: MODEL.toString(), run: 1 } };
   const nonces: string[] = [];
   for (const script of [...Object.values(PAGES), ...Object.values(PAGES)]) {
@@ -86,7 +86,7 @@ test("a page that comes back in another window has a nonce of its own, too", asy
   assert.equal(new Set(nonces).size, nonces.length);
 });
 
-test("these are all pages there are, and one module makes them", () => {
+test("these are all pages, and one module creates them", () => {
   const sources = readdirSync("src", { recursive: true, encoding: "utf8" }).filter((path) => path.endsWith(".ts"));
   const text = Object.fromEntries(sources.map((path) => [path.replaceAll("\\", "/"), readFileSync(join("src", path), "utf8")]));
   const having = (pattern: RegExp) => Object.keys(text).filter((path) => pattern.test(text[path] ?? "")).sort();

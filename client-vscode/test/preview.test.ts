@@ -22,7 +22,7 @@ test("the cursor in a clause leads to its step in the scenario that is shown", (
   assert.equal(lineAt(LINES, MODEL, { line: 5, character: 40 }, 14), 16);
 });
 
-test("the cursor beside the clauses leads to the scenario's heading", () => {
+test("a cursor outside the clauses selects the scenario's heading", () => {
   assert.equal(lineAt(LINES, MODEL, { line: 5, character: 41 }, 0), 3);
   assert.equal(lineAt(LINES, MODEL, { line: 2, character: 0 }, 30), 13);
 });

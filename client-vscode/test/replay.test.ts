@@ -48,7 +48,7 @@ test("a body between two frames is between its two places, and turns the shorter
   assert.deepEqual(at(9).slice(0, 3), [2, 4, 6]);
 });
 
-test("the clock stops at the end and begins anew from there", () => {
+test("the clock stops at the end and restarts from the beginning", () => {
   let changes = 0;
   const clock = new Clock(2, () => (changes += 1));
   clock.advance(1);
@@ -79,12 +79,12 @@ test("ticks are round numbers within their range", () => {
   assert.deepEqual(ticks(3, 3, 5), [3]);
 });
 
-test("labels that would cover one another get lanes of their own", () => {
+test("overlapping labels get separate lanes", () => {
   const widths = [0, 10, 25, 70].map((start) => ({ start, width: 30 }));
   assert.deepEqual(lanes(widths), [0, 1, 2, 0]);
 });
 
-test("names in the scene that would cover one another stand above one another", () => {
+test("overlapping names in the scene are stacked", () => {
   const tag = (x: number, y: number) => ({ x, y, width: 40, height: 10 });
   assert.deepEqual(apart([tag(0, 50), tag(30, 52), tag(90, 52)]), [42, 52, 52]);
   assert.deepEqual(apart([tag(0, 38), tag(0, 50), tag(0, 45)]), [30, 50, 40]);
@@ -108,7 +108,7 @@ test("the clause to look at first is the one asked for, the first that is violat
   assert.equal(firstClause([]), -1);
 });
 
-test("a recording is read from what a link says, and from nothing else", () => {
+test("a recording is parsed from a link only", () => {
   const uri = "file:///m.bdd";
   assert.deepEqual(recordingOf({ uri, variant: "v", variation: 3, clause: "c", other: 1 }), { uri, variant: "v", variation: 3 });
   assert.deepEqual(recordingOf({ uri, run: 2, index: "0" }), { uri, run: 2 });
@@ -142,7 +142,7 @@ test("an answer of another version is no trace", () => {
   }
 });
 
-test("a reader is told which clauses have changed, and when that is unknown", () => {
+test("a reader sees which clauses have changed, and when that is unknown", () => {
   const one = clause("at-goal", "holds", null);
   assert.equal(ageOf([one, { ...one, stale: false }]), "");
   assert.match(ageOf([one, { ...one, stale: true }, { ...one, name: "in-hand", stale: true }]), /at-goal, in-hand have changed/);

@@ -110,7 +110,7 @@ test("clauses of scenarios that run at the same time are kept apart", () => {
   assert.deepEqual(run.tally, { total: 2, passed: 1, failed: 1, undecided: 0 });
 });
 
-test("a run that ends early says so and counts what is open", () => {
+test("a run that ends early reports it and counts the open scenarios", () => {
   const { lines, run } = report(runStarted(3), started(0), { type: "RunFinished", ok: false });
   assert.ok(lines.includes("■ The run ended early. cell/fetch.bdd: 0 of 3 scenarios passed, 3 not finished."));
   assert.ok(run.finished);
@@ -143,7 +143,7 @@ test("a notification of another shape is not taken for a run message", () => {
   }
 });
 
-// What the language server says for readers beside the fields of its protocol with the agent.
+// Fields that the language server adds to those of its protocol with the agent.
 const WORDS = ["name", "values", "sentence"];
 
 test("every field that is read is one of the server's protocol", () => {
@@ -162,14 +162,14 @@ test("every field that is read is one of the server's protocol", () => {
     assert.ok(body !== undefined, `${type} is not in the protocol`);
     const declared = [...body.matchAll(/^ {4}(\w+): /gm)].map((match) => match[1]);
     const sent = Object.keys(fields).filter((name) => !WORDS.includes(name));
-    // The protocol may grow; what is read here has to be in it.
+    // The protocol may grow; it must contain the fields read here.
     assert.deepEqual(sent.filter((name) => !declared.includes(name)), [], type);
   }
 });
 
 const FAILED = { id: "e1", lines: ["carrying:Carry failed", '  File "/cell/carrying.py", line 33, in reset', "KeyError: 'goal'"] };
 
-test("an error in code of the user is told once with its traceback, and what it printed with its scenario", () => {
+test("an error in users' code is shown once with its traceback, and its output with its scenario", () => {
   const spoilt = (index: number): RunMessage[] => [
     started(index),
     { type: "Output", index, text: "one\ntwo" },

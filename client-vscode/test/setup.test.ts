@@ -10,7 +10,7 @@ import { failureOf, installation, packageProblem, progressOf, wantedPackage } fr
 
 const STEP = { title: "Installing", program: "pip", args: [] };
 
-/** A Python that passes the probe, makes environments like itself and installs by writing `robbdd-lsp` there. */
+/** A Python that passes the probe, creates environments like itself and installs by writing `robbdd-lsp` there. */
 const PYTHON = `#!/bin/sh
 case "$*" in
   *"-m venv"*) mkdir -p "$4/bin" && cp "$0" "$4/bin/python" ;;
@@ -57,7 +57,7 @@ async function problem(changes: Partial<Installation> = {}): Promise<string> {
   throw new Error("it was installed");
 }
 
-test("without a setting the server that the extension brings is wanted, with what moving pictures need", () => {
+test("without a setting, the bundled server is installed, with the extra for videos", () => {
   const own = "robbdd-tools[video]==1.2.3";
   assert.deepEqual(wantedPackage(" ", "1.2.3"), { name: own, requirement: own });
   assert.deepEqual(wantedPackage("", "1.2.3", "/ext/a b.whl"), { name: own, requirement: "robbdd-tools[video] @ file:///ext/a%20b.whl" });
@@ -78,7 +78,7 @@ test("a package cannot be an option of the installer", () => {
   assert.match(packageProblem("--index-url=http://elsewhere") ?? "", /not an option/);
 });
 
-test("uv makes the environment where it is there, else Python does", () => {
+test("uv creates the environment if available, else Python does", () => {
   const shown = (kind: "uv" | "python") =>
     installation({ kind, program: kind }, "/env", { name: "robbdd", requirement: "robbdd" }, "linux").map(({ program, args }) => [program, ...args].join(" "));
   assert.deepEqual(shown("uv"), ["uv venv --python >=3.11 /env", "uv pip install --python /env/bin/python -- robbdd"]);
@@ -86,7 +86,7 @@ test("uv makes the environment where it is there, else Python does", () => {
   assert.match(shown("python")[1] ?? "", /^\/env\/bin\/python -I -m pip install .* -- robbdd$/);
 });
 
-test("an installer's lines tell how far it is", () => {
+test("an installer's lines show its progress", () => {
   assert.equal(progressOf("Collecting rdflib<8,>=7.6 (from robbdd-tools==0.1.0)"), "Collecting rdflib");
   assert.equal(progressOf("  Downloading mujoco-4.0.0-cp311-manylinux.whl (6.8 MB)"), "Downloading mujoco-4.0.0-cp311-manylinux.whl");
   assert.equal(progressOf("Installing collected packages: a, b, c"), "Unpacking the packages");
@@ -94,7 +94,7 @@ test("an installer's lines tell how far it is", () => {
   assert.equal(progressOf("Requirement already satisfied: numpy"), undefined);
 });
 
-test("a failure is told in plain words where its cause is known, else in the installer's own", () => {
+test("a failure with a known cause is explained, others show the installer's message", () => {
   assert.match(failureOf(STEP, ["The virtual environment was not created: ensurepip is not available."]), /python3-venv/);
   assert.match(failureOf(STEP, ["OSError: [Errno 28] No space left on device"]), /disk is full/);
   assert.match(failureOf(STEP, ["x NewConnectionError(...)", "ERROR: No matching distribution"]), /index cannot be reached/);
@@ -133,7 +133,7 @@ test("without a Python that is new enough it is said what to install", async () 
   assert.match(await problem(), /Neither uv nor Python 3\.11 or newer was found on PATH, only .*python3\. Install one/);
 });
 
-test("a package without the server is no server", async () => {
+test("a package without the server is refused", async () => {
   program("python3", PYTHON.replace("robbdd-lsp", "other"));
   assert.match(await problem(), /does not contain robbdd-lsp/);
 });
@@ -174,7 +174,7 @@ test("an environment counts from its record on; the latest two are kept and the 
   assert.deepEqual([existsSync(one), existsSync(two)], [false, true]);
 });
 
-test("what is left of an installation that was cut short is deleted, one that goes on is not, nor one that is complete", async () => {
+test("remains of an interrupted installation are deleted, one in progress is not, nor a complete one", async () => {
   const storage = join(folder, "storage");
   const goesOn = freshFolder(storage);
   const complete = freshFolder(storage);

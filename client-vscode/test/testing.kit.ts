@@ -1,4 +1,4 @@
-// A tree of tests without an editor, a server with one file, and a run that writes down what it is told.
+// A tree of tests without an editor, a server with one file, and a run that records its messages.
 import assert from "node:assert/strict";
 import type { Sink } from "../src/testing/follower";
 import type { Factory, Item, Items } from "../src/testing/items";
@@ -122,7 +122,7 @@ export class World {
   readonly asked: string[] = [];
   stories: ListedTest[] = [story(variant("fetch", 3), variant("sort", 1000))];
   files = [FILE];
-  /** What a file tells beside the stories. */
+  /** Contents of a file apart from the stories. */
   readonly others: Record<string, ListedTest[]> = {};
   problem: string | null = null;
 
@@ -171,7 +171,7 @@ export const words = (name: string, position: number) => ({
   source: at(3),
 });
 
-/** A run that writes down what it is told. */
+/** A run that records its messages. */
 export function recorded(): { told: string[]; sink: Sink<Node> } {
   const told: string[] = [];
   const label = (item: Node) => `${item.parent?.label ?? ""} / ${item.label}`;

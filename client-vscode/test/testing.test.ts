@@ -22,7 +22,7 @@ test("stories and variants are listed first, scenarios when they are asked for",
   assert.deepEqual(world.labels(world.item("tidy", "fetch", "part = cube2")), ["Then held", "Then placed"]);
 });
 
-test("a scenario without a row of its own stands where the values are listed", async () => {
+test("a scenario without its own row is placed at the list of values", async () => {
   const world = new World();
   await world.tree.expand(undefined);
   await world.tree.expand(world.item("tidy", "fetch"));
@@ -37,7 +37,7 @@ test("of a shown file only variants with few scenarios are listed unasked", asyn
   assert.equal(world.item("tidy", "sort").children.size, 0);
 });
 
-test("an edit keeps the items, tells which are outdated, and removes what is gone", async () => {
+test("an edit keeps the items, marks outdated ones, and removes deleted ones", async () => {
   const world = new World();
   await world.tree.load(FILE);
   await world.tree.expandSmall(FILE);
@@ -51,7 +51,7 @@ test("an edit keeps the items, tells which are outdated, and removes what is gon
   assert.deepEqual(world.labels(world.item("tidy")), ["fetch"]);
 });
 
-test("a mistake is shown at the variant and keeps what was listed", async () => {
+test("an error is shown at the variant and keeps the listed scenarios", async () => {
   const world = new World();
   await world.tree.load(FILE);
   const fetch = world.item("tidy", "fetch");
@@ -119,7 +119,7 @@ test("any selection becomes runs of whole variants or of numbers", async () => {
   );
 });
 
-test("what is excluded is left out", async () => {
+test("excluded tests are not run", async () => {
   assert.deepEqual(await chosen([["tidy"]], [["tidy", "sort"]]), [{ uri: FILE, only: [{ variant: "t:fetch" }] }]);
   assert.deepEqual(await chosen(undefined, [["tidy"]]), []);
   assert.deepEqual(await chosen([["tidy", "fetch"]], [["tidy", "fetch", "part = cube2"]]), [
@@ -157,7 +157,7 @@ test("a clause that could not have been violated says so though it holds", () =>
   assert.deepEqual(outcomeOf(holds, ""), { state: "passed", note: "+31.0 mm · vacuous: nothing ever moved" });
 });
 
-test("a run turns clauses of files that nobody has opened, and ends", async () => {
+test("a run shows clauses of unopened files, and ends", async () => {
   const world = new World();
   let clock = 0;
   const { told, sink } = recorded();
@@ -182,7 +182,7 @@ test("a run turns clauses of files that nobody has opened, and ends", async () =
     "failed part = cube2 / Then placed violated by −20.0 mm at 1.00 s [part = cube2] @3 (−20.0 mm at 1.00 s)",
     "end",
   ]);
-  // Listing the scenarios afterwards keeps what the run found.
+  // Listing the scenarios afterwards keeps the run's results.
   const item = world.item("tidy", "fetch", "part = cube2", "Then placed");
   await world.tree.expand(world.item("tidy", "fetch"));
   assert.equal(world.item("tidy", "fetch", "part = cube2", "Then placed"), item);
@@ -204,7 +204,7 @@ test("a clause that a cancelled run left open gets no result", async () => {
   assert.deepEqual(told, []);
 });
 
-test("a refused run says why at what was to be run", async () => {
+test("a refused run shows the reason at the requested tests", async () => {
   const world = new World();
   await world.tree.load(FILE);
   const { told, sink } = recorded();

@@ -1,4 +1,4 @@
-// What is not trusted is not run, whatever asks for it, and the server knows.
+// Untrusted code is not run by any command, and the server is informed.
 import assert from "node:assert/strict";
 import { mkdirSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -48,7 +48,7 @@ test("no command of the palette runs anything that is not trusted", async () => 
   assert.equal(refusals(), RUNNING.length);
 });
 
-test("the palette's commands run what is trusted", async () => {
+test("the palette's commands run trusted code", async () => {
   openWindow();
   for (const name of PALETTE) {
     await command(name);
@@ -95,7 +95,7 @@ test("a continuous run does not begin with a save in a workspace that is not tru
   }
 });
 
-test("a server that the workspace brings along is started only if the workspace is trusted", async () => {
+test("a server in the workspace is started only if the workspace is trusted", async () => {
   for (const trusted of [false, true]) {
     const folder = join(openWindow({ trusted }), "cell");
     const program = programIn(join(folder, ".venv"), SERVER, process.platform);
@@ -116,7 +116,7 @@ test("the server works in an empty folder of the extension", async () => {
   assert.deepEqual(readdirSync(cwd), []);
 });
 
-test("where that folder cannot be made the user hears that no server could be started", async () => {
+test("if that folder cannot be created, the user sees that no server could be started", async () => {
   const storage = openWindow();
   rmSync(storage, { recursive: true, force: true });
   writeFileSync(storage, "no folder");

@@ -1,4 +1,4 @@
-// The server executes one run at a time: a second one is refused, and the first one goes on being shown.
+// The server executes one run at a time: a second one is refused, and the first one is still shown.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { LanguageClient } from "./languageclient.kit";

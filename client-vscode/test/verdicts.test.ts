@@ -5,7 +5,7 @@ import { appearanceOf, marksOfHints, marksOfLenses } from "../src/verdicts/marks
 
 const LINES = ["Scenario tidy {", "    at-goal: holds(<thing>)", "    | <cube> | <bin> |"];
 
-test("what tells no verdict is none", () => {
+test("a hint without a verdict has no mark", () => {
   for (const data of [undefined, null, 1, "holds", {}, { stale: true }, { verdict: 1 }]) {
     assert.equal(appearanceOf({ label: "✔ 4/4", data }), undefined);
   }
@@ -17,7 +17,7 @@ test("a verdict of a later server is unknown, and fresh unless it says that it i
   assert.deepEqual(appearanceOf({ data: { verdict: "perhaps", stale: true } }), { verdict: "unknown", stale: true });
 });
 
-test("what holds stands behind its clause, what does not before it, and behind the row of a table in any case", () => {
+test("*holds* is drawn after its clause, other verdicts before it, and always after the row of a table", () => {
   const found = marksOfHints(text(), [
     hint(1, 27, "✔ 4/4", { verdict: "holds", stale: false }, "thing = cube: ✔"),
     hint(1, 27, "✗ 0/4 (stale)", { verdict: "violated", stale: true }),
@@ -37,7 +37,7 @@ test("what holds stands behind its clause, what does not before it, and behind t
   assert.deepEqual(found.map(({ tooltip }) => tooltip), ["thing = cube: ✔", "", "", ""]);
 });
 
-test("a pass rate stands at the end of the line below its lens", () => {
+test("a pass rate is drawn at the end of the line below its lens", () => {
   const rate = { verdict: "violated", stale: false };
   const lenses = [lens("Run", undefined), lens("✗ 3/4 passed", rate)];
   assert.deepEqual(marksOfLenses(text(), lenses), [

@@ -114,7 +114,7 @@ class Editor {
   readonly commands = new Map<string, Handler>();
   /** What starts runs in the Testing view, by its name. */
   readonly profiles = new Map<string, Handler>();
-  /** What brings a panel back, by its type. */
+  /** Restores panels, by type. */
   readonly serializers = new Map<string, { deserializeWebviewPanel: (panel: WebviewPanel, state: unknown) => Promise<void> }>();
   readonly panels: WebviewPanel[] = [];
   /** Messages that say to the user what went wrong. */
@@ -138,7 +138,7 @@ class Editor {
   readonly saved = new EventEmitter();
   readonly trusted = new EventEmitter();
 
-  /** Begin anew, as another window. */
+  /** Reset, as another window. */
   reset(isTrusted: boolean): void {
     workspace.isTrusted = isTrusted;
     workspace.workspaceFolders = undefined;
@@ -158,7 +158,7 @@ class Editor {
     this.openRuns = 0;
   }
 
-  /** Do what the user does who trusts the workspace. */
+  /** Trust the workspace, as the user would. */
   trust(): void {
     workspace.isTrusted = true;
     this.trusted.fire();

@@ -42,7 +42,7 @@ export function openWindow({ trusted = true }: { readonly trusted?: boolean } = 
   return join(storage, "storage");
 }
 
-/** Do what a command of the palette or a menu does for the model. */
+/** Execute a command of the palette or a menu for the model. */
 export async function command(name: string, target: unknown = MODEL): Promise<void> {
   const handler = editor.commands.get(name);
   assert.ok(handler, `there is no command ${name}`);

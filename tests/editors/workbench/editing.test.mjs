@@ -31,7 +31,7 @@ step("a misspelt name is mended by its quick fix", async () => {
   await eventually(async () => assert.match(await session.text(FILE), /until <evt-end>/));
 });
 
-step("behind a time's bracket only events are offered", async () => {
+step("after a time's bracket, only events are offered", async () => {
   await goBefore(FILE, "evt-end>");
   await workbench.page.keyboard.press("Control+Space");
   const offered = workbench.page.locator(".suggest-widget.visible .monaco-list-row .label-name");

@@ -1,4 +1,4 @@
-// The example as its reader meets it: no complaint, a mistake is marked and goes again, a run puts verdicts beside clauses.
+// The example as its reader meets it: no finding, a mistake is marked and unmarked, a run shows verdicts at clauses.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
@@ -39,7 +39,7 @@ step("the example opens without an error", async () => {
   await workbench.closePanel();
 });
 
-step("a broken name is underlined and stands in the Problems view", async () => {
+step("a broken name is underlined and listed in the Problems view", async () => {
   const { line, column } = await session.placeOf(FILE, "evt-end>", "until <");
   await workbench.goTo(line, column);
   await workbench.type("x");

@@ -33,7 +33,7 @@ after(async () => {
   await rm(folder, { recursive: true, force: true });
 });
 
-test("a missing server is installed at the press of a button, and checks what is open", async () => {
+test("a button installs a missing server, which checks open files", async () => {
   const { workbench } = session;
   await workbench.openFile("pickplace/pickplace.bdd");
   const offer = await workbench.notification("It can be installed");

@@ -1,4 +1,4 @@
-// The graph of a model beside its text: it follows edits and the cursor, leads to the text, and comes back.
+// The graph of a model next to its text: it follows edits and the cursor, links to the text, and is restored.
 import assert from "node:assert/strict";
 import { contrast } from "./harness/contrast.mjs";
 import { eventually } from "./harness/patience.mjs";
@@ -28,7 +28,7 @@ function current(name) {
   return page.locator(`.current[data-iri$="/${name}"]`);
 }
 
-step("the command shows the graph beside the model", async () => {
+step("the command shows the graph next to the model", async () => {
   await workbench.openFile(FILE);
   await workbench.codeLens("Run").first().waitFor({ state: "attached" });
   await workbench.command("RobBDD: Show Graph");
@@ -37,7 +37,7 @@ step("the command shows the graph beside the model", async () => {
   await eventually(async () => assert.equal(await page.locator("[data-iri]").count(), 16));
 });
 
-step("the node of what the cursor is in is marked and in view", async () => {
+step("the node at the cursor is marked and visible", async () => {
   await cursorAt("does not drop");
   await current("not-dropped").waitFor();
   await cursorAt("evt-end>");
@@ -102,7 +102,7 @@ step("it can be read in a dark and in a light theme", async () => {
   }
 });
 
-step("a page that was hidden shows what it showed before", async () => {
+step("a hidden page keeps its state", async () => {
   await page.getByRole("button", { name: "Larger" }).click();
   const before = await place();
   await workbench.page.locator(".tab", { hasText: "Graph heights.bdd" }).click();

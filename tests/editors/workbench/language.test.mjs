@@ -1,4 +1,4 @@
-// What the extension does by itself: colours, and what it says when there is no language server.
+// The extension without a language server: colours, and messages.
 import assert from "node:assert/strict";
 import { chmod, mkdir, readFile, writeFile } from "node:fs/promises";
 import { delimiter, dirname, join } from "node:path";
@@ -73,7 +73,7 @@ test("a server that ends at once is reported, with its last words in the log", a
   passed = true;
 });
 
-test("an untrusted workspace cannot bring its own server", async () => {
+test("an untrusted workspace cannot provide a server", async () => {
   const marker = (workspace) => join(workspace, "started");
   session = await Session.open({
     workspace: SAMPLES,

@@ -101,7 +101,7 @@ step("in a narrow window nothing is cut off, and no name covers another", async 
   await workbench.page.setViewportSize(WIDE);
 });
 
-/** Look at texts in both schemes: each stands out from the ground behind it. */
+/** Check texts in both schemes: each has enough contrast to its background. */
 async function inBoth(name, texts) {
   for (const scheme of Object.keys(HIGH_CONTRAST.schemes)) {
     await workbench.changeScheme(scheme, HIGH_CONTRAST.schemes);
@@ -180,7 +180,7 @@ async function noneCovered(selector) {
   });
 }
 
-/** Execute four scenarios, of which physics lets one fail: the ball under the suction cup meets the rim of the bin. */
+/** Execute four scenarios, one of which fails: the ball under the suction cup hits the rim of the bin. */
 function run(workspace) {
   return execute(join(workspace, FILE), 'scale = "1.1"', /3 hold, 1 violated/);
 }

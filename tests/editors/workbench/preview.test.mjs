@@ -1,4 +1,4 @@
-// The Gherkin of a model beside its text: it follows every edit and the cursor, and outlives a mistake.
+// The Gherkin of a model next to its text: it follows every edit and the cursor, and survives a mistake.
 import { story } from "./harness/story.mjs";
 
 const FILE = "pickplace/pickplace.bdd";
@@ -18,7 +18,7 @@ function shown(text) {
   return workbench.page.locator(".editor-group-container:not(.active) .view-line", { hasText: text });
 }
 
-step("the command opens the feature beside the model", async () => {
+step("the command opens the feature next to the model", async () => {
   await workbench.openFile(FILE);
   await workbench.codeLens("Run").first().waitFor();
   await workbench.command("RobBDD: Preview Gherkin");

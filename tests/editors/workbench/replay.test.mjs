@@ -1,4 +1,4 @@
-// A recorded execution: played in three dimensions over a time line of events and clauses; without WebGL the time line alone.
+// A recorded execution: played in 3D over a timeline of events and clauses; without WebGL only the timeline.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { describe } from "node:test";
@@ -83,7 +83,7 @@ describe("with three dimensions", () => {
     await eventually(async () => assert.notEqual(await place(), end));
   });
 
-  step("pressing the time line goes there", async () => {
+  step("clicking the timeline seeks", async () => {
     const { x, y, width } = await page.locator(".tracks").boundingBox();
     await workbench.page.mouse.click(x + width / 2, y + 60);
     const duration = Number.parseFloat((await page.locator(".readout").textContent()).split("/")[1]);
@@ -134,7 +134,7 @@ async function time() {
   return Number.parseFloat(await page.locator(".readout").textContent());
 }
 
-/** Wait until the screen has shown what was asked for. */
+/** Wait until the screen has been redrawn. */
 function drawn() {
   return page
     .locator(".stage")

@@ -16,7 +16,7 @@ const step = story("results", (opened) => {
   session = opened;
 }, {
   prepare: async (workspace) => {
-    // The goal is asked for before the thing can be there.
+    // The goal clause is evaluated before the object can be there.
     const text = await readFile(join(workspace, FILE), "utf8");
     const late = "is located at <goal>, after <evt-place-end>";
     assert.ok(text.includes(late));

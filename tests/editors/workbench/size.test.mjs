@@ -1,4 +1,4 @@
-// The extension stays small: a replay brings a library for three dimensions along.
+// The extension stays small: the replay includes a 3D library.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { test } from "node:test";

@@ -7,7 +7,7 @@ import { story } from "./harness/story.mjs";
 
 /** Milliseconds that activation may take of the extension host, as the editor itself counts them. */
 const LONGEST = 100;
-/** A busy machine delays whatever it likes: the quickest of so many starts counts. */
+/** A busy machine causes random delays: the quickest of so many starts counts. */
 const STARTS = 5;
 const STARTED = "started.txt";
 
@@ -47,7 +47,7 @@ step("in a folder with models the extension is active soon, and starts no server
   assert.equal(await readFile(join(workspace, STARTED), "utf8"), "started\n");
 });
 
-step("a new line goes on with a table", async () => {
+step("a new line continues a table", async () => {
   const { workbench } = session;
   await workbench.openFile("sorting/sorting.bdd");
   const last = (await session.text("sorting/sorting.bdd")).split("\n").findLastIndex((line) => line.includes("| obj set"));

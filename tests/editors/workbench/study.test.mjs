@@ -34,7 +34,7 @@ step("a heat map counts what passed, and its cells lead to the replay of the wor
   await workbench.webview("Replay").locator(".row.chosen", { hasText: "at-goal" }).waitFor();
 });
 
-/** Execute four scenarios, of which physics lets one fail: the ball under the suction cup meets the rim of the bin. */
+/** Execute four scenarios, one of which fails: the ball under the suction cup hits the rim of the bin. */
 function run(workspace) {
   return execute(join(workspace, FILE), 'scale = "1.1"', /3 hold, 1 violated/);
 }

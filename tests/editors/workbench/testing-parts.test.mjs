@@ -23,7 +23,7 @@ const step = testingStory("testing-parts", (opened, view) => {
   tests = view;
 }, (text, workspace) => writeFile(join(workspace, ROWS_FILE), withRows(text)));
 
-step("an execution is listed with what it says, and run by itself", async () => {
+step("an execution is listed with its settings, and runs separately", async () => {
   await tests.show();
   await tests.expand("pickplace.bddx");
   const execution = /in-simulation.*4 scenarios.*by built-in.*in bench_sim.*near-goal/;
@@ -38,7 +38,7 @@ step("an execution is listed with what it says, and run by itself", async () => 
   await tests.collapse("pickplace.bddx");
 });
 
-step("the executions of an open file are run from the palette, and judged where they stand", async () => {
+step("the executions of an open file run from the palette, and show results at their declarations", async () => {
   await workbench.openFile("pickplace.bddx");
   const { scenarios } = await session.runOf(() => workbench.command("RobBDD: Run Scenarios of This File"));
   assert.deepEqual(scenarios.map(({ execution }) => execution), Array(4).fill("exec:in-simulation"));
@@ -47,7 +47,7 @@ step("the executions of an open file are run from the palette, and judged where 
   await workbench.screenshot("testing-executions");
 });
 
-step("the icon beside a row of a table runs this row alone", async () => {
+step("the icon at a row of a table runs only this row", async () => {
   await workbench.closePanel();
   await workbench.openFile(ROWS_FILE);
   await tests.expand("rows-bench");
@@ -61,7 +61,7 @@ step("the icon beside a row of a table runs this row alone", async () => {
   await workbench.screenshot("testing-row");
 });
 
-step("a run with recording tells where the recording and the pictures are", async () => {
+step("a run with recording reports the places of the recording and the pictures", async () => {
   await tests.choose("thing = cube0", "Execute Using Profile");
   await workbench.pick("Run with Recording");
   await tests.turns("failed", "thing = cube0");
@@ -101,11 +101,11 @@ step("a run from the palette that is refused says why at the variant, until it i
   await tests.rowsThat("error").first().waitFor({ state: "detached" });
 });
 
-/** Click the icon in the margin beside a line. */
+/** Click the icon in the margin of a line. */
 async function clickIcon(line) {
   await eventually(async () => {
     const icons = workbench.page.locator(".editor-group-container.active .testing-run-glyph");
-    // In one go: the editor may draw its margin anew at any time.
+    // In one go: the editor may redraw its margin at any time.
     const beside = await icons.evaluateAll((found, wanted) => {
       const numbers = [...document.querySelectorAll(".editor-group-container.active .line-numbers")];
       const number = numbers.find(({ textContent }) => textContent === String(wanted))?.getBoundingClientRect();

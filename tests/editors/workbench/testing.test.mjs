@@ -95,7 +95,7 @@ step("a run begun from the code lens shows in the view too", async () => {
   await tests.turns("passed", "part-by-lens");
 });
 
-step("a failing clause shows its margin and instant where it stands, and what was expected", async () => {
+step("a failing clause shows its margin, instant and expected value", async () => {
   await workbench.openFile(FAILING_FILE);
   await tests.expand("no-bench");
   await tests.expand("part-stays");
@@ -109,7 +109,7 @@ step("a failing clause shows its margin and instant where it stands, and what wa
   const told = /−\d+.*mm\sat\s\d+\.\d+\ss\s!=\smargin\s≥\s0/;
   const message = workbench.page.locator(".test-error-content-widget", { hasText: told });
   await message.first().waitFor();
-  // The message covers what stands behind the clause, so that the verdict stands before it.
+  // The message covers the text after the clause, so the verdict is drawn before it.
   assert.equal((await verdictAt(workbench, /^\s*at-goal:/, /^✗/)).side, "before");
   for (const scheme of Object.keys(SCHEMES)) {
     await workbench.changeScheme(scheme);

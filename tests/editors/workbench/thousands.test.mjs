@@ -7,7 +7,7 @@ import { TRY, eventually, timed } from "./harness/patience.mjs";
 import { story } from "./harness/story.mjs";
 import { TestingView } from "./harness/testingView.mjs";
 
-/** A multiple of four: of each part, two places to fetch it from and two to bring it to. */
+/** A multiple of four: for each part, two sources and two goals. */
 const COUNT = Number(process.env.ROBBDD_SCENARIOS ?? 5000);
 
 /** @type {import("./harness/workbench.mjs").Workbench} */
@@ -56,7 +56,7 @@ for (const [first, last] of [[201, 400], [401, 800], [801, 1600]]) {
   });
 }
 
-step("the rows end with what is not listed yet", async () => {
+step("the rows end with an item for unlisted scenarios", async () => {
   await atTheEnd(tests.row(/More: 1,601 to 3,200/));
   await tests.row("scenario 1600,").waitFor();
   await workbench.screenshot("testing-thousands");

@@ -1,4 +1,4 @@
-// A behaviour in Python that raises: where the error is shown, with its traceback and what it printed, until it is fixed.
+// A behaviour in Python that raises: the error is shown with its traceback and the code's output until it is fixed.
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
@@ -41,12 +41,12 @@ step("a behaviour that raises leaves its execution with an error, not with a ver
   await tests.turns("error", EXECUTION);
 });
 
-step("Test Results tells the error once, with its traceback and what the code printed", async () => {
+step("Test Results shows the error once, with its traceback and the code's output", async () => {
   await workbench.command("Test Results: Focus on Test Results View");
   const output = workbench.page.locator(".part.panel .xterm-rows");
   const told = output.filter({ hasText: /error\s1:/ }).filter({ hasText: ERROR }).filter({ hasText: /│\slooking\sfor\sa\sgoal/ });
   await output.filter({ hasText: /0\sof\s2\sscenarios\spassed,\s2\sundecided/ }).first().waitFor();
-  // The terminal shows the end of what was written; the traceback is at its beginning.
+  // The terminal shows the end of the output; the traceback is at its beginning.
   const { x, y } = await output.first().boundingBox();
   await workbench.page.mouse.move(x + 50, y + 50);
   await eventually(async () => {

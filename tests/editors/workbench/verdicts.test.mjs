@@ -1,4 +1,4 @@
-// Verdicts beside the text: in colours of the theme, faded when stale, in every editor of a document, as long as they are wanted.
+// Verdicts in the text: in colours of the theme, faded when stale, in every editor of a document, until removed.
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
@@ -12,10 +12,10 @@ import { HIGH_CONTRAST, SCHEMES } from "./harness/workbench.mjs";
 const FILE = "pickplace/pickplace.bdd";
 /** What WCAG 2 asks of text. */
 const READABLE = 4.5;
-/** What it asks of signs: the least that what is faded has. */
+/** Minimum contrast of signs, also when faded. */
 const VISIBLE = 3;
 const PLAIN = { settings: { "workbench.preferredDarkColorTheme": "Default Dark Modern", "workbench.preferredLightColorTheme": "Default Light Modern" }, schemes: SCHEMES };
-/** Lines of the model, and what the theme calls the colours of their verdicts. */
+/** Lines of the model, and the theme's names of their verdict colours. */
 const HOLDS = { line: /^\s*at-source:/, words: /^✔ 4\/4[^(]*$/, side: "after", colour: "robbdd.holdsForeground" };
 const VIOLATED = { line: /^\s*at-goal:/, words: /^✗ 0\/4[^(]*$/, side: "before", colour: "robbdd.violatedForeground" };
 const RATE = { line: /^\s*Scenario part-to-bin/, words: /^✗ 0\/4 passed$/, side: "after", colour: "robbdd.violatedForeground" };
@@ -31,7 +31,7 @@ const step = story("verdicts", (opened) => {
   workbench = opened.workbench;
 }, {
   prepare: async (workspace) => {
-    // The goal is asked for before the thing can be there.
+    // The goal clause is evaluated before the object can be there.
     const text = await readFile(join(workspace, FILE), "utf8");
     const late = "is located at <goal>, after <evt-place-end>";
     assert.ok(text.includes(late));
@@ -54,7 +54,7 @@ step("verdicts are drawn in the colours of every theme, where they can be read",
   await workbench.codeLens("Rerun 4 failed").waitFor();
 });
 
-step("pointing at a verdict tells of each scenario", async () => {
+step("hovering over a verdict lists each scenario", async () => {
   const hover = workbench.page.locator(".monaco-hover:visible", { hasText: /goal\s=\sleft_ws:\s✔\s\+\d+\smm/ });
   await eventually(async () => {
     const { middle } = await verdictAt(workbench, HOLDS.line, HOLDS.words);
@@ -86,7 +86,7 @@ step("a verdict follows its clause through edits, and fades when the clause itse
   await drawn(RATE, "undone");
 });
 
-step("every editor of a document shows them, and what is out of sight has them when it is scrolled to", async () => {
+step("every editor of a document shows them, also after scrolling", async () => {
   await workbench.page.setViewportSize({ width: 1360, height: 500 });
   await workbench.command("View: Split Editor");
   const editors = [".editor-group-container.active", ".editor-group-container:not(.active)"];
@@ -138,7 +138,7 @@ function drawn({ line, words, side, colour }, name) {
   });
 }
 
-/** Wait until one is drawn as the theme wants what is stale, less in sight than a fresh one. */
+/** Wait until one is drawn as stale in the theme's colour, fainter than a fresh one. */
 function faded({ line, side }, fresh, name) {
   return eventually(async () => {
     const found = await verdictAt(workbench, line, /^✗ 0\/4.* \(stale\)$/);

@@ -1,4 +1,4 @@
-// Where things are: in the checkout, in the cache that setup.sh fills, and where the results go.
+// Paths: the checkout, the cache filled by setup.sh, and the results.
 import { existsSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
@@ -14,7 +14,7 @@ export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 /** How many times slower than this machine's the processor of the window is. */
 export const SLOWDOWN = Number(process.env.ROBBDD_WORKBENCH_SLOWDOWN ?? 1);
 
-/** Return a path, or fail with what makes it. */
+/** Return a path, or fail with the command that creates it. */
 export function required(path, remedy) {
   if (!existsSync(path)) {
     throw new Error(`${path} is not there: ${remedy}`);

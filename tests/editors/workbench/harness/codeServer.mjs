@@ -1,4 +1,4 @@
-// One code-server on loopback with a profile of its own, in a process group of its own.
+// One code-server on loopback with a separate profile and process group.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { createWriteStream } from "node:fs";
@@ -26,7 +26,7 @@ const QUIET = {
   "window.menuBarVisibility": "hidden",
   "window.autoDetectColorScheme": true,
   "editor.minimap.enabled": false,
-  // The tests type exactly what they mean.
+  // Disable automatic edits: the tests type the exact text.
   "editor.autoClosingBrackets": "never",
   "editor.quickSuggestions": { other: "off", comments: "off", strings: "off" },
   "editor.suggestOnTriggerCharacters": false,
@@ -155,7 +155,7 @@ export class CodeServer {
     return child;
   }
 
-  /** Nothing of the user's own environment but what is named here, and no extension gallery. */
+  /** Only the listed variables of the user's environment, and no extension gallery. */
   #environment() {
     const home = join(this.#state, "home");
     return {

@@ -1,4 +1,4 @@
-// Whether what is shown can be read.
+// Measure the contrast of shown text.
 
 /** Contrast of two colours, as CSS says them, as WCAG 2 defines it: from 1 to 21. */
 export function contrast(one, other) {

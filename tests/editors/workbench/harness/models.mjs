@@ -1,4 +1,4 @@
-// Models that stories need beside the examples, made of them; runs of the command line that come before a story.
+// Models derived from the examples for stories; runs of the command line before a story.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 import { mkdir, writeFile } from "node:fs/promises";
@@ -26,7 +26,7 @@ export async function writeEndless(path, text) {
   await writeFile(join(steps, basename(path).replace(".bdd", "_steps.py")), ENDLESS);
 }
 
-/** The pick-and-place example in a namespace of its own, its story and its scenario under other names. */
+/** The pick-and-place example in another namespace, with another story and scenario name. */
 export function renamed(text, namespace, story, scenario) {
   return text
     .replace("https://example.org/robbdd/criteria/", `https://example.org/robbdd/${namespace}/`)

@@ -1,4 +1,4 @@
-// How long a test waits: far longer than a slow machine needs, since what comes sooner costs nothing.
+// Time limits of tests: far longer than a slow machine needs, since early results end the wait.
 import { setTimeout as sleep } from "node:timers/promises";
 
 /** What an answer of the window may take, ms. */

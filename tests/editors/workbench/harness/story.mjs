@@ -1,4 +1,4 @@
-// A story that a test file tells in one session on the examples.
+// A sequence of test steps in one session on the examples.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { EXAMPLES, LANGUAGE_SERVER, required } from "./checkout.mjs";

@@ -1,9 +1,9 @@
-// The verdicts that are drawn beside the text of an editor, in no element of the page.
+// The verdicts drawn in an editor, which are not elements of the page.
 import { PATIENCE } from "./patience.mjs";
 import { EDITOR } from "./workbench.mjs";
 
 /**
- * Wait until a verdict is drawn at a visible line of an editor, and tell how.
+ * Wait until a verdict is drawn at a visible line of an editor, and return its appearance.
  *
  * @param {import("./workbench.mjs").Workbench} workbench
  * @param {RegExp} line what the line reads
@@ -46,7 +46,7 @@ function wanted(editor, line, words) {
   return { editor, line: [line.source, line.flags], words: [words.source, words.flags] };
 }
 
-/** Runs in the page, in one go: the editor may draw its lines anew at any time. */
+/** Runs in the page, in one go: the editor may redraw its lines at any time. */
 function drawnAt({ editor, line, words, none = false }) {
   const [wantedLine, wantedWords] = [new RegExp(...line), new RegExp(...words)];
   for (const drawn of document.querySelectorAll(`${editor} .view-line`)) {

@@ -126,7 +126,7 @@ export class Workbench {
     await this.errors.first().waitFor({ state: "attached" });
   }
 
-  /** Wait until nothing is underlined as an error any more. */
+  /** Wait until no error is underlined. */
   async waitForNoError() {
     await this.errors.first().waitFor({ state: "detached" });
   }
