@@ -211,7 +211,6 @@ def test_an_execution_that_takes_too_long_is_stopped() -> None:
 @pytest.mark.parametrize(
     ("call", "remark"),
     [
-        (pick_place(workspace="env:void_ws"), "nothing in the scene carries env:void_ws"),
         (pick_place(BIN, OTHER_WS), "env:bin1 is 0.190 m wide, the gripper opens 0.080 m"),
         (pick_place("env:cube9"), "there is no env:cube9 in the scene"),
         (
@@ -225,6 +224,11 @@ def test_a_behaviour_that_cannot_be_executed_is_explained(call: Call, remark: st
     assert trace.remark == remark
     assert names(trace)[-1] == "t:end"
     assert "t:place-end" not in names(trace)
+
+
+def test_a_place_that_no_object_carries_is_a_fault_of_the_model() -> None:
+    with pytest.raises(SceneError, match="cannot place at 'env:void_ws': nothing in the scene carries that workspace"):
+        execution([pick_place(workspace="env:void_ws")])
 
 
 def test_an_agent_that_the_scene_lacks_is_explained() -> None:

@@ -1,5 +1,7 @@
 """Rules about the values that a variant gives to its template's variables."""
 
+import pytest
+
 from checks.models import LINES, SETS, check, fixed, found, marked, story
 from kit import EVENTS, MODEL, SCENE, STORY, TEMPLATE
 from robbdd_tools.base.diagnostic import Severity
@@ -193,11 +195,32 @@ SPARE = SCENE.replace("workspace tray_ws }", "workspace tray_ws, workspace shelf
 
 def test_a_value_outside_of_the_scene_is_pointed_out() -> None:
     text = "//- main.bdd\n" + MODEL.replace("<places.tray_ws> }", "<places.shelf_ws> }")
-    text = marked(text, "<«places.shelf_ws»> }", "not-in-scene not in 'bench_scene'")
-    check(text + "//- lab.scene\n" + SPARE)
-    (finding,) = found(text + "//- lab.scene\n" + SPARE)
+    (finding,) = found(text + "//- lab.scene\n" + SPARE, "not-in-scene")
     assert finding.severity is Severity.INFORMATION
+    assert finding.message.startswith("'places.shelf_ws' is not in 'bench_scene'")
     assert finding.related[0].uri.endswith("lab.scene")
+
+
+SHELF = "comp (ns=env) shelf_comp of ws <places.shelf_ws> { "
+
+
+@pytest.mark.parametrize(
+    ("composition", "count"),
+    [
+        ("", 1),
+        (SHELF + "}\n", 1),
+        (SHELF + "obj <furniture.bench> }\n", 0),
+        (SHELF + "ws comp <tray_comp> }\n", 0),
+    ],
+)
+def test_a_workspace_that_no_object_carries_is_a_warning(composition: str, count: int) -> None:
+    scene = SPARE.replace("scene (ns", composition + "scene (ns")
+    if composition:
+        scene = scene.replace("ws comp <bench_comp>", "ws comp <bench_comp> ws comp <shelf_comp>")
+    text = "//- main.bdd\n" + MODEL.replace("<places.tray_ws> }", "<places.shelf_ws>, <places.shelf_ws> }")
+    findings = found(text + "//- lab.scene\n" + scene, "no-region")
+    assert [finding.severity for finding in findings] == [Severity.WARNING] * count
+    assert all(finding.message.startswith("no object of 'bench_scene' carries") for finding in findings)
 
 
 def test_a_set_that_a_variation_names_comes_into_the_scene() -> None:

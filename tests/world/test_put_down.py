@@ -177,3 +177,19 @@ def test_the_surface_is_that_of_the_bin_where_it_stands() -> None:
     simulation = world(bin1=(0.45, 0.6, 0.475))
     assert np.array(places(simulation, BIN_WS))[:, 2].tolist() == [405] * 3
     assert simulation.pose(BIN)[0][2] == pytest.approx(0.475)
+
+
+def test_an_object_without_a_region_carries_a_workspace_above_it() -> None:
+    scene = replace(
+        WITH_TRAY, objects=("env:box", CUBE, "env:bench"), workspaces={"env:on_box": ("env:box",)}, contains={}
+    )
+    simulation = Simulation(build_world(scene, 1))
+    ((carrier, region),) = simulation.world.cast.regions["env:on_box"]
+    box = simulation.world.cast.objects["env:box"]
+    assert carrier == "env:box"
+    assert region.center[2] - region.half[2] == pytest.approx(box.rest_height)
+    assert "env:bench_top" not in simulation.world.cast.regions
+    place = next(targets(simulation, simulation.robots[PANDA], CUBE, "env:on_box"))
+    body = simulation.data.xpos[simulation.model.body("env:box").id]
+    assert hypot(*(place.position[:2] - body[:2])) < 0.05
+    assert place.position[2] == pytest.approx(body[2] + box.rest_height, abs=1e-3)

@@ -91,6 +91,13 @@ def test_a_pose_leads_both_ways_and_goes_before_a_joint() -> None:
     assert door[1] == pytest.approx((HALF, 0.0, -HALF, 0.0))
 
 
+def test_a_body_that_nothing_places_has_no_pose() -> None:
+    staged = instance(link("x:g.arm.foot", (0, 0, 0)))
+    frames = Frames(replace(staged, bodies=(*staged.bodies, Body("x:g.cube", ("x:g.cube.mid",)))), 1)
+    assert frames.pose("x:g.cube", CUBE) is None
+    assert frames.pose("x:g.world", "e") is not None
+
+
 def test_what_no_frame_leads_to_is_an_error_with_its_place() -> None:
     staged = instance(link("x:g.cube.mid", (0, 0, 0), "x:g.shelf.board"))
     with pytest.raises(

@@ -236,6 +236,7 @@ class BehaviourRun:
     def _settle(self) -> None:
         for call in self._calls:
             self._controller(call)
+            self._refuse_nowhere(call)
         refuse_overlaps(self.simulation)
         try:
             self.simulation.settle()
@@ -243,6 +244,13 @@ class BehaviourRun:
                 self._hand_over(self._calls[0])
         except SimulationError as error:
             raise SceneError(f"the scene does not come to rest: {error}") from error
+
+    def _refuse_nowhere(self, call: Call) -> None:
+        """Raise ``SceneError`` if no object carries a place of a behaviour: the model is wrong, not the robot."""
+        places = call.places if "workspace" in call.arguments else ()
+        if places and not self._is_users() and not any(place in self.regions for place in places):
+            one = f"'{places[0]}'" if len(places) == 1 else f"any of {', '.join(places)}"
+            raise SceneError(f"'{call.behaviour}' cannot place at {one}: nothing in the scene carries that workspace")
 
     def _hand_over(self, call: Call) -> None:
         """Put the object to be placed into the gripper before the scenario starts."""

@@ -29,6 +29,7 @@ from robbdd_tools.checks.namespace_iri import namespace_iri
 from robbdd_tools.checks.no_emitter import no_emitter
 from robbdd_tools.checks.no_evaluator import no_evaluator
 from robbdd_tools.checks.no_model import no_model
+from robbdd_tools.checks.no_region import no_region
 from robbdd_tools.checks.no_room import no_room
 from robbdd_tools.checks.no_scenario import no_scenario
 from robbdd_tools.checks.not_in_scene import not_in_scene
@@ -63,6 +64,7 @@ DECLARATION_RULES = (
     many_scenarios,
     missing_value,
     no_emitter,
+    no_region,
     not_in_scene,
     number_range,
     pose,

@@ -15,6 +15,8 @@ from robbdd_tools.catalog.api import ObjectModel, Outline, Region, Shape, ShapeK
 if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray
 
+SPACE = 0.15
+"""Height (m) of the workspace above an object whose file has no site 'workspace'."""
 RIM = 16
 """Points on each rim of a cylinder: the error between them is below 2 % of the radius."""
 
@@ -29,6 +31,20 @@ def bounds_of(shapes: tuple[Shape, ...]) -> tuple[FloatArray, FloatArray]:
     half = np.array([_half(shape) for shape in shapes])
     middle = np.array([shape.position for shape in shapes])
     return np.min(middle - half, axis=0), np.max(middle + half, axis=0)
+
+
+def space_above(low: FloatArray, high: FloatArray) -> Region:
+    """Return the workspace above the top of a bounding box, given by two corners (m, each of shape (3,))."""
+    (x, y, _), (length, width, _) = (low + high) / 2, high - low
+    center = (float(x), float(y), float(high[2]) + SPACE / 2)
+    return Region(center, (float(length) / 2, float(width) / 2, SPACE / 2))
+
+
+def carrying(model: ObjectModel) -> ObjectModel:
+    """Return an object that carries a workspace: the space above it if its model has none of its own."""
+    if model.region is not None or model.parts:
+        return model
+    return replace(model, region=space_above(*bounds_of(model.shapes)))
 
 
 def centred(model: ObjectModel) -> ObjectModel:

@@ -37,7 +37,7 @@ class Frames:
         self._laws = {law.iri: law for law in instance.laws}
 
     def pose(self, iri: str, element: str, attempt: int = 0) -> Transform | None:
-        """Return the pose of a body's own frame in the world, ``None`` for a body without frames.
+        """Return the pose of a body's own frame in the world, ``None`` for a body that no pose or joint places.
 
         The body's own placement is drawn anew for each ``element`` and ``attempt``, that of its supports once. Raises
         ``SceneError`` if no chain of frames connects it to the world or a distribution cannot be sampled.
@@ -45,13 +45,18 @@ class Frames:
         body = self._bodies.get(iri)
         if body is None:
             raise SceneError(f"the body '{_short(iri)}' is not part of a 'kgraph' of the scene")
-        if not body.frames:
+        if not body.frames or not self._is_placed(body):
             return None
         known = self._known(body, f"{element} {attempt}")
         if body.frames[0] not in known:
             where = f"{at(body.origin)}the body '{_short(iri)}' is placed nowhere: no pose or joint leads from"
             raise SceneError(f"{where} '{_short(self._instance.anchor) or 'the world'}' to its frame")
         return known[body.frames[0]]
+
+    def _is_placed(self, body: Body) -> bool:
+        """Return whether a pose or joint says where a body is."""
+        named = {self._instance.anchor, *(frame for link in self._instance.links for frame in (link.frame, link.base))}
+        return not named.isdisjoint(body.frames)
 
     def first_body(self, tree: str) -> str | None:
         """Return the first body of a tree."""

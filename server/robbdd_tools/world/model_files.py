@@ -16,7 +16,7 @@ from robbdd_tools.catalog.api import ObjectModel, Region, Shape, ShapeKind
 from robbdd_tools.user_code.calls import UserCodeError, call_user_code, definition_of, load_attribute, refused
 from robbdd_tools.world.engine import mujoco
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.extent import bounds_of
+from robbdd_tools.world.extent import bounds_of, space_above
 from robbdd_tools.world.frames import at
 
 if TYPE_CHECKING:
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from robbdd_tools.catalog.api import FloatArray, Vector
     from robbdd_tools.catalog.executable import ModelSource
 
-SPACE = 0.15
-"""Height (m) of the workspace above an object whose file has no site 'workspace'."""
 SITE = "workspace"
 ALIGNED = 1e-6
 _KINDS = {
@@ -212,10 +210,7 @@ def _workspace(model: Any, data: Any, own: list[int], body: int, low: FloatArray
             frame = data.xmat[body].reshape(3, 3)
             center = frame.T @ (data.site_xpos[site] - data.xpos[body])
             return Region(_vector(center), _vector(model.site_size[site]))
-    middle, half = (low + high) / 2, (high - low) / 2
-    top = float(high[2])
-    center = (float(middle[0]), float(middle[1]), top + SPACE / 2)
-    return Region(center, (float(half[0]), float(half[1]), SPACE / 2))
+    return space_above(low, high)
 
 
 def _vector(numbers: Any) -> Vector:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.world.errors import SceneError
-from robbdd_tools.world.extent import centred
+from robbdd_tools.world.extent import carrying, centred
 from robbdd_tools.world.scene_configuration import Configured, configure, height_of
 
 if TYPE_CHECKING:
@@ -88,11 +88,11 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
     left_out: list[str] = []
     # Sorted: results must not depend on the order in which a model declares its objects.
     for name in sorted(scene.objects):
-        carrying = any(name in own for own in scene.workspaces.values())
-        model = None if staging is None else staging.object_model(name, carrying)
+        carries = any(name in own for own in scene.workspaces.values())
+        model = None if staging is None else staging.object_model(name, carries)
         model = model or catalog.object_for(local_name(name), scene.sets.get(name, ()))
         if model is not None:
-            objects[name] = model
+            objects[name] = carrying(model) if carries else model
         elif name in scene.unused:
             left_out.append(name)
         else:

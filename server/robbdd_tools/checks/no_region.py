@@ -1,0 +1,80 @@
+"""``no-region``: a workspace that a variant uses, although no object of its scene carries it.
+
+Nothing can be placed or located there, so that a run leaves the scenarios with it unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from robbdd_tools.base.diagnostic import Related, Severity
+from robbdd_tools.checks.finding import finding
+from robbdd_tools.checks.template_variants import scenarios
+from robbdd_tools.names.elements import element_of
+from robbdd_tools.names.types import written_elements
+from robbdd_tools.syntax import tree
+
+if TYPE_CHECKING:
+    from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.names.elements import Site
+
+CODE = "no-region"
+Key = tuple[str, str]
+
+
+def no_region(site: Site) -> Iterator[Diagnostic]:
+    """Report each workspace without an object once per variant, at its first occurrence."""
+    for scenario in scenarios(site):
+        scene = site.follow(scenario.variant.scene)
+        carried = _carried(scene)
+        if carried is None or scene is None:
+            continue
+        reported: set[Key] = set()
+        written = (one for column in scenario.columns for one in column.written)
+        for node, element in (found for one in written for found in written_elements(site, one)):
+            if element.kind != "workspace" or element.key in carried or element.key in reported:
+                continue
+            reported.add(element.key)
+            message = (
+                f"no object of '{scenario.variant.scene.path}' carries '{element.name}', so that scenarios with it "
+                "stay unknown: add a composition of it, with its object, to the scene"
+            )
+            target = site.target(scenario.variant.scene)
+            related = () if target is None else (Related(target.uri, target.span, "the scene"),)
+            yield finding(site, node, Severity.WARNING, CODE, message, related)
+
+
+def _carried(scene: Site | None) -> frozenset[Key] | None:
+    """Return the workspaces of a scene that objects carry; ``None`` if that is not completely known."""
+    root = None if scene is None else scene.tree
+    if scene is None or not isinstance(root, tree.Scene) or not scene.whole(root):
+        return None
+    found: set[Key] = set()
+    for entry in root.entries:
+        if entry.reference.role == "Composition":
+            inner = _composed(scene.follow(entry.reference), frozenset())
+            if inner is None:
+                return None
+            found |= inner
+    return frozenset(found)
+
+
+def _composed(site: Site | None, above: frozenset[Key]) -> set[Key] | None:
+    """Return the carried workspaces of a composition and of those nested in it."""
+    root = None if site is None else site.tree
+    if site is None or not isinstance(root, tree.Composition) or not site.whole(root):
+        return None
+    own = element_of(site, root.workspace)
+    if own is None or own.key in above:
+        return None
+    found: set[Key] = set()
+    for entry in root.entries:
+        if entry.reference.role != "Composition":
+            found.add(own.key)
+            continue
+        inner = _composed(site.follow(entry.reference), above | {own.key})
+        if inner is None:
+            return None
+        found |= inner
+    return found | {own.key} if found else found
