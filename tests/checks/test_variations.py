@@ -257,3 +257,24 @@ def test_a_huge_selection_is_not_counted_out() -> None:
         text = "//- main.bdd\n" + story(lines, SETS.replace("<y>", "<goal>")) + scene
         (finding,) = found(text, "many-scenarios")
         assert "more than 1,000,000,000,000 scenarios" in finding.message
+
+
+@pytest.mark.parametrize(
+    ("selection", "factor"),
+    [
+        ("5 permutations", "95,040"),
+        ("6 combinations", ""),
+        ("6 repeated combinations", "12,376"),
+        ("4 repeated permutations", "20,736"),
+        ("10000 repeated permutations", "very many"),
+        ("20000 repeated permutations", "very many"),
+    ],
+)
+def test_selections_are_counted_by_their_kind(selection: str, factor: str) -> None:
+    scene = "//- lab.scene\n" + SCENE.replace("count: 3", "count: 12")
+    lines = LINES + f"                set var <fetch.goals>: select {selection} from <washers>\n"
+    messages = [
+        one.message
+        for one in found("//- main.bdd\n" + story(lines, SETS.replace("<y>", "<goal>")) + scene, "many-scenarios")
+    ]
+    assert [f"({factor})" in message or f" × {factor})" in message for message in messages] == [True] * bool(factor)

@@ -193,3 +193,13 @@ def test_newer_work_takes_over_between_groups_and_nothing_is_lost() -> None:
     assert before + afterwards == whole.looked_at
     assert found == validate(build_graph(project.snapshot(), MAIN))
     assert len(found) == 60
+
+
+def test_two_nodes_with_one_iri_are_found_in_a_part_as_in_the_whole() -> None:
+    project = Project()
+    project.open(LAB, 0, SCENE)
+    project.open(MAIN, 0, MODEL + TEMPLATE.replace("fetch", "bring").replace("in-tray", "in-t"))
+    snapshot = project.snapshot()
+    whole = validate(build_graph(snapshot, MAIN))
+    assert "duplicate-iri" in [entry.code for entry in whole]
+    assert Validation().run(snapshot, MAIN) == whole
