@@ -110,8 +110,8 @@ class Session:
         path = f"{module.replace('.', '/')}.py"
         if not (self.folder / "src" / path).exists():
             path = f"{path.removesuffix('.py')}/__init__.py"
-        first = _first_line(ast.parse((self.folder / "src" / path).read_text(encoding="utf-8")), function)
-        return f"server/{path}:{first + _changed_line(diff)}"
+        first = first_line(ast.parse((self.folder / "src" / path).read_text(encoding="utf-8")), function)
+        return f"server/{path}:{first + changed_line(diff)}"
 
     def diffs(self, names: Sequence[str]) -> dict[str, str]:
         """Return the changes of mutants as unified diffs of their functions, by name."""
@@ -141,7 +141,7 @@ def sample(names: Sequence[str], size: int | None, seed: int) -> list[str]:
     return list(names) if size is None or size >= len(names) else random.Random(seed).sample(list(names), size)
 
 
-def _first_line(module: ast.Module, function: str) -> int:
+def first_line(module: ast.Module, function: str) -> int:
     """Return the line on which a function begins, which mutmut names ``x_name`` or ``xǁClassǁname``."""
     owner, _, name = function.removeprefix("x").lstrip("ǁ").rpartition("ǁ")
     body = module.body
@@ -153,7 +153,7 @@ def _first_line(module: ast.Module, function: str) -> int:
     return next(found).lineno
 
 
-def _changed_line(diff: str) -> int:
+def changed_line(diff: str) -> int:
     """Return how many lines below the first line of the function the change begins."""
     lines = diff.splitlines()
     hunk = _HUNK.match(lines[0])
