@@ -23,10 +23,15 @@ _ADDRESS = str(_FOLDER / "socket")
 atexit.register(shutil.rmtree, _FOLDER, ignore_errors=True)
 
 
+def forked(code: str) -> list[str]:
+    """Return the command that runs code in a fork."""
+    return launch_command(_ADDRESS, code)
+
+
 def _command(module: str) -> list[str]:
     if not CAN_FORK:
         return [sys.executable, "-m", module]
-    return launch_command(_ADDRESS, f"from {module} import main; raise SystemExit(main())")
+    return forked(f"from {module} import main; raise SystemExit(main())")
 
 
 ROBBDD = _command("robbdd_tools.cli")

@@ -14,6 +14,7 @@ from types import FrameType
 
 LENGTH = struct.Struct("!I")
 STATUS = struct.Struct("!i")
+FORWARDED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def main() -> None:
@@ -28,7 +29,7 @@ def main() -> None:
     def forward(number: int, _: FrameType | None) -> None:
         connection.send(bytes([number]))
 
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in FORWARDED:
         signal.signal(number, forward)
     socket.send_fds(connection, [LENGTH.pack(len(data))], [0, 1, 2, folder])
     connection.sendall(data)
@@ -38,9 +39,11 @@ def main() -> None:
     answer = connection.recv(STATUS.size, socket.MSG_WAITALL)
     status = STATUS.unpack(answer)[0] if len(answer) == STATUS.size else 1
     if status < 0:
-        signal.signal(-status, signal.SIG_DFL)
+        for number in FORWARDED:
+            signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), -status)
     os._exit(status)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -26,12 +26,11 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from unittest.mock import patch
 
+from fork_server.launch import LENGTH, STATUS
 from fork_server.launching import launch_command
 from robbdd_tools.base.interpreter import working_folder
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pickplace"
-LENGTH = struct.Struct("!I")
-STATUS = struct.Struct("!i")
 LOADED = (
     "behave.parser",
     "numpy",
