@@ -265,3 +265,31 @@ def test_a_string_value_reaches_the_scenarios(tmp_path: Path) -> None:
     assert isinstance(variation, Table)
     assert variation.rows[0][-1] == "as fast as possible"
     assert not isinstance(variation.rows[0][-1], Iri)
+
+
+OLDER = """ex:there a bdd:FluentClause ; bdd:clause-of ex:t ; bdd:holds ex:at-place ; bdd:holds-at ex:when-done .
+ex:at-place a bdd:LocatedAtPredicate ; bdd:ref-object ex:thing ; bdd:ref-workspace ex:place .
+ex:when-done a rtime:TimeConstraint, rtime:AfterEventConstraint ; rtime:ref-event ex:done .
+"""
+
+
+@pytest.mark.parametrize("event", ["rtime:ref-event", "rtime:after-event"])
+def test_clauses_with_predicate_and_time_on_nodes_of_their_own_are_clauses(event: str) -> None:
+    begin = FOREIGN.index("ex:there a")
+    newer = FOREIGN[begin : FOREIGN.index("\n\n", begin) + 1]
+    text = FOREIGN.replace(newer, OLDER.replace("rtime:ref-event", event))
+    built = read_graph_file(Document("file:///m.ttl", 1, text))
+    assert [one.message for one in validate(built) if one.severity is Severity.ERROR] == []
+    (older,), (expected,) = (
+        [story.variants[0].template.clauses[1] for story in read_model(parsed).stories]
+        for parsed in (built.graph, parse(FOREIGN, "ttl"))
+    )
+    assert older == expected
+
+
+def test_a_missing_time_of_an_older_clause_is_reported_at_the_clause() -> None:
+    begin = FOREIGN.index("ex:there a")
+    newer = FOREIGN[begin : FOREIGN.index("\n\n", begin) + 1]
+    text = FOREIGN.replace(newer, OLDER.replace("rtime:AfterEventConstraint ; rtime:ref-event ex:done", "ex:Nothing"))
+    messages = [one.message for one in validate(read_graph_file(Document("file:///m.ttl", 1, text)))]
+    assert any(message.startswith("'ex:there'") for message in messages), messages

@@ -13,6 +13,7 @@ import robbdd_tools as robbdd
 from kit import EXAMPLES, corpus
 from robbdd_tools.base.diagnostic import Severity
 from robbdd_tools.workbench.folder import Keeping
+from robbdd_tools.workbench.plan import Choice, Listed, Plan, Selection
 
 pytestmark = pytest.mark.physics
 
@@ -24,6 +25,7 @@ KNOWN_BEFORE = {
     "setting": r"there is no configuration '|cannot be configured: | has no \w+: it applies to ",
     "single-element": r"needs one \w+, not a set of them",
     "no-room": r"there is room for ",
+    "no-region": r"nothing in the scene carries that workspace",
     "execution-fit": r"does not execute '|a distance is between two elements",
     "model-file": r"there is no model file ",
     "python-source": r"No module named |has no attribute ",
@@ -39,11 +41,24 @@ PHYSICAL = (
 """Reasons that only a simulation can find."""
 
 
+def covering(model: robbdd.Model) -> Choice:
+    """Return few scenarios in which each variable has each of its values, by each execution."""
+    seen: set[tuple[str, str, str, str]] = set()
+    listed: list[Listed] = []
+    for spec in model.scenarios().scenarios:
+        execution = "" if spec.execution is None else spec.execution.iri
+        values = {(spec.variant, execution, name, repr(value)) for name, value in spec.values.items()}
+        if spec.repetition == 1 and (not values <= seen or not values):
+            seen |= values
+            listed.append(Listed(spec.variant, frozenset({spec.variation}), execution or None, frozenset({1})))
+    return Choice(listed)
+
+
 def unknown(path: Path) -> dict[str, list[robbdd.Finding]]:
-    """Run the first scenario of each variant; return the reasons of unknown clauses with the model's findings."""
+    """Run scenarios with every value of every variable; return the reasons of unknown clauses with the findings."""
     model = robbdd.load(path)
     found: dict[str, list[robbdd.Finding]] = {}
-    with model.scenarios(first=1).run(seed=1, keeping=Keeping(keep=False)) as run:
+    with Plan.of(model, Selection(choices=[covering(model)])).run(seed=1, keeping=Keeping(keep=False)) as run:
         for result in run:
             for clause in result.clauses:
                 if clause.verdict == "unknown":
@@ -89,6 +104,13 @@ PICKPLACE = {
         "pred('{o} is safe', o=<thing>), after",
         ("", ""),
     ),
+    "no-region": (
+        "pickplace.bdd",
+        "<places.left_ws>",
+        "<places.spare_ws>",
+        ("workspace left_ws", "workspace left_ws, workspace spare_ws"),
+    ),
+    "model-file": ("bench.scenex", 'catalog "bin"', "sys path = 'bucket.xml'", ("", "")),
     "not-simulated": ("pickplace.bddx", 'catalog "pick-place"', 'bhv action: "/a"', ("", "")),
     "execution-fit": ("pickplace.bddx", 'catalog "pick-place"', 'catalog "pick"', ("", "")),
     "python-source": ("pickplace.bddx", "module: policies", "module: policy", ("", "")),

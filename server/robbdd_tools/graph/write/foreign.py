@@ -14,6 +14,7 @@ from robbdd_tools.graph.write.built import BuiltGraph
 from robbdd_tools.graph.write.foreign_imports import graph_format, merge_imports
 from robbdd_tools.graph.write.foreign_namespaces import foreign_namespaces
 from robbdd_tools.graph.write.node_positions import json_occurrences, turtle_occurrences
+from robbdd_tools.graph.write.older_clauses import complete_clauses
 from robbdd_tools.graph.write.source_map import Location, SourceMap, SourceMapBuilder
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ def read_graph_file(document: Document, others: Sequence[Document] = ()) -> Buil
         fault = Diagnostic(uri, Span(error.offset, error.offset), Severity.ERROR, "graph-syntax", str(error))
         return BuiltGraph(uri, Graph(), SourceMap({}), {}, (), (), frozenset(), (fault,), True)
     graph = merged.graph
+    complete_clauses(graph)
     places = graph_places(merged.documents, graph)
     names = node_names(graph)
     faults = (*merged.faults, *foreign_namespaces(document, graph), *_left_out(uri, graph, places, names))
