@@ -6,7 +6,6 @@ limits or variables of the interpreter (``PYTHON…``) starts a real interpreter
 
 from __future__ import annotations
 
-import atexit
 import shutil
 import subprocess
 import sys
@@ -14,13 +13,13 @@ import tempfile
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
+from uuid import uuid4
 
 from fork_server.launching import launch_command
 
 CAN_FORK = sys.platform == "linux"
-_FOLDER = Path(tempfile.mkdtemp(prefix="robbdd-forks-"))
+_FOLDER = Path(tempfile.gettempdir(), f"robbdd-forks-{uuid4().hex[:12]}")
 _ADDRESS = str(_FOLDER / "socket")
-atexit.register(shutil.rmtree, _FOLDER, ignore_errors=True)
 
 
 def forked(code: str) -> list[str]:
@@ -46,13 +45,17 @@ def fork_server() -> Generator[None]:
         return
     command = [sys.executable, "-m", "fork_server.serve", _ADDRESS]
     pipe = subprocess.PIPE
-    # In a separate session: Ctrl-C ends the tests, which end the server.
-    with subprocess.Popen(
-        command, cwd=Path(__file__).parent, stdin=pipe, stdout=pipe, encoding="utf-8", start_new_session=True
-    ) as server:
-        assert server.stdin is not None
-        assert server.stdout is not None
-        assert server.stdout.readline() == "ready\n"
-        yield
-        server.stdin.close()
-    assert server.returncode == 0
+    _FOLDER.mkdir(mode=0o700)  # only we may connect
+    try:
+        # In a session of its own: Ctrl-C ends the tests, which end the server.
+        with subprocess.Popen(
+            command, cwd=Path(__file__).parent, stdin=pipe, stdout=pipe, encoding="utf-8", start_new_session=True
+        ) as server:
+            assert server.stdin is not None
+            assert server.stdout is not None
+            assert server.stdout.readline() == "ready\n"
+            yield
+            server.stdin.close()
+        assert server.returncode == 0
+    finally:
+        shutil.rmtree(_FOLDER)
