@@ -16,10 +16,11 @@ _PART = 65536
 
 
 class BoundedLog:
-    """Copy what is written to ``stream`` to a file; above ``limit`` bytes, keep only the first and the last half.
+    """Copy everything that is written to ``stream`` to a log file of limited size.
 
-    The first half is written immediately, the last half when the write end is closed. A full disk loses the log only.
-    Raises ``OSError`` if the file cannot be created.
+    A log of more than ``limit`` bytes keeps only its first and its last half. The first half is written immediately,
+    the last half when the write end of ``stream`` is closed. If the disk is full, only the log is lost. The constructor
+    raises ``OSError`` if the file cannot be created.
     """
 
     def __init__(self, path: Path, limit: int = LIMIT) -> None:
@@ -33,11 +34,14 @@ class BoundedLog:
         self._thread.start()
 
     def wait(self, seconds: float) -> None:
-        """Wait at most ``seconds`` until the log is complete: an escaped process may still hold the stream open."""
+        """Wait at most ``seconds`` until the log is complete.
+
+        An escaped child process may still hold the stream open.
+        """
         self._thread.join(seconds)
 
     def last_line(self) -> str:
-        """Return the last non-empty line."""
+        """Return the last non-empty line of the log."""
         try:
             lines = load_bytes(self.path, RESULT_SIZE).decode(errors="replace").split("\n")
         except OSError:

@@ -19,9 +19,10 @@ GRACE = 0.5
 
 @dataclass(slots=True, eq=False)
 class AgentWorker:
-    """An agent, its current scenario and the deadline for starting or finishing it.
+    """An agent process, its current scenario, and the deadline for starting or finishing that scenario.
 
-    ``following`` are the scenarios that it executes next because they share the current execution.
+    ``index`` is the number of the current scenario. ``following`` are the numbers of the scenarios that the agent
+    executes next because they share the execution of the current one.
     """
 
     agent: Agent
@@ -36,7 +37,7 @@ class AgentWorker:
     shared_outputs: int = 0
 
     def assign(self, task: Iterable[int]) -> None:
-        """Assign scenarios to execute one after the other."""
+        """Assign scenarios to this agent, which executes them one after the other."""
         self.following = deque(task)
         self.index = index = self.following.popleft()
         self.started = self.failed = False
@@ -45,20 +46,21 @@ class AgentWorker:
         self.agent.execute(index)
 
     def release(self) -> None:
-        """Continue with the following scenario, or mark the worker idle."""
+        """Start the next scenario in ``following``; without one, mark the worker idle."""
         self.index, self.deadline, self.started = None, inf, False
         if self.following:
             self.assign(self.following)
 
     def expire(self) -> None:
-        """End the worker because it missed its deadline."""
+        """Kill the agent because it missed its deadline."""
         self.timed_out, self.deadline = True, inf
         self.agent.kill()
 
     def fault(self, limit: float, spec: ScenarioSpec | None, sources: Mapping[str, str]) -> Fault | None:
-        """Return the error in the user's code that ended the process, if any; see ``Crash.fault``.
+        """Return the error in the user's code that ended the agent process, if any (see ``Crash.fault``).
 
-        ``limit`` is the process's time limit (s), ``spec`` the scenario that it had begun.
+        ``limit`` is the time limit of the process in s. ``spec`` is the scenario that the process had begun.
+        ``sources`` maps copies of files of steps to the originals.
         """
         ended = f"timed out after {limit:g} s" if self.timed_out else f"the process ended with {self.agent.exit()}"
         return self.agent.crash.fault(ended, spec, sources)

@@ -24,9 +24,13 @@ _ESCAPE = re.compile(r"\\(?:x([0-9a-f]{2})|u([0-9a-f]{4})|U([0-9a-f]{8}))")
 
 @dataclass(frozen=True, slots=True)
 class Crash:
-    """State of a process at its end: ``calls`` of its stack, outermost first, and the called user code ``code``.
+    """The user's code that an agent process was executing when it ended.
 
-    ``definition`` is the place of that code. Each is empty if unknown.
+    - ``calls``: the call stack of the process, outermost call first.
+    - ``code``: the name of the called user code.
+    - ``definition``: the place where that code is defined.
+
+    An attribute is empty if it is unknown.
     """
 
     calls: tuple[Frame, ...] = ()
@@ -34,9 +38,10 @@ class Crash:
     definition: tuple[Frame, ...] = ()
 
     def fault(self, message: str, spec: ScenarioSpec | None, sources: Mapping[str, str]) -> Fault | None:
-        """Describe a crash in the user's code; ``None`` if the crash is not known to be there.
+        """Return the crash as an error in the user's code, or ``None`` if the crash is not known to be in that code.
 
-        ``sources`` maps copies of files of steps to the originals, as absolute paths.
+        ``message`` says how the process ended. ``sources`` maps the absolute path of each copied file of steps to the
+        path of the original.
         """
         calls = _from_own(self.calls) or _from_own(self.definition)
         if not (calls or self.code):
@@ -47,7 +52,10 @@ class Crash:
 
 
 def take_crash(base: Path, folder: Path) -> Crash:
-    """Read and delete the crash files of a process that worked in ``folder``; ``base`` is the value of ``CRASH``."""
+    """Read and delete the crash files of an agent process that worked in ``folder``.
+
+    ``base`` is the value of the environment variable ``CRASH``: the path with which the names of the crash files begin.
+    """
     dumped, noted = _take(dump_file(base)), _take(call_file(base))
     code, file, line, *_ = (*noted.decode("utf-8", "replace").split("\0"), "", "", "")
     definition = (_frame(str(folder / file), line),) if line.isdecimal() else ()
@@ -55,7 +63,7 @@ def take_crash(base: Path, folder: Path) -> Crash:
 
 
 def _from_own(frames: tuple[Frame, ...]) -> tuple[Frame, ...]:
-    """Return the calls from the user's first one on, without those of this package."""
+    """Return the calls from the first call into the user's code on, without the calls of this package."""
     kept = (frame for frame in frames if not is_ours(frame.file) and not Path(frame.file).name.startswith("<"))
     return tuple(dropwhile(lambda frame: not frame.own, kept))
 
@@ -71,9 +79,9 @@ def _take(path: Path) -> bytes:
 
 
 def _calls(dump: str, folder: Path) -> Iterator[Frame]:
-    """Yield the calls, innermost first, of the crashed thread, else of the main thread.
+    """Yield the calls of the crashed thread, innermost first. If no thread is marked as crashed, use the main thread.
 
-    Relative file names are relative to ``folder``.
+    Relative file names in the dump are relative to ``folder``.
     """
     threads: list[tuple[str, list[Frame]]] = []
     for line in dump.splitlines():
@@ -88,7 +96,10 @@ def _calls(dump: str, folder: Path) -> Iterator[Frame]:
 
 
 def _existing(folder: Path, file: str) -> str:
-    """Return the path of a file in a dump, which escapes non-ASCII letters as Python does, but no backslashes."""
+    """Return the path of a file that a dump names.
+
+    A dump escapes non-ASCII letters as Python does, but it does not escape backslashes.
+    """
     path = folder / file
     if not path.exists():
         path = folder / _ESCAPE.sub(lambda found: chr(int(found[1] or found[2] or found[3], 16)), file)
@@ -102,7 +113,7 @@ def _frame(file: str, line: str, function: str = "") -> Frame:
 
 
 def _origin(code: str, spec: ScenarioSpec | None) -> str:
-    """Return the IRI of the element that names the code in the model; empty for steps."""
+    """Return the IRI of the element that names the code in the model. It is empty for code of steps."""
     if spec is None:
         return ""
     named: list[tuple[str, str]] = []

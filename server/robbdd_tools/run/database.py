@@ -111,7 +111,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
 
 
 class DatabaseProblem(OSError):
-    """The database cannot be used. ``filename`` is its path, ``strerror`` the reason shown to the user."""
+    """The database cannot be used. ``filename`` is its path, and ``strerror`` is the reason shown to the user."""
 
     def __init__(self, path: Path, reason: str) -> None:
         super().__init__(errno.EIO, reason, str(path))
@@ -148,9 +148,9 @@ def transaction(connection: sqlite3.Connection) -> Generator[None]:
 
 
 def open_database(path: Path, *, durable: bool = True) -> sqlite3.Connection:
-    """Open a database for writing; create and migrate it as needed. Raises ``DatabaseProblem``.
+    """Open a database for writing, and create or migrate it as needed. Raises ``DatabaseProblem``.
 
-    The caller manages transactions (``transaction``). Without ``durable``, commits do not wait for the disk.
+    The caller manages transactions (see ``transaction``). If ``durable`` is false, commits do not wait for the disk.
     """
     if path.exists() and not path.is_file():
         raise DatabaseProblem(path, "is not a regular file")
@@ -171,9 +171,10 @@ def open_database(path: Path, *, durable: bool = True) -> sqlite3.Connection:
 
 
 def read_database(path: Path) -> sqlite3.Connection | None:
-    """Open a database for reading; ``None`` if it is missing or empty. Raises ``DatabaseProblem``.
+    """Open a database for reading; return ``None`` if it is missing or empty. Raises ``DatabaseProblem``.
 
-    A database that cannot be opened in place (read-only folder with a log) is copied into memory.
+    If SQLite cannot open the database in place, because its folder is read-only and it has a log, it is copied into
+    memory.
     """
     if not path.is_file():
         return None
@@ -202,9 +203,9 @@ def move_aside(path: Path) -> Path:
 
 
 def check(connection: sqlite3.Connection, path: Path, pragma: str = "quick_check") -> None:
-    """Check the whole database; raises ``DamagedDatabase`` if it is inconsistent.
+    """Check the whole database. Raises ``DamagedDatabase`` if it is inconsistent.
 
-    The pragma ``integrity_check`` also compares indexes with their tables.
+    ``pragma`` is the SQLite check to run. ``integrity_check`` also compares the indexes with their tables.
     """
     with explained(path):
         (found,) = connection.execute(f"PRAGMA {pragma}(1)").fetchone()
@@ -228,7 +229,7 @@ def inspect(path: Path) -> int:
 
 
 def _connect(path: Path, mode: str) -> sqlite3.Connection:
-    """Connect to an existing database, ``mode`` is ``ro`` or ``rw``."""
+    """Connect to an existing database. ``mode`` is ``ro`` (read only) or ``rw`` (read and write)."""
     connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode={mode}", BUSY, isolation_level=None, uri=True)
     connection.execute("PRAGMA trusted_schema = OFF")
     return connection
@@ -276,7 +277,7 @@ def _in_memory(connection: sqlite3.Connection) -> sqlite3.Connection:
 
 
 def _version(connection: sqlite3.Connection, path: Path) -> int:
-    """Return the schema version, 0 for an empty database. Raises ``DatabaseProblem`` for an unusable one."""
+    """Return the schema version of a database, or 0 if it is empty. Raises ``DatabaseProblem`` if it is unusable."""
     (version,) = connection.execute("PRAGMA user_version").fetchone()
     kinds = {kind for (kind,) in connection.execute("SELECT DISTINCT type FROM sqlite_master")}
     # A view or a trigger would run code of the file's author on every access.

@@ -23,9 +23,10 @@ _MARGIN = re.compile(r" ([+−][\d.]+ [^\s:]+)")
 
 @dataclass(frozen=True, slots=True)
 class ImportedClause:
-    """A clause of an execution, in the order of judgement.
+    """A judged clause of an imported execution.
 
-    ``iri`` is ``None`` if the file does not contain it. ``said`` is the full verdict text, ``margin`` its margin only.
+    ``iri`` is ``None`` if the file does not contain the IRI of the clause. ``said`` is the full text of the verdict,
+    and ``margin`` is the text of the margin alone.
     """
 
     iri: str | None
@@ -37,10 +38,15 @@ class ImportedClause:
 
 @dataclass(frozen=True, slots=True)
 class ImportedScenario:
-    """An execution: number ``variation`` of a variant. ``variant`` is its IRI, or only its name from JUnit XML.
+    """One execution in an imported results file: scenario number ``variation`` of a variant.
 
-    ``model`` is the path of the model file at the place of the run (empty from JUnit XML), ``story`` the story's name.
-    ``execution`` is the name of the ``.bddx`` execution (empty without one); ``seconds`` is wall time, if known.
+    - ``variant``: the IRI of the variant, or only its name if the file is JUnit XML.
+    - ``model``: the path of the model file on the machine of the run; empty if the file is JUnit XML.
+    - ``story``: the name of the story.
+    - ``execution``: the name of the execution in a ``.bddx``; empty if the scenario was run without one.
+    - ``seconds``: the wall time, if known.
+
+    The clauses are in the order in which they were judged.
     """
 
     model: str
@@ -54,7 +60,10 @@ class ImportedScenario:
 
 
 class BrokenResults(Exception):
-    """The text is not a results file. The message is for the user; ``line`` and ``column`` (from 1) say where."""
+    """The text is not a results file.
+
+    The message is for the user. ``line`` and ``column`` (both from 1) are the place of the error in the text.
+    """
 
     def __init__(self, message: str, line: int = 1, column: int = 1) -> None:
         super().__init__(message)
@@ -63,7 +72,10 @@ class BrokenResults(Exception):
 
 
 def read_results(text: str) -> list[ImportedScenario]:
-    """Return the executions of a results file, with or without a byte-order mark; raises ``BrokenResults``."""
+    """Return the executions of a results file. Raises ``BrokenResults``.
+
+    The text may begin with a byte-order mark.
+    """
     text = text.removeprefix("\ufeff")
     return _from_junit(text) if text.lstrip().startswith("<") else _from_json(text)
 
@@ -107,7 +119,7 @@ def _clause(entry: _Reader) -> ImportedClause:
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """A value of a JSON document with its path for messages."""
+    """A value of a JSON document, with its path in the document for error messages."""
 
     path: str
     value: object

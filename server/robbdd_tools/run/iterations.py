@@ -1,4 +1,4 @@
-"""Find the behaviour executions of a clause's iteration of ``for all``."""
+"""Determine which behaviour executions belong to one iteration of a ``for all`` clause."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ def behaviour_scopes(steps: Iterable[Step]) -> list[Scope]:
 
 
 def iterations_of(scope: Scope, behaviours: Sequence[Scope]) -> tuple[int, ...]:
-    """Return the numbers (from 1) of the first and last behaviour in a scope, or in the nearest outer scope with any.
+    """Return the numbers (from 1) of the first and the last behaviour in a scope.
 
-    Returns nothing for a scenario with a single behaviour: all its events belong to it.
+    If the scope contains no behaviour, the nearest outer scope that contains one is used. The result is empty for a
+    scenario with a single behaviour, because all events of the scenario belong to that behaviour.
     """
     if len(behaviours) < 2:
         return ()

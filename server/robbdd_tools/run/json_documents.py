@@ -1,4 +1,7 @@
-"""JSON for displaying stored runs and recorded executions: docs/schemas/runs.schema.json, trace.schema.json."""
+"""Build the JSON documents that display stored runs and recorded executions.
+
+Their schemas are ``docs/schemas/runs.schema.json`` and ``docs/schemas/trace.schema.json``.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ from robbdd_tools.run.stored_results import FAILED, FINISHED
 
 
 class NoTrace(Exception):
-    """There is nothing to show; the message gives the reason."""
+    """There is no trace to show; the message gives the reason."""
 
 
 def summary(run: StoredRun) -> dict[str, Any]:
@@ -36,7 +39,7 @@ def summary(run: StoredRun) -> dict[str, Any]:
 
 
 def scenarios(run: StoredRun) -> Iterator[dict[str, Any]]:
-    """Yield the scenario entries of a run in the list of runs; raises ``NoSuchRun``."""
+    """Yield the scenarios of a run as entries of the JSON list of runs. Raises ``NoSuchRun``."""
     results = run.results()
     finished = finished_in(results)
     for index, (spec, entry) in enumerate(zip(run.manifest().scenarios, results["scenarios"], strict=False)):
@@ -44,7 +47,7 @@ def scenarios(run: StoredRun) -> Iterator[dict[str, Any]]:
 
 
 def traced_variants(run: StoredRun) -> frozenset[str]:
-    """Return the IRIs of the variants with a stored trace; empty for an unreadable run."""
+    """Return the IRIs of the variants that have a stored trace in a run; empty if the run cannot be read."""
     try:
         return frozenset(one["variant"] for one in scenarios(run) if one["trace"])
     except NoSuchRun:
@@ -52,10 +55,11 @@ def traced_variants(run: StoredRun) -> frozenset[str]:
 
 
 def find_trace(store: RunStore, word: str | None, given: Mapping[str, object]) -> tuple[StoredRun, int]:
-    """Find a scenario with a trace in run ``word``, else in the newest run that has one; return run and number.
+    """Find a scenario with a stored trace; return its run and its number. Raises ``NoTrace`` and ``NoSuchRun``.
 
-    ``given`` are fields to match in ``scenarios``. Among several matches, the first violated one wins, else the first.
-    Raises ``NoTrace`` and ``NoSuchRun``.
+    ``word`` names the run. Without a word, the newest run with such a scenario is used. ``given`` are fields that the
+    entry of the scenario (see ``scenarios``) must match. If several scenarios match, the first violated one is
+    returned, or the first one if none is violated.
     """
     runs = list(reversed(store.runs())) if word is None else [store.find(word)]
     for run in runs:
@@ -72,10 +76,10 @@ def find_trace(store: RunStore, word: str | None, given: Mapping[str, object]) -
 
 
 def trace_document(run: StoredRun, index: int) -> dict[str, Any]:
-    """Return the document of a trace; raises ``NoTrace`` and ``NoSuchRun``.
+    """Return the JSON document of a trace. Raises ``NoTrace`` and ``NoSuchRun``.
 
-    It is independent of the current model text: clauses have no ``source`` and no ``stale``, but the sentence of their
-    step as ``written``.
+    The document does not depend on the current text of the model. So its clauses have no ``source`` and no ``stale``;
+    instead, ``written`` holds the sentence of the step.
     """
     specs, document = run.manifest().scenarios, run.results()
     results = document["scenarios"]
@@ -108,7 +112,11 @@ def trace_document(run: StoredRun, index: int) -> dict[str, Any]:
 
 
 def stored_curves(run: StoredRun, index: int) -> Mapping[str, Any]:
-    """Return the curves stored with a trace: duration, remark, events, curves by feature line; raises ``NoTrace``."""
+    """Return the curves that are stored with a trace. Raises ``NoTrace``.
+
+    The result has the duration, the remark and the events of the trace, and the curves of each clause by its feature
+    line.
+    """
     path = curves_file(run.folder, index)
     try:
         return json.loads(load_text(path, RESULT_SIZE))

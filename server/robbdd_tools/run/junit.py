@@ -15,7 +15,10 @@ from robbdd_tools.run.results import RunResults, ScenarioResult
 
 
 def junit(results: RunResults) -> str:
-    """Return the document. A violated clause is a failure, an unknown one an error; ``time`` is wall time in s."""
+    """Return the results as JUnit XML.
+
+    A violated clause is a failure and an unknown clause is an error. ``time`` is the wall time in s.
+    """
     root = ElementTree.Element("testsuites")
     for story, scenarios in groupby(results.scenarios, key=lambda scenario: scenario.spec.story):
         _suite(root, story, list(scenarios), results)
@@ -66,7 +69,7 @@ def _failed(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
 
 
 def _clauses(scenario: ScenarioResult) -> Iterable[tuple[Outcome, str]]:
-    """Yield each clause's outcome and text: sentence, margin, instant, reason."""
+    """Yield the outcome and the text of each clause: its sentence, margin, instant and reason."""
     for clause in scenario.spec.clauses:
         judged = scenario.judged.get(clause.line) or never_judged(
             0, clause.line, "the clause was never judged", Cause.NOT_EXECUTED
@@ -80,5 +83,5 @@ def _wall(scenario: ScenarioResult) -> float:
 
 
 def _lines(words: Iterable[str]) -> str:
-    """Escape characters that XML cannot hold or that control a terminal; keep line breaks."""
+    """Escape the characters that XML cannot contain and those that control a terminal; keep line breaks."""
     return "\n".join(printable(line) for each in words for line in each.split("\n"))

@@ -37,10 +37,10 @@ _numbers = itertools.count(1)
 
 
 class Agent:
-    """One agent process of a run folder; ``number`` names its log.
+    """One agent process of a run folder.
 
-    ``module`` is the module to run, ``arguments`` its arguments after the folder. ``log_limit`` is the number of bytes
-    kept of its output.
+    ``number`` names the log of the process. ``module`` is the Python module to run, and ``arguments`` are its arguments
+    after the run folder. ``log_limit`` is the maximum size of the log in bytes.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class Agent:
         return self._process.pid
 
     def execute(self, index: int) -> None:
-        """Order a scenario. If the agent has ended, ``messages`` ends, too."""
+        """Order the agent to execute the scenario number ``index``. If the agent has ended, ``messages`` ends, too."""
         assert self._process.stdin is not None
         try:
             self._process.stdin.write(encode(Execute(index)) + "\n")
@@ -82,7 +82,10 @@ class Agent:
             pass
 
     def messages(self) -> Iterator[RunMessage]:
-        """Yield messages as they arrive until the process ends; other lines become log messages."""
+        """Yield the agent's messages as they arrive until the process ends.
+
+        A line that is no message becomes a log message.
+        """
         strange = 0
         for line in _lines(cast(BinaryIO, cast(TextIOWrapper, self._process.stdout).buffer)):
             try:
@@ -96,7 +99,7 @@ class Agent:
         self._close()
 
     def _close(self) -> None:
-        """Close the descriptors of an ended process, as this object may live on."""
+        """Close the file descriptors of an ended process, because this object may live longer than the process."""
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 with suppress(OSError):
@@ -108,7 +111,7 @@ class Agent:
             end_group(self._process)
 
     def ending(self) -> str:
-        """Describe how the process ended; used as the reason of its open clauses."""
+        """Describe how the process ended. The text is the reason for the verdicts of the clauses that it left open."""
         self._log.wait(PATIENCE)
         tail = self._log.last_line()
         return f"the agent process ended unexpectedly with {self.exit()}" + (f": {tail}" if tail else "")
@@ -133,14 +136,17 @@ class Agent:
             self._process.wait(max(0.0, seconds))
 
     def _end_leftovers(self) -> None:
-        """Kill child processes that outlive the agent: they may hold the channel and the log open."""
+        """Kill the child processes that outlive the agent, because they may hold the channel and the log open."""
         self._process.wait()
         end_group(self._process)
         end_marked(self._mark)
 
 
 def _decoded(line: str) -> RunMessage:
-    """Return the message of a line; text of other code that precedes it on the same line is split off."""
+    """Return the message that a line contains.
+
+    If other code printed text before it on the same line, split that off.
+    """
     try:
         return decode(line)
     except ValueError:
@@ -151,7 +157,7 @@ def _decoded(line: str) -> RunMessage:
 
 
 def _lines(stream: BinaryIO) -> Iterator[str]:
-    """Yield the non-empty lines of a stream, each cut at the maximum length."""
+    """Yield the non-empty lines of a stream. Each line is cut at the maximum length."""
     while part := stream.readline(LONGEST + 1):
         rest = part
         while len(rest) > LONGEST and not rest.endswith(b"\n"):
@@ -161,7 +167,7 @@ def _lines(stream: BinaryIO) -> Iterator[str]:
 
 
 def stop(agents: Iterable[Agent]) -> None:
-    """Stop processes in parallel; kill those that have not ended after ``PATIENCE``."""
+    """Ask all agent processes to end, and kill those that have not ended after ``PATIENCE`` seconds."""
     stopping = list(agents)
     for agent in stopping:
         agent.terminate()

@@ -1,4 +1,4 @@
-"""List the scenarios of a variant before a run, in the wording of reports and editors."""
+"""List the scenarios of a variant without running them, in the wording of reports and editors."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class ListedClause:
 class ListedScenario:
     """Scenario ``number`` (from 1) of a variant.
 
-    ``varying`` are the values that differ between the variant's scenarios, ``shared`` those that all have, both as
-    text. ``clauses`` are in the order of judgement.
+    ``varying`` are the values that differ between the scenarios of the variant, and ``shared`` are the values that all
+    of them have. Both are texts. ``clauses`` are in the order of judgement.
     """
 
     number: int
@@ -42,7 +42,10 @@ class ListedScenario:
 
 
 def listed_scenarios(model: AcceptanceModel, variant: Iri, first: int, most: int) -> Iterator[ListedScenario]:
-    """Yield at most ``most`` scenarios of a variant, starting at number ``first``; none for an unknown variant."""
+    """Yield at most ``most`` scenarios of a variant, starting at number ``first``.
+
+    An unknown variant yields no scenarios.
+    """
 
     def chosen(found: Variant) -> Iterator[Numbered]:
         end = min(count(found.variation), first - 1 + most)
@@ -58,7 +61,7 @@ def listed_scenarios(model: AcceptanceModel, variant: Iri, first: int, most: int
 
 
 def _varying(variant: Variant) -> frozenset[Iri]:
-    """Return the variables whose value differs between scenarios; compares only the ends of each choice."""
+    """Return the variables whose value differs between the scenarios. Only the ends of each choice are compared."""
     variation = variant.variation
     last = count(variation) - 1
     if last < 1:

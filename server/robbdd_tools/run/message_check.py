@@ -9,9 +9,9 @@ from robbdd_tools.protocol.specs import ScenarioSpec
 
 
 def misfit(message: RunMessage, specs: Sequence[ScenarioSpec], executed: int | None) -> str:
-    """Return why the agent of scenario ``executed`` cannot have sent a message; empty if it can.
+    """Return the reason why the agent of scenario ``executed`` cannot have sent a message.
 
-    ``specs`` are the scenarios of the manifest.
+    The reason is empty if the agent can have sent it. ``specs`` are the scenarios of the manifest.
     """
     index: int | None = getattr(message, "index", None)
     line: int | None = getattr(message, "line", None)

@@ -1,4 +1,4 @@
-"""Reorder the messages of parallel executions into manifest order."""
+"""Put the messages of parallel executions into the order of the manifest."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from robbdd_tools.protocol.messages import RunMessage, ScenarioFinished
 
 
 class OrderedMessages:
-    """Pass on the current scenario's messages immediately; buffer those of later ones until their turn.
+    """Yield the messages of the current scenario immediately, and buffer those of later scenarios until their turn.
 
-    ``turns`` are the numbers of the scenarios, increasing.
+    ``turns`` are the numbers of the scenarios in increasing order.
     """
 
     def __init__(self, turns: Iterable[int]) -> None:
@@ -19,7 +19,7 @@ class OrderedMessages:
         self._kept: dict[int, list[RunMessage]] = {}
 
     def take(self, index: int, message: RunMessage) -> Iterator[RunMessage]:
-        """Take a message of scenario ``index``; yield the messages that are due."""
+        """Accept a message of scenario ``index``; yield all messages that are now due."""
         if not self._turns or index != self._turns[0]:
             self._kept.setdefault(index, []).append(message)
             return
@@ -36,7 +36,7 @@ class OrderedMessages:
         self._kept = {kept: messages for kept, messages in self._kept.items() if kept < index}
 
     def finished(self) -> Iterator[RunMessage]:
-        """Yield the messages of finished scenarios whose turn never came."""
+        """Yield the buffered messages of scenarios that have finished but whose turn never came."""
         for _, messages in sorted(self._kept.items()):
             if isinstance(messages[-1], ScenarioFinished):
                 yield from messages

@@ -1,4 +1,4 @@
-"""Report missing parts of a stored run, as after copying only a part of its store."""
+"""Report the files that a stored run lacks, for example because only a part of its store was copied."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NAMED = 3
 
 
 def missing_parts(run: StoredRun) -> list[str]:
-    """Return the missing parts of a run as sentences; none for a live run. Raises ``NoSuchRun``."""
+    """Return one sentence for each missing part of a run; return none for a live run. Raises ``NoSuchRun``."""
     try:
         finished = finished_executions(run.database, run.number)
     except DatabaseProblem as error:

@@ -19,7 +19,10 @@ class NoPictures(Exception):
 
 
 def back_ends() -> tuple[str, ...]:
-    """Return possible values of ``MUJOCO_GL`` for rendering without a display, best first, or the value already set."""
+    """Return the values of ``MUJOCO_GL`` that can render without a display, best first.
+
+    If ``MUJOCO_GL`` is already set, return only its value.
+    """
     chosen = os.environ.get("MUJOCO_GL")
     if chosen:
         return (chosen,)
@@ -52,17 +55,23 @@ def render_scene(folder: Path, index: int, output: Path) -> None:
 
 
 def render_violations(folder: Path, output: Path) -> int:
-    """Render the moment of every violated clause into a folder and return the count; raises ``NoPictures``."""
+    """Render the moment of every violated clause into a folder; return the number of pictures.
+
+    Raises ``NoPictures``.
+    """
     return len(_render(folder, MOMENTS, output))
 
 
 def render_videos(folder: Path, output: Path) -> int:
-    """Render a video of every scenario of a run and return the count; raises ``NoPictures``."""
+    """Render a video of every scenario of a run into a folder; return the number of videos. Raises ``NoPictures``."""
     return len(_render(folder, VIDEOS, output))
 
 
 def render_thumbnails(folder: Path, output: Path, chosen: Iterable[tuple[int, int]]) -> int:
-    """Render thumbnails of the violations of some clauses (scenario, feature line); raises ``NoPictures``."""
+    """Render thumbnails of the moments at which some clauses are violated. Raises ``NoPictures``.
+
+    ``chosen`` identifies each clause by the number of its scenario and its feature line.
+    """
     return len(_render(folder, THUMBNAILS, output, [f"{index}:{line}" for index, line in chosen]))
 
 

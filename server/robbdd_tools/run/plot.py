@@ -1,4 +1,4 @@
-"""Small SVG plot of a clause's margin over time, with its window and events; suits light and dark themes."""
+"""Draw a clause's margin over time as a small SVG with its time window and events, for light and dark themes."""
 
 from __future__ import annotations
 
@@ -36,9 +36,10 @@ class _Frame:
 
 
 def plot(kept: Mapping[str, Any], line: int, operand: int | None = None) -> str | None:
-    """Return the plot of the clause on a feature line as SVG, ``None`` if there is nothing to plot.
+    """Return the plot of the clause at a feature line as SVG, or ``None`` if there is nothing to plot.
 
-    ``kept`` are the stored curves of a trace. Among several fluents, number ``operand``, the deciding one, is plotted.
+    ``kept`` are the curves that are stored with a trace. If the clause has several fluents, the deciding one, number
+    ``operand``, is plotted.
     """
     parts: Sequence[Mapping[str, Any]] = kept["clauses"].get(str(line), ())
     number = operand or 0

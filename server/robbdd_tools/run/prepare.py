@@ -41,12 +41,16 @@ paths = {FEATURES}
 
 @dataclass(frozen=True, slots=True)
 class RunRequest:
-    """Input of a run: a model, its name in reports, the seed, and the variants (all when ``None``).
+    """The input of a run.
 
-    ``scenarios`` selects scenarios within a variant. If the model has executions, they define the run: each executes
-    its variant's scenarios, with its own seed if it has one; ``executions`` selects among them (all when ``None``).
-    ``repeat`` is the number of repetitions of each scenario (when ``None``, that of the execution, else one); ``only``
-    filters the result.
+    - ``scenarios`` selects scenarios within a variant.
+    - ``executions`` selects among the executions of the model; ``None`` selects all.
+    - ``repeat`` is the number of repetitions of each scenario; ``None`` takes the number from the execution, or 1.
+    - ``only`` filters the scenarios that the other fields select.
+
+    The remaining fields are the model, its name in reports, the seed, and the variants to run (``None`` for all). If
+    the model has executions, they define the run: each one executes the scenarios of its variant, and may set its own
+    seed.
     """
 
     model: AcceptanceModel
@@ -63,22 +67,25 @@ class RunRequest:
         return self.variants is None or variant in self.variants
 
     def stories(self) -> tuple[Story, ...]:
-        """Return the stories that have a variant to run, with those variants only."""
+        """Return the stories with a variant to run; each returned story has only those variants."""
         return _stories(self.model.stories, self.wants)
 
     def chosen_executions(self) -> tuple[Execution, ...]:
-        """Return the executions to run, of the variants to run."""
+        """Return the selected executions whose variants are to be run."""
         chosen = self.model.executions if self.executions is None else self.executions
         return tuple(execution for execution in chosen if self.wants(execution.variant))
 
 
 def prepare(request: RunRequest, folder: Path) -> Manifest:
-    """Write everything that the agent needs into ``folder`` (created if missing); raises ``OSError``."""
+    """Write everything that the agent needs into ``folder``, which is created if it is missing. Raises ``OSError``."""
     return prepare_all([request], request.name, request.seed, folder)
 
 
 def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Path, traces: bool = False) -> Manifest:
-    """Write everything that the agent needs to run several models under one ``name``; raises ``OSError``."""
+    """Write everything that the agent needs to run several models as one run. Raises ``OSError``.
+
+    ``name`` is the name of that run in reports.
+    """
     parts: list[_Part] = []
     sources: dict[str, str] = {}
     for stale in (folder / FEATURES / "steps").glob(OWN_STEPS):
@@ -95,9 +102,9 @@ def prepare_all(requests: Sequence[RunRequest], name: str, seed: int, folder: Pa
 
 
 def copy_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, str]:
-    """Copy the user-written steps of a model (path or URI), if any, into ``folder``. Raises ``OSError``.
+    """Copy the user-written steps of a model into ``folder``; do nothing if it has none. Raises ``OSError``.
 
-    Returns a map of the copy's path in the folder to the original's.
+    ``model`` is a path or a URI. The result maps the path of the copy in the folder to the path of the original.
     """
     path = uri_to_path(model) if model.startswith("file:") else Path(model)
     own = None if path is None else steps_file(path)
@@ -112,10 +119,10 @@ def copy_steps(model: str, folder: Path, name: str = MODEL_STEPS) -> dict[str, s
 def lay_out(
     plan: FeaturePlan, name: str, seed: int, folder: Path, executions: tuple[Execution, ...] = ()
 ) -> Iterator[ScenarioSpec]:
-    """Write features, hooks, steps and manifest into ``folder`` (created if missing); yield each scenario.
+    """Write features, hooks, steps and manifest into ``folder``, and yield each scenario.
 
-    ``name`` is the model's name in reports. Each of the ``executions`` has its own folder of features; none is
-    repeated. Raises ``OSError`` and ``TemplateProblem``.
+    The folder is created if it is missing. ``name`` is the name of the model in reports. Each execution in
+    ``executions`` gets its own folder of features, and none is repeated. Raises ``OSError`` and ``TemplateProblem``.
     """
     return _written(list(_parts(plan, name, seed, executions, FEATURES, 1)), Manifest(name, seed, ()), folder)
 
@@ -131,7 +138,7 @@ def _written(parts: Sequence[_Part], head: Manifest, folder: Path) -> Iterator[S
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """Scenarios that are executed in one way, and the folder of their features in the run folder."""
+    """Scenarios that are executed in the same way, and the folder for their features in the run folder."""
 
     plan: FeaturePlan
     writer: SpecWriter
@@ -140,7 +147,7 @@ class _Part:
     only: Callable[[ScenarioSpec], bool] | None
 
     def specs(self, folder: Path) -> Iterator[ScenarioSpec]:
-        """Write the features below the run folder and yield the scenarios to execute."""
+        """Write the features of this part into the run folder ``folder`` and yield the scenarios to execute."""
         for written in written_scenarios(self.plan, folder / self.folder):
             feature = f"{self.folder}/{written.file.name}"
             for spec in self.writer.specs(feature, written.story.iri, written.scenario, self.repeat):
@@ -172,7 +179,7 @@ def _parts(
 
 
 def _stories(stories: Iterable[Story], wanted: Callable[[Iri], bool]) -> tuple[Story, ...]:
-    """Return the stories that have a wanted variant, with these variants only."""
+    """Return the stories with a wanted variant; each returned story has only its wanted variants."""
     chosen = (only(story, wanted) for story in stories)
     return tuple(story for story in chosen if story.variants)
 

@@ -1,6 +1,6 @@
-"""Write the results of a live run to the database, one transaction per finished execution.
+"""Write the results of a live run to the database, in one transaction for each finished execution.
 
-``Recording.take`` runs before anything shows a result: a result that is shown is committed.
+``Recording.take`` is called before a result is shown. So every result that is shown is already committed.
 """
 
 from __future__ import annotations
@@ -49,11 +49,11 @@ class OtherSimulator(Exception):
 
 
 class Recording:
-    """The database rows of one live run. Every method raises ``DatabaseProblem`` if the database cannot be used.
+    """Writes the database rows of one live run. Every method raises ``DatabaseProblem`` if the database cannot be used.
 
-    Call ``begin`` or ``resume`` first, ``take`` for every message on arrival, then ``end``; call ``close`` in any case.
-    Only one thread may use it at a time. Several processes may record executions of one run: one of them begins it, one
-    ends it, and each takes the messages of its own executions.
+    Call ``begin`` or ``resume`` first, then ``take`` for every message on arrival, then ``end``. Call ``close`` in any
+    case. Only one thread may use the object at a time. Several processes may record executions of the same run: one of
+    them begins it, one of them ends it, and each process takes the messages of its own executions.
     """
 
     def __init__(self, place: StoredRun, manifest: Manifest) -> None:
@@ -66,7 +66,7 @@ class Recording:
         self._connection = open_database(place.database, durable=place.kept)
 
     def begin(self, record: RunRecord, policy: Policy, prepared: str = "") -> None:
-        """Record what is run; ``prepared`` is a digest of the run folder."""
+        """Insert the run into the database. ``prepared`` is a digest of the run folder."""
         self._stops = policy.stop_on_failure
         row = {
             "number": self._place.number,
@@ -106,9 +106,9 @@ class Recording:
         return results
 
     def take(self, message: RunMessage) -> bool:
-        """Store a message; a finished execution is committed on return.
+        """Store a message. If it finishes an execution, that execution is committed on return.
 
-        Returns ``is_new(message)``. Raises ``OtherSimulator`` if a resumed run uses another simulator.
+        Returns ``is_new(message)``. Raises ``OtherSimulator`` if a resumed run uses another simulator than before.
         """
         match message:
             case RunStarted():
@@ -129,18 +129,18 @@ class Recording:
         return self.is_new(message)
 
     def is_new(self, message: RunMessage) -> bool:
-        """Return whether a message is about an execution that was unfinished when the run was resumed."""
+        """Return whether a message is about an execution that was still unfinished when the run was resumed."""
         return getattr(message, "index", None) not in self._done
 
     def forget(self, index: int) -> None:
-        """Delete the execution of a scenario that is executed again."""
+        """Delete the stored execution of a scenario, because the scenario is executed again."""
         with self._writing() as connection:
             connection.execute("DELETE FROM execution WHERE run = ? AND idx = ?", (self._place.number, index))
 
     def end(self, ending: str, *, interrupted: bool = False) -> RunResults:
-        """Record the end of the run and return its results; ``ending`` is the reason for open executions.
+        """Record the end of the run and return its results. Raises ``OSError``.
 
-        Also writes ``run.json`` and ``results.json``. Raises ``OSError``.
+        ``ending`` is the reason for the executions that are still open. Also writes ``run.json`` and ``results.json``.
         """
         number = self._place.number
         with self._writing() as connection:
@@ -242,10 +242,10 @@ class Recording:
 
 
 def pending(results: RunResults, *, stops: bool) -> list[int]:
-    """Return the numbers of the scenarios still to execute for a run to have all results.
+    """Return the numbers of the scenarios that must still be executed to complete a run.
 
-    Scenarios that share an execution are executed together again if one of them is open. If the run ``stops`` at its
-    first failure, scenarios after a known failure are left out.
+    If one of several scenarios that share an execution is open, all of them are executed again. If the run ``stops`` at
+    its first failure, scenarios after a known failure are left out.
     """
     first = first_failure(results) if stops else None
     wanted = [

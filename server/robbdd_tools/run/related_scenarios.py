@@ -1,7 +1,8 @@
-"""Related scenarios: scenarios linked to nodes of one behaviour tree, judged from one execution of it.
+"""Group scenarios that are linked to nodes of the same behaviour tree, so that one execution can judge them all.
 
-Scenarios are related if their variables of equal name have equal values. A scenario that leaves variables open to the
-others (pick an object, wherever it is placed) joins the first group that it fits.
+Scenarios are related if variables of the same name have the same value in all of them. A scenario may leave some of
+these variables open (for example, pick an object, wherever it is placed). It joins the first group whose values agree
+with its own.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ Key = tuple[Iri, Iri | None, int]
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A scenario linked to a node of a behaviour tree by the behaviour in its When."""
+    """A scenario that the behaviour in its ``When`` links to a node of a behaviour tree."""
 
     variant: Variant
     execution: Execution | None
@@ -41,15 +42,15 @@ class Member:
 
     @property
     def key(self) -> Key:
-        """Key of the scenario."""
+        """The key that identifies the scenario."""
         return self.variant.iri, None if self.execution is None else self.execution.iri, self.number
 
 
 @dataclass(slots=True)
 class Group:
-    """Scenarios judged from one execution of a tree, in node order; ``number`` counts from 1.
+    """Scenarios that are judged from one execution of a behaviour tree, in the order of the tree's nodes.
 
-    ``values`` is the union of their values.
+    ``number`` is the number of the group (from 1). ``values`` is the union of the values of its scenarios.
     """
 
     tree: BehaviourTree
@@ -58,20 +59,23 @@ class Group:
     values: dict[Iri, Cell] = field(default_factory=dict[Iri, Cell])
 
     def takes(self, member: Member) -> bool:
-        """Return whether a scenario agrees with the members. A group holds at most one scenario of each variant."""
+        """Return whether a scenario may join the group.
+
+        Its values must agree with those of the members, and no member may be a scenario of the same variant.
+        """
         if any(other.key[:2] == member.key[:2] for other in self.members):
             return False
         return all(self.values.get(name, value) == value for name, value in member.values.items())
 
     def add(self, member: Member) -> None:
-        """Add a scenario."""
+        """Add a scenario and its values to the group."""
         self.members.append(member)
         self.values |= member.values
 
 
 @dataclass(frozen=True, slots=True)
 class Linked:
-    """The behaviour-tree node of a variant; ``is_root`` if the node is the root of its tree."""
+    """A behaviour-tree node that a variant is linked to. ``is_root`` is true if the node is the root of its tree."""
 
     node: Iri
     is_root: bool
@@ -97,11 +101,11 @@ class Relations:
                 self._groups.update((member.key, group) for member in group.members)
 
     def node(self, variant: Variant) -> Linked | None:
-        """Return the node that a variant is linked to, if any."""
+        """Return the behaviour-tree node that a variant is linked to, if any."""
         return self._linked.get(variant.iri)
 
     def group(self, variant: Iri, execution: Iri | None, number: int) -> Group | None:
-        """Return the group of a scenario; ``None`` for one without a behaviour tree."""
+        """Return the group of scenario ``number`` of a variant, or ``None`` if the variant has no behaviour tree."""
         return self._groups.get((variant, execution, number))
 
 
@@ -130,7 +134,7 @@ def _links(model: AcceptanceModel, trees: Mapping[Iri, BehaviourTree]) -> Iterat
 
 @dataclass(frozen=True, slots=True)
 class _Setting:
-    """Data that scenarios must share, besides their values, to be judged from one execution."""
+    """The data, apart from values, that scenarios must have in common to be judged from one execution."""
 
     scene: SceneModel
     implementation: Implementation | None = None
@@ -146,7 +150,7 @@ def _setting(variant: Variant, execution: Execution | None) -> _Setting:
 
 
 def _groups(tree: BehaviourTree, links: Iterable[_Link]) -> list[Group]:
-    """Return the groups of a tree, their members in the order of ``links``."""
+    """Return the groups of a tree. The members of each group are in the order of ``links``."""
     found: list[Group] = []
     by_setting: dict[int, list[Group]] = {}
     for variant, execution, setting, link, node in links:
@@ -167,5 +171,5 @@ def _groups(tree: BehaviourTree, links: Iterable[_Link]) -> list[Group]:
 
 
 def roots_of(tree: BehaviourTree) -> tuple[TreeNode, ...]:
-    """Return the top nodes: the root, or all named nodes if code creates the tree."""
+    """Return the top nodes of a tree: its root or, if code creates the tree, all its named nodes."""
     return tuple(TreeNode(node, "leaf") for node in tree.nodes) if tree.root is None else (tree.root,)

@@ -17,7 +17,7 @@ MINUS = "−"
 
 
 def plain_sentence(text: str) -> str:
-    """Return a step's sentence for display: names without prefix and quotes, without the word ``event``."""
+    """Return a step's sentence for display, without prefixes and quotes of names and without the word ``event``."""
     without_event = text.replace('event "', '"')
     return re.sub(r'"([^"]*)"', lambda match: re.sub(r"'?[\w.-]+:([^,'\]]*)'?", r"\1", match[1]), without_event)
 
@@ -32,7 +32,10 @@ def contact_words(contact: Contact) -> str:
 
 
 def margin(robustness: float | None, unit: str) -> str:
-    """Return a signed margin: metres as millimetres, other units unchanged; empty without a unit."""
+    """Return a margin with its sign and unit; empty if there is no unit.
+
+    A margin in metres is written in millimetres; other units are unchanged.
+    """
     if robustness is None or not unit:
         return ""
     value, shown = (robustness * 1000.0, "mm") if unit == "m" else (robustness, unit)
@@ -41,7 +44,7 @@ def margin(robustness: float | None, unit: str) -> str:
 
 
 def deciding_words(clause: ClauseSpec, judged: ClauseJudged) -> str:
-    """Return the text of the deciding fluent; empty for a clause with one fluent."""
+    """Return a text that names the fluent that decided the verdict; empty if the clause has only one fluent."""
     statement = clause.statement
     if judged.operand is None or not isinstance(statement, Junction):
         return ""
@@ -52,7 +55,10 @@ def deciding_words(clause: ClauseSpec, judged: ClauseJudged) -> str:
 
 
 def verdict_words(judged: ClauseJudged, clause: ClauseSpec | None = None) -> str:
-    """Return sign and margin of a judged clause; for a violated one also the deciding fluent and the reason."""
+    """Return the verdict of a clause as text: its sign and its margin.
+
+    The text of a violated clause also has the deciding fluent and the reason.
+    """
     outcome = Outcome(judged.verdict)
     parts = [SIGNS[outcome]]
     shown = margin(judged.robustness, judged.unit)
@@ -67,12 +73,12 @@ def verdict_words(judged: ClauseJudged, clause: ClauseSpec | None = None) -> str
 
 
 def values_words(spec: ScenarioSpec) -> str:
-    """Return a scenario's values: ``thing = cube0, goal = left_ws``."""
+    """Return the values of a scenario as text, for example ``thing = cube0, goal = left_ws``."""
     return ", ".join(value_words(name, value) for name, value in spec.values.items())
 
 
 def value_words(name: str, value: object) -> str:
-    """Return a variable and its value, both given with prefix: ``thing = cube0``."""
+    """Return a variable and its value as text, for example ``thing = cube0``. Both are given with their prefix."""
     return f"{_variable(name)} = {_local(value)}"
 
 

@@ -25,7 +25,7 @@ from robbdd_tools.run.vacuous_clauses import Vacuity
 
 @dataclass(slots=True)
 class ScenarioResult:
-    """Verdicts of one scenario so far, by feature line."""
+    """The verdicts that one scenario has so far, by feature line."""
 
     spec: ScenarioSpec
     judged: dict[int, ClauseJudged] = field(default_factory=dict[int, ClauseJudged])
@@ -35,7 +35,7 @@ class ScenarioResult:
 
     @property
     def verdict(self) -> Outcome:
-        """Violated if any clause is, else unknown if any is, else holds."""
+        """The verdict: violated if any clause is violated, else unknown if any clause is unknown, else holds."""
         outcomes = {self.judged[c.line].verdict if c.line in self.judged else "unknown" for c in self.spec.clauses}
         if Outcome.VIOLATED in outcomes:
             return Outcome.VIOLATED
@@ -44,9 +44,9 @@ class ScenarioResult:
 
 @dataclass(slots=True)
 class RunResults:
-    """All known results of a run; ``apply`` takes its messages in order of arrival.
+    """All results of a run that are known so far. Pass its messages to ``apply`` in the order of arrival.
 
-    ``ending`` is the reason for open scenarios, ``cause`` the type of that reason.
+    ``ending`` is the reason why scenarios are open, and ``cause`` is the type of that reason.
     """
 
     manifest: Manifest
@@ -64,7 +64,7 @@ class RunResults:
         self.scenarios = [ScenarioResult(spec) for spec in self.manifest.scenarios]
 
     def apply(self, message: RunMessage) -> None:
-        """Apply a message."""
+        """Update the results with a message."""
         match message:
             case ClauseJudged():
                 self.scenarios[message.index].judged[message.line] = message
@@ -86,7 +86,7 @@ class RunResults:
                 pass
 
     def close(self, reason: str, cause: Cause = Cause.NOT_EXECUTED) -> list[ClauseJudged]:
-        """Judge every open clause *unknown* for ``reason``; return these judgements."""
+        """Set the verdict of every open clause to *unknown* with the given reason; return these judgements."""
         self.ending, self.cause = reason, cause
         closing = [
             never_judged(index, clause.line, reason, cause)
@@ -106,7 +106,7 @@ class RunResults:
                 scenario.printed = ""
 
     def faults_of(self, scenario: ScenarioResult) -> list[Fault]:
-        """Return the errors in users' code that left clauses of a scenario unknown, each once."""
+        """Return the distinct errors in users' code that left clauses of a scenario unknown."""
         named = dict.fromkeys(one.fault for one in scenario.judged.values())
         found = [self.faults[name] for name in named if name in self.faults]
         if scenario.finished is None:
@@ -114,18 +114,18 @@ class RunResults:
         return found
 
     def vacuous(self) -> Mapping[str, str]:
-        """Return, by clause IRI, why a clause could not have failed in this run."""
+        """Map the IRI of each clause that could not have failed in this run to the reason."""
         return self._vacuity.reasons()
 
     def _clause(self, index: int, line: int) -> ClauseSpec:
         return next(clause for clause in self.scenarios[index].spec.clauses if clause.line == line)
 
     def count(self, outcome: Outcome) -> int:
-        """Return the number of scenarios with a verdict."""
+        """Return the number of scenarios whose verdict is ``outcome``."""
         return sum(scenario.verdict is outcome for scenario in self.scenarios)
 
     def as_json(self) -> dict[str, Any]:
-        """Return the document of ``docs/schemas/run.schema.json``."""
+        """Return the results as a document that follows ``docs/schemas/run.schema.json``."""
         return {
             "seed": self.manifest.seed,
             "model": self.manifest.model,
@@ -136,7 +136,7 @@ class RunResults:
         }
 
     def scenario_json(self, index: int) -> dict[str, Any]:
-        """Return one entry of ``scenarios`` in that document."""
+        """Return the entry of one scenario in the list ``scenarios`` of the document of ``as_json``."""
         return _scenario(self.scenarios[index], self.vacuous())
 
     def _scenarios(self) -> Iterable[dict[str, Any]]:
@@ -145,7 +145,7 @@ class RunResults:
 
 
 def finished_in(document: Mapping[str, Any]) -> frozenset[int]:
-    """Return the numbers of the finished scenarios in a results document."""
+    """Return the numbers of the scenarios that a results document lists as finished."""
     return frozenset(i for i, entry in enumerate(document["scenarios"]) if entry.get("duration") is not None)
 
 
@@ -174,7 +174,7 @@ def _scenario(scenario: ScenarioResult, vacuous: Mapping[str, str]) -> dict[str,
 
 
 def _shared(tree: TreeSpec, node: str) -> dict[str, Any]:
-    """Return the behaviour-tree execution from which a scenario and its related scenarios were judged."""
+    """Return JSON that names the behaviour-tree execution from which a scenario was judged, and the scenario's node."""
     return {"execution": tree.name, "tree": tree.tree, "node": node}
 
 

@@ -43,7 +43,7 @@ Values = Mapping[Iri, Cell]
 
 @dataclass(frozen=True, slots=True)
 class _Shared:
-    """Data that all scenarios of a variant have in common."""
+    """The data that all scenarios of a variant have in common."""
 
     clauses: tuple[Clause, ...]
     objects: tuple[Iri, ...]
@@ -53,9 +53,10 @@ class _Shared:
 
 
 class SpecWriter:
-    """Build the scenario specifications of one model, for ``execution`` if there is one.
+    """Builds the scenario specifications of one model, for the given ``execution`` if there is one.
 
-    ``relations`` cover the whole model, so that a scenario's specification does not depend on the selection.
+    ``relations`` must cover the whole model, so that the specification of a scenario does not depend on which scenarios
+    are selected.
     """
 
     def __init__(
@@ -112,7 +113,10 @@ class SpecWriter:
         return replace(observation, targets=tuple(map(self._curie, observation.targets)), mapped=mapped)
 
     def specs(self, feature: str, story: Iri, scenario: ScenarioText, repeat: int = 1) -> Iterator[ScenarioSpec]:
-        """Yield the repetitions of a feature's scenario; ``feature`` is a path relative to the run folder."""
+        """Yield one specification for each repetition of a scenario in a feature.
+
+        ``feature`` is the path of the feature relative to the run folder.
+        """
         first = self._spec(feature, story, scenario)
         execution = None if self.execution is None else Iri(self.execution.iri)
         for repetition in range(1, repeat + 1):
@@ -211,7 +215,7 @@ class SpecWriter:
         )
 
     def _used(self, shared: _Shared, extra: tuple[Iri, ...]) -> set[str]:
-        """Return the elements used by values and clauses, and the objects that carry workspaces among them."""
+        """Return the elements that values and clauses use, and those objects among them that carry workspaces."""
         named = [iri for name in used_names(shared.clauses) for iri in (name, *self._model.sets.get(name, ()))]
         used = {self._curie(str(name)) for name in (*extra, *named)}
         waiting = [name for name in used if name in shared.workspaces or name in shared.contains]
@@ -227,7 +231,7 @@ class SpecWriter:
         return tuple(self._curie(element) for element in dict.fromkeys((*own, *added)))
 
     def _config(self, fluent: Fluent, values: Values) -> Iterator[ConfigSpec]:
-        """Yield the set-up that a clause requires of elements; values are in feature-text form."""
+        """Yield the configuration of elements that a clause requires. ``values`` are written as in the feature text."""
         target, value = (_value(fluent.arguments[slot], values) for slot in ("target", "value"))
         for element in target if isinstance(target, tuple) else (target,):
             yield ConfigSpec(self._word(element), fluent.arguments["name"], self._word(value))
@@ -239,7 +243,10 @@ class SpecWriter:
 
 
 def _givens(model: AcceptanceModel, clauses: tuple[Clause, ...], values: Values) -> Iterator[tuple[Fluent, Values]]:
-    """Yield the unconditional Given fluents: a world that contradicts them from the start would test nothing."""
+    """Yield the unconditional fluents of ``Given``.
+
+    If the world contradicts one of them from the start, the scenario would test nothing.
+    """
     for clause in clauses:
         match clause:
             case Fluent(role="given"):
@@ -261,9 +268,10 @@ def _value(term: Iri | str, values: Values) -> Cell:
 def _events(variant: Variant, linked: Linked | None) -> dict[Iri, str]:
     """Map each event of the model to its emitter.
 
-    The template's duration is emitted by the execution, a behaviour's duration by its first and last event. Any other
-    event is the behaviour event that the model states (``emits``), else the one of the same name (``inner_event``). In
-    a scenario ``linked`` to a node of a behaviour tree, the node emits the duration, unless it is the root.
+    The execution emits the events of the template's duration. A behaviour's duration is emitted by the behaviour's
+    first and last event. For any other event, the emitter is the behaviour event that the model states (``emits``), or
+    the behaviour event with the same name (``inner_event``). In a scenario that is ``linked`` to a node of a behaviour
+    tree, that node emits the duration, unless it is the root.
     """
     template = variant.template
     bound = {template.start: "scenario-start", template.end: "scenario-end"}

@@ -1,7 +1,7 @@
 """Distribute the scenarios of a run folder over several agent processes.
 
-Standard library only: existing process pools neither replace a hanging worker nor report which task killed a worker,
-and both are needed here.
+This module uses the standard library only. Existing process pools neither replace a hanging worker nor report which
+task killed a worker, and both are needed here.
 """
 
 from __future__ import annotations
@@ -52,9 +52,10 @@ STOPPED = "not executed: the run was stopped at the first failure"
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """Run policy: number of parallel processes, wall time per scenario (s), whether the first failure ends the run.
+    """The policy of a run.
 
-    ``log_limit`` is the number of bytes kept of each process's output.
+    It has the number of parallel processes, the wall time for each scenario in s, whether the first failure ends the
+    run, and ``log_limit``, the maximum size of each process's log in bytes.
     """
 
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
@@ -64,14 +65,14 @@ class Policy:
 
     @classmethod
     def of(cls, *, jobs: int | None = None, timeout: float | None = None, stop_on_failure: bool = False) -> Self:
-        """Return a policy with the defaults for ``None``."""
+        """Return a policy in which every argument that is ``None`` has its default value."""
         policy = cls(stop_on_failure=stop_on_failure)
         policy = policy if jobs is None else replace(policy, jobs=jobs)
         return policy if timeout is None else replace(policy, timeout=timeout)
 
 
 def _tasks(manifest: Manifest, indices: Iterable[int]) -> Iterator[tuple[int, ...]]:
-    """Group the scenarios that share an execution; each group has the position of its first scenario."""
+    """Group the scenarios that share an execution. A group has the position of its first scenario."""
     together: dict[int | str, list[int]] = {}
     for index in indices:
         tree = manifest.scenarios[index].tree
@@ -91,14 +92,19 @@ def ignore_event(_: RunMessage) -> None:
 
 
 class Scheduler:
-    """Executes the scenarios of a prepared run folder.
+    """Executes the scenarios of a prepared run folder in several processes.
 
-    One thread consumes ``messages``; ``cancel`` may be called from any thread and from a signal handler. ``watch`` is
-    called with every message on arrival. ``messages`` yields them in manifest order, so that their order does not
-    depend on the number of processes. ``ending`` is the reason for open scenarios. ``indices`` are the scenarios to
-    execute, increasing; all when ``None``. Scenarios that share an execution go to one process, one after the other.
-    ``execute`` instead executes single scenarios in any order; the processes stay until ``close``. ``first_agent`` is
-    the number of the first process, which names its log.
+    - ``messages`` yields the messages in the order of the manifest, whatever the number of processes. One thread
+      consumes it.
+    - ``cancel`` may be called from any thread and from a signal handler.
+    - ``watch`` is called with every message on arrival.
+    - ``ending`` is the reason why scenarios are open.
+    - ``indices`` are the numbers of the scenarios to execute in increasing order; ``None`` executes all.
+    - ``first_agent`` is the number of the first process. The numbers name the logs.
+
+    Scenarios that share an execution are sent to the same process, one after the other. Instead of calling
+    ``messages``, a caller can execute single scenarios in any order with ``execute``; the processes then stay alive
+    until ``close``.
     """
 
     def __init__(
@@ -131,7 +137,7 @@ class Scheduler:
 
     @property
     def busy(self) -> dict[int, int]:
-        """Process number → number of its current scenario."""
+        """The number of the current scenario of each busy process, by the number of the process."""
         return {w.agent.pid: w.index for w in list(self._workers) if w.index is not None and w.started}
 
     def cancel(self) -> None:
@@ -140,10 +146,9 @@ class Scheduler:
         self._events.put(None)
 
     def execute(self, index: int) -> Iterator[RunMessage]:
-        """Execute one scenario and yield its messages.
+        """Execute one scenario and yield its messages. Raises ``OSError``.
 
-        If they end without ``ScenarioFinished``, the scenario is unfinished and ``ending`` is the reason. Raises
-        ``OSError``.
+        If the messages end without ``ScenarioFinished``, the scenario is unfinished and ``ending`` is the reason.
         """
         self._order = OrderedMessages([index])
         self._waiting.clear()
@@ -210,9 +215,9 @@ class Scheduler:
         self._events.put((worker, None))
 
     def _next_event(self) -> Event | None:
-        """Wait for a message or the next deadline; a worker that misses its deadline is ended.
+        """Wait for the next message or deadline. A worker that misses its deadline is killed.
 
-        A constant stream of messages does not extend a deadline.
+        Deadlines expire even while messages arrive constantly.
         """
         first = min(self._workers, key=lambda worker: worker.deadline)
         left = first.deadline - monotonic()
@@ -224,7 +229,10 @@ class Scheduler:
             return None
 
     def _take(self, worker: AgentWorker, message: RunMessage | None) -> Iterator[RunMessage]:
-        """Handle a worker's message or its end (``None``); a misfit is logged."""
+        """Handle a message of a worker, or its end if ``message`` is ``None``.
+
+        A message that the worker cannot have sent is logged and ignored.
+        """
         problem = "" if message is None else self._misfit(worker, message)
         if problem:
             message = LogLine("warning", problem)
@@ -270,7 +278,7 @@ class Scheduler:
                 yield from self._finish(worker, message)
 
     def _misfit(self, worker: AgentWorker, message: RunMessage) -> str:
-        """Return why a process cannot have sent a message; empty if it can."""
+        """Return the reason why a worker cannot have sent a message; empty if it can have sent it."""
         match message:
             case ClauseJudged(line=line) if line in worker.judged:
                 return f"ignored another verdict on the clause of line {line}"
@@ -283,7 +291,7 @@ class Scheduler:
 
     @property
     def _limit(self) -> float:
-        """Seconds of wall time that a scenario may take."""
+        """The wall time in s that a scenario may take."""
         return self._policy.timeout or inf
 
     def _finish(self, worker: AgentWorker, message: ScenarioFinished) -> Iterator[RunMessage]:
@@ -293,7 +301,10 @@ class Scheduler:
         worker.release()
 
     def _stop_after(self, index: int) -> None:
-        """Skip scenarios after ``index``; earlier ones continue, so that the outcome does not depend on timing."""
+        """Skip the scenarios after number ``index``.
+
+        Earlier scenarios continue, so that the outcome of the run does not depend on timing.
+        """
         if index != self._indices[-1]:
             self.ending, self._stopped = STOPPED, True
         self._waiting = deque(earlier for task in self._waiting if (earlier := _before(index, task)))
@@ -305,7 +316,10 @@ class Scheduler:
         stop(worker.agent for worker in beyond)
 
     def _close_ended(self, worker: AgentWorker) -> Iterator[RunMessage]:
-        """Close the clauses that a process left open, or requeue its scenarios if it had not started them."""
+        """Handle a process that has ended.
+
+        The clauses of a scenario that it had started are closed. Scenarios that it had not started are queued again.
+        """
         if worker.index is None:
             return
         spec = self._specs[worker.index]

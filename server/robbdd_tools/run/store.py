@@ -1,9 +1,9 @@
 """Store of numbered run folders in the project, ``.robbdd/runs/<n>/``, with one database of results.
 
-A stored run is the run folder (features, manifest, logs, moments, traces) with ``run.json``, which records what was
-run, and rows in ``results.sqlite`` next to the folder ``runs``. A run in a folder of its own has its database inside.
-``results.json`` is generated from the database when a run ends. Earlier versions wrote only this file; it is still
-read.
+A stored run consists of the run folder (features, manifest, logs, moments, traces) and of rows in ``results.sqlite``,
+which is next to the folder ``runs``. The file ``run.json`` in the run folder records the input of the run. A run in a
+folder of its own has its database inside that folder. When a run ends, ``results.json`` is generated from the database.
+Earlier versions wrote only ``results.json``, so this file can still be read.
 """
 
 from __future__ import annotations
@@ -54,18 +54,21 @@ PATIENCE = 30.0
 
 
 class NoSuchRun(RobbddError):
-    """The run does not exist or cannot be read; the message lists the existing runs or gives the reason."""
+    """The run does not exist or cannot be read. The message lists the existing runs or gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """Subject of a run: the model and a digest of its graph.
+    """The subject of a run: the model and a digest of its graph.
 
-    ``path`` is the model's path relative to the project's root, ``origin`` relative to the run folder; ``version`` is
-    that of this package, ``simulator`` that of the engine. ``files`` are digests of the other used files, by their
-    paths relative to the run folder. ``user_seed`` is the seed given by the user, ``None`` without one: then a model's
-    executions have their own seeds. ``models`` are the paths of the models relative to the run folder if they are not
-    all in the file ``path``; ``path`` is then their common folder.
+    - ``path``: the path of the model relative to the project's root.
+    - ``origin``: the path of the model relative to the run folder.
+    - ``version``: the version of this package.
+    - ``simulator``: the version of the simulator.
+    - ``files``: digests of the other files that the run uses, by their paths relative to the run folder.
+    - ``user_seed``: the seed given by the user. If it is ``None``, the executions of the model have their own seeds.
+    - ``models``: the paths of the models relative to the run folder, unless all of them are in the file ``path``. In
+      this case, ``path`` is their common folder.
     """
 
     path: str
@@ -81,10 +84,12 @@ class RunRecord:
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A run folder; ``number`` is its number in ``database``, 0 for a folder outside a store.
+    """A run folder.
 
-    A ``kept`` run is never pruned. ``lock`` is set while this process executes it; ``remark`` is a note on its store
-    for the user.
+    - ``number``: the number of the run in ``database``; 0 for a folder outside a store.
+    - ``kept``: true if the run is never removed automatically.
+    - ``lock``: set while this process executes the run.
+    - ``remark``: a note for the user about the store of the run.
     """
 
     number: int
@@ -96,16 +101,16 @@ class StoredRun:
 
     @property
     def is_live(self) -> bool:
-        """Whether a process is executing it."""
+        """Whether a process is executing the run."""
         return is_held(self.folder / LOCK)
 
     @property
     def began(self) -> bool:
-        """Whether its record has been written."""
+        """Whether the record of the run has been written."""
         return (self.folder / RECORD).is_file()
 
     def record(self) -> RunRecord:
-        """Return its record; raises ``NoSuchRun``."""
+        """Return the record of the run. Raises ``NoSuchRun``."""
         fields = self._json(RECORD)
         try:
             found = RunRecord(**fields)
@@ -114,7 +119,7 @@ class StoredRun:
             raise NoSuchRun(f"{self.folder / RECORD} is not the record of a run") from None
 
     def status(self) -> RunStatus:
-        """Return its progress; raises ``NoSuchRun``."""
+        """Return the progress of the run. Raises ``NoSuchRun``."""
         # Check the lock first: a run that ends in between has its final state in the database.
         live = self.is_live
         try:
@@ -124,7 +129,7 @@ class StoredRun:
         return self._kept_status() if found is None else found
 
     def results(self) -> Mapping[str, Any]:
-        """Return the document of ``docs/schemas/run.schema.json``; raises ``NoSuchRun``."""
+        """Return the results as a document that follows ``docs/schemas/run.schema.json``. Raises ``NoSuchRun``."""
         try:
             found = self.read_results()
         except DatabaseProblem as error:
@@ -132,25 +137,28 @@ class StoredRun:
         return self._kept_results() if found is None else found.as_json()
 
     def read_results(self) -> RunResults | None:
-        """Return its results, ``None`` if the database has none; raises ``NoSuchRun`` and ``DatabaseProblem``."""
+        """Return the results of the run, or ``None`` if the database has none.
+
+        Raises ``NoSuchRun`` and ``DatabaseProblem``.
+        """
         live = self.is_live
         if read_status(self.database, self.number, live=live) is None:
             return None
         return read_results(self.database, self.number, self.manifest(), live=live)
 
     def manifest(self) -> Manifest:
-        """Return the agent's manifest; raises ``NoSuchRun``."""
+        """Return the manifest that the agent reads. Raises ``NoSuchRun``."""
         try:
             return read_manifest(self.folder)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise NoSuchRun(f"{self.folder} holds no run: {error}") from error
 
     def model(self) -> Path:
-        """Return the file or folder that was run, which may no longer exist; raises ``NoSuchRun``."""
+        """Return the path of the file or folder that was run; it may no longer exist. Raises ``NoSuchRun``."""
         return (self.folder / self.record().origin).resolve()
 
     def models(self) -> list[Path]:
-        """Return the files and folders that were run, which may no longer exist; raises ``NoSuchRun``."""
+        """Return the paths of the files and folders that were run; they may no longer exist. Raises ``NoSuchRun``."""
         return [(self.folder / model).resolve() for model in self.record().models] or [self.model()]
 
     def write_record(self, record: RunRecord) -> None:
@@ -162,13 +170,13 @@ class StoredRun:
         _write(self.folder / RESULTS, results)
 
     def discard(self) -> None:
-        """Remove the folder of a run that never began."""
+        """Remove the folder, because the run never began."""
         if self.lock is not None:
             self.lock.release()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _kept_status(self, problem: str = "") -> RunStatus:
-        """Return the status from the results file alone."""
+        """Return the status of the run according to ``results.json`` alone."""
         results = self._kept_results(problem)
         scenarios: list[Mapping[str, Any]] = results.get("scenarios", [])
         counts = Counter(entry["verdict"] for entry in scenarios if entry.get("duration") is not None)
@@ -176,7 +184,11 @@ class StoredRun:
         return RunStatus(state, results.get("ending", ""), len(scenarios), counts)
 
     def _kept_results(self, problem: str = "") -> Mapping[str, Any]:
-        """Return the results file's document; raises ``NoSuchRun`` with ``problem`` or what is missing."""
+        """Return the document in ``results.json``.
+
+        If the file cannot be read, raises ``NoSuchRun`` with the message ``problem``. Without a ``problem``, the
+        message names the missing part.
+        """
         try:
             return self._json(RESULTS)
         except NoSuchRun as error:
@@ -208,7 +220,7 @@ def run_in(folder: Path, *, kept: bool = True) -> StoredRun:
 
 
 def begin_in(folder: Path, *, kept: bool = True) -> StoredRun:
-    """Create a folder for a single run and remove the contents of an earlier one; raises ``OSError``."""
+    """Create a folder for a single run, and remove the contents of an earlier run in it. Raises ``OSError``."""
     folder.mkdir(parents=True, exist_ok=True)
     run = run_in(folder, kept=kept)
     lock = acquire(folder / LOCK)
@@ -236,7 +248,10 @@ class RunStore:
         return [self._run(number) for number in sorted(found)]
 
     def begin(self) -> StoredRun:
-        """Create the folder of a new run and remove the oldest ones beyond ``KEPT``; raises ``OSError``."""
+        """Create the folder of a new run. Raises ``OSError``.
+
+        If the store has more than ``KEPT`` runs, the oldest ones are removed.
+        """
         self.folder.mkdir(parents=True, exist_ok=True)
         ignore = self.database.parent / ".gitignore"
         if not ignore.exists():
@@ -256,7 +271,7 @@ class RunStore:
             guard.release()
 
     def find(self, word: str) -> StoredRun:
-        """Return a run by its number, ``latest``, or its folder; raises ``NoSuchRun``."""
+        """Return the run that ``word`` names by its number, by ``latest`` or by its folder. Raises ``NoSuchRun``."""
         runs = self.runs()
         if word == LATEST and runs:
             return runs[-1]
@@ -282,7 +297,10 @@ class RunStore:
         return {int(entry.name): None for entry in entries if entry.name.isdecimal() and entry.is_dir()}
 
     def _prune(self, runs: Iterable[StoredRun]) -> None:
-        """Remove the oldest runs; completed runs and others are counted separately."""
+        """Remove the oldest runs, so that ``KEPT`` complete and ``KEPT`` incomplete runs remain.
+
+        Live runs always remain.
+        """
         whole: list[StoredRun] = []
         others: list[StoredRun] = []
         for run in runs:
@@ -296,7 +314,10 @@ class RunStore:
 
 
 def _database_of(folder: Path) -> Path:
-    """Return the database next to the folder of a project's runs (or of a copy of it), else inside the folder."""
+    """Return the path of the database of a run in some folder of runs.
+
+    The database of a project's store (or of a copy of it) is next to the folder; any other database is inside it.
+    """
     beside = folder.with_name(NAME)
     in_project = folder.parts[-len(FOLDER.parts) :] == FOLDER.parts
     return beside if in_project or (folder.name == FOLDER.name and beside.is_file()) else folder / NAME
@@ -310,13 +331,13 @@ def _is_whole(run: StoredRun) -> bool:
 
 
 def project_root(path: Path) -> Path:
-    """Return the nearest folder above a model that is a project's root, else the model's own folder."""
+    """Return the root of the project that contains a model; a model without a project has its own folder as root."""
     here = full_path(path) if path.is_dir() else full_path(path).parent
     return next((folder for folder in (here, *here.parents) if any((folder / mark).exists() for mark in MARKS)), here)
 
 
 def relative_model_path(model: Path, folder: Path) -> str:
-    """Return a model's path relative to its run folder, so that both can be moved together."""
+    """Return the path of a model relative to its run folder, so that both can be moved together."""
     return Path(os.path.relpath(model, folder)).as_posix()
 
 
@@ -331,5 +352,5 @@ def shown_path(path: Path) -> str:
 
 
 def _write(path: Path, document: object) -> None:
-    """Write a document atomically: a concurrent reader gets the old or the new one."""
+    """Write a document atomically, so that a concurrent reader gets either the old document or the new one."""
     replace_file(path, printable_json(document, indent=1) + "\n")

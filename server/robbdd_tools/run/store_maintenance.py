@@ -11,10 +11,10 @@ from robbdd_tools.run.stored_results import DIED, RUNNING
 
 
 def make_ready(database: Path, live: Collection[int]) -> str:
-    """Prepare a database for a new run while the runs ``live`` are in progress; return a note for the user.
+    """Prepare a database for a new run; return a note for the user. Raises ``DatabaseProblem``.
 
-    A damaged database is moved aside, unless a run is writing to it. The whole database is checked if a run died.
-    Raises ``DatabaseProblem``.
+    ``live`` are the runs in progress. A damaged database is moved aside, unless one of them is writing to it. If an
+    earlier run died, the whole database is checked.
     """
     try:
         _settle(database, live)

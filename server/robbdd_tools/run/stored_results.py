@@ -33,11 +33,12 @@ _ENDINGS = {
 
 @dataclass(frozen=True, slots=True)
 class RunStatus:
-    """Progress of a run.
+    """The progress of a run.
 
-    ``ending`` is the reason for open executions; ``counts`` are the numbers of finished executions by verdict.
-    ``timeout`` (s of wall time) and ``stop_on_failure`` are its settings; ``prepared`` is a digest of its manifest and
-    features.
+    - ``ending``: the reason why executions are open.
+    - ``counts``: the number of finished executions with each verdict.
+    - ``timeout`` (wall time in s) and ``stop_on_failure``: the settings of the run.
+    - ``prepared``: a digest of the manifest and the features of the run.
     """
 
     state: str
@@ -58,11 +59,11 @@ class RunStatus:
 
     @property
     def is_whole(self) -> bool:
-        """Whether the run executed everything that it was asked to."""
+        """Whether the run has executed everything that it was asked to execute."""
         return self.state in (FINISHED, STOPPED)
 
     def words(self) -> str:
-        """Return the text for a run with unfinished executions: ``interrupted: 12 of 40 finished``."""
+        """Return a text about a run with unfinished executions, for example ``interrupted: 12 of 40 finished``."""
         if self.state == FINISHED:
             return ""
         name = "stopped at the first failure" if self.state == STOPPED else self.state
@@ -70,9 +71,9 @@ class RunStatus:
 
 
 def read_status(database: Path, number: int, *, live: bool = False) -> RunStatus | None:
-    """Return the status of a run, ``None`` if the database has no such run; ``live`` if its process is running.
+    """Return the status of a run, or ``None`` if the database has no such run. Raises ``DatabaseProblem``.
 
-    Raises ``DatabaseProblem``.
+    ``live`` is true if the process of the run is still running.
     """
     with explained(database):
         connection = read_database(database)
@@ -93,9 +94,9 @@ def numbers(database: Path) -> list[int]:
 
 
 def finished_executions(database: Path, number: int) -> Mapping[int, float] | None:
-    """Return simulated time (s) by number of each finished execution of a run, ``None`` if there is no such run.
+    """Map the number of each finished execution of a run to its simulated time in s. Raises ``DatabaseProblem``.
 
-    Raises ``DatabaseProblem``.
+    Returns ``None`` if the database has no such run.
     """
     with explained(database):
         connection = read_database(database)
@@ -109,9 +110,9 @@ def finished_executions(database: Path, number: int) -> Mapping[int, float] | No
 
 
 def read_results(database: Path, number: int, manifest: Manifest, *, live: bool = False) -> RunResults | None:
-    """Return the results of a run; ``None`` if the database has none. Raises ``DatabaseProblem``.
+    """Return the results of a run, or ``None`` if the database has none. Raises ``DatabaseProblem``.
 
-    Clauses of unfinished executions are unknown; their reason is why the execution is unfinished.
+    The clauses of an unfinished execution are unknown. Their reason says why the execution is unfinished.
     """
     with explained(database):
         connection = read_database(database)
@@ -130,7 +131,7 @@ def read_results(database: Path, number: int, manifest: Manifest, *, live: bool 
 
 
 def restored(connection: sqlite3.Connection, number: int, manifest: Manifest) -> RunResults:
-    """Return the finished executions of a run as results that accept more; raises ``sqlite3.Error``."""
+    """Return the finished executions of a run as results, to which more can be added. Raises ``sqlite3.Error``."""
     results = RunResults(manifest)
     faults = connection.execute("SELECT shared, content FROM fault WHERE run = ? ORDER BY id", (number,))
     for shared, content in faults:

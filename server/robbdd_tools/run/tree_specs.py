@@ -19,7 +19,7 @@ LEAD = 0.5
 
 @dataclass(frozen=True, slots=True)
 class _Shared:
-    """Data that the scenarios of a group have in common."""
+    """The data that the scenarios of a group have in common."""
 
     tree: TreeSpec
     scene: SceneSpec
@@ -28,9 +28,10 @@ class _Shared:
 
 @dataclass(slots=True)
 class TreeSpecWriter:
-    """Make scenarios that are linked to a behaviour tree share one execution of it.
+    """Makes scenarios that are linked to the same behaviour tree share one execution of it.
 
-    ``scene`` returns the scene of a single scenario, ``events`` the emitters of its events, both as CURIEs.
+    ``scene`` returns the scene of a single scenario, and ``events`` returns the emitters of its events. Both use
+    CURIEs.
     """
 
     model: AcceptanceModel
@@ -41,7 +42,10 @@ class TreeSpecWriter:
     _shared: dict[int, _Shared] = field(default_factory=dict[int, _Shared])
 
     def related(self, spec: ScenarioSpec, execution: Iri | None) -> ScenarioSpec:
-        """Return a scenario as judged from its shared execution; an unrelated scenario is returned unchanged."""
+        """Return the specification of a scenario that is judged from its group's shared execution.
+
+        A scenario that belongs to no group is returned unchanged.
+        """
         group = self.relations.group(Iri(spec.variant), execution, spec.variation)
         if group is None:
             return spec
@@ -92,7 +96,7 @@ class TreeSpecWriter:
         return NodeSpec(node.iri, name, node.kind, behaviour=link.behaviour, arguments=arguments)
 
     def _element(self, term: Iri | str, values: Mapping[Iri, Cell]) -> str | tuple[str, ...]:
-        """Return the CURIE of a term's element, all CURIEs of a set of workspaces; empty for anything else."""
+        """Return the CURIE of a term's element, or all CURIEs of a set of workspaces; empty for any other term."""
         value = values.get(term, self.model.sets.get(term, term)) if isinstance(term, Iri) else term
         if isinstance(value, tuple) and all(self.model.kinds.get(Iri(one)) == "workspace" for one in value):
             return tuple(self.model.curie(str(one)) for one in value)
@@ -100,7 +104,10 @@ class TreeSpecWriter:
 
 
 def _joined(scenes: list[SceneSpec]) -> SceneSpec:
-    """Join scenes of one scene model; on conflict, the scenario that comes first in the tree wins."""
+    """Return the union of scenes that have the same scene model.
+
+    If they conflict, the scenario that is first in the tree takes precedence.
+    """
     first = scenes[0]
     config = {(one.target, one.name): one for scene in reversed(scenes) for one in scene.config}
     places = {thing: place for scene in reversed(scenes) for thing, place in scene.places.items()}
@@ -116,7 +123,7 @@ def _joined(scenes: list[SceneSpec]) -> SceneSpec:
 
 
 def _horizons(member: Member) -> Iterator[tuple[bool, float]]:
-    """Yield horizons as pairs: whether it precedes (*before*), and its length in s."""
+    """Yield each time horizon of a member: whether it is before the event (*before*), and its length in s."""
     for clause in (*member.variant.template.clauses, *member.variant.clauses):
         yield from _clause_horizons(clause)
     for policy in () if member.execution is None else member.execution.policies:

@@ -1,6 +1,7 @@
-"""Files, apart from the graph, that a run used: models of scenes and arms with their includes, users' Python code.
+"""Find the files that a run used apart from the graph.
 
-They are found by reading, never by importing; files chosen at run time are not included.
+These are the models of scenes and arms with the files that they include, and users' Python code. The files are found by
+reading, never by importing. Files that code chooses at run time are not found.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def digests(manifest: Manifest, folder: Path) -> dict[str, str]:
-    """Return the SHA-256 of each file that a run uses, by its path relative to the run folder."""
+    """Return the SHA-256 digest of each file that a run uses, by the path of the file relative to the run folder."""
     found = dict.fromkeys(path.resolve() for path in _used(manifest))
     return {Path(os.path.relpath(path, folder.resolve())).as_posix(): _digest(path) for path in sorted(found)}
 
@@ -37,7 +38,7 @@ def changed(known: Mapping[str, str], folder: Path) -> list[Path]:
 
 
 def prepared_digest(folder: Path) -> str:
-    """Return the SHA-256 of a run folder's prepared content: the manifest, the features and their steps."""
+    """Return the SHA-256 digest of the prepared content of a run folder: the manifest, the features and their steps."""
     every = (path for path in (folder / FEATURES).rglob("*") if path.is_file() and path.suffix != ".pyc")
     found = {path.relative_to(folder).as_posix(): _digest(path) for path in (folder / MANIFEST, *every)}
     return hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()
@@ -70,7 +71,7 @@ def _sources(execution: ExecutionSpec) -> Iterator[ModelSource]:
 
 
 def _code(execution: ExecutionSpec) -> Iterator[tuple[str, Origin | None]]:
-    """Yield the names of users' code, ``module:attribute``, with the place of each reference if known."""
+    """Yield each name of users' code (``module:attribute``) with the place of the reference, if known."""
     if execution.implementation.kind == "python":
         yield execution.implementation.name, execution.implementation.origin
     for policy in execution.policies:
@@ -97,7 +98,7 @@ def _path(source: ModelSource) -> Path:
 
 
 def _modules(name: str, folder: Path) -> Iterator[Path]:
-    """Yield the file of ``module:attribute`` in a folder, and the files that it imports from there."""
+    """Yield the file that defines ``module:attribute`` in a folder, and the files in that folder that it imports."""
     seen: dict[Path, None] = {}
     waiting = [name.partition(":")[0]]
     while waiting:

@@ -1,4 +1,4 @@
-"""Find the users' code that a run would execute: one rule for ``--no-user-code`` and for untrusted workspaces."""
+"""Find the users' code that a run would execute, for ``--no-user-code`` and for untrusted workspaces."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ _FIX_TRUST = "trust the workspace if you trust this code"
 
 
 class UserCodeRefused(RobbddError):
-    """A run would execute users' code, which ``--no-user-code`` refuses; the message names each place."""
+    """A run would execute users' code, which ``--no-user-code`` forbids. The message names each place."""
 
 
 def refuse_user_code(manifest: Manifest, folder: Path, *, judges: bool = True, simulates: bool = True) -> None:
-    """Raise ``UserCodeRefused`` with the message of ``refusal``, if any."""
+    """Raise ``UserCodeRefused`` if ``refusal`` returns a message."""
     problem = refusal(manifest, folder, judges=judges, simulates=simulates)
     if problem:
         raise UserCodeRefused(problem)
 
 
 def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates: bool = True) -> str:
-    """Return which users' code a prepared run has, where, and what to do; empty if none or if it may run.
+    """Return a message that lists the users' code of a prepared run, its places, and what to do.
 
-    A run both simulates and judges; judging stored traces uses evaluators only, a picture uses models only.
+    The message is empty if the run has no such code or if the code may run. A run both simulates and judges. Judging
+    stored traces executes evaluators only, and drawing a picture executes models only.
     """
     reason = os.environ.get(NO_USER_CODE)
     if not reason:

@@ -1,4 +1,4 @@
-"""Find clauses of a run that could not have failed or that held from the start, with the reason."""
+"""Find the clauses that prove little in a run: they could not have failed, or they held from the start."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HELD_BEFORE = "its predicate already held before the behaviour began, in every e
 
 @dataclass(slots=True)
 class Vacuity:
-    """Collects, by clause, why its verdict proves little."""
+    """Collects for each clause the reasons why its verdict proves little."""
 
     _said: dict[str, str] = field(default_factory=dict[str, str])
     _ranges: dict[str, list[Range]] = field(default_factory=dict[str, list[Range]])
@@ -25,12 +25,12 @@ class Vacuity:
     _held: dict[str, list[bool]] = field(default_factory=dict[str, list[bool]])
 
     def judged(self, clause: ClauseSpec, judged: ClauseJudged) -> None:
-        """Record a single verdict."""
+        """Record one verdict on a clause."""
         if judged.vacuous:
             self._said.setdefault(clause.iri, judged.vacuous)
 
     def varied(self, clause: ClauseSpec, ranges: Sequence[Sequence[float]]) -> None:
-        """Record the range of each fluent's margin in one execution of a clause."""
+        """Record the range of the margin of each of a clause's fluents in one execution."""
         if not ranges:
             return
         known = self._ranges.get(clause.iri, [])
@@ -42,12 +42,12 @@ class Vacuity:
         self._executions[clause.iri] = self._executions.get(clause.iri, 0) + 1
 
     def held(self, clause: ClauseSpec, before: bool | None) -> None:
-        """Record whether a clause held before the behaviour of one execution, ``None`` if unknown."""
+        """Record whether a clause already held before the behaviour in one execution; ``None`` if this is unknown."""
         if before is not None:
             self._held.setdefault(clause.iri, []).append(before)
 
     def reasons(self) -> Mapping[str, str]:
-        """Return, by clause IRI, why a clause could not have failed or held from the start."""
+        """Map the IRI of each clause that could not have failed, or that held from the start, to the reason."""
         constant = {iri: self._never_varied(iri) for iri, found in self._ranges.items() if all(map(is_constant, found))}
         held = {iri: HELD_BEFORE for iri, found in self._held.items() if all(found)}
         return {**held, **constant, **self._said}
