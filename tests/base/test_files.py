@@ -84,7 +84,11 @@ NO_FILES: dict[str, tuple[Callable[[Path], object], str, str]] = {
     "socket": (a_socket, "file-not-regular", "'m.bdd' is a socket"),
     "folder": (Path.mkdir, "file-is-folder", "'m.bdd' is a folder"),
     "loop": (lambda path: path.symlink_to(path.name), "file-unreadable", "its symbolic links form a loop"),
-    "dangling": (lambda path: path.symlink_to("gone"), "file-missing", "its link leads to gone, which is missing"),
+    "dangling": (
+        lambda path: path.symlink_to("gone"),
+        "file-missing",
+        "it is a symbolic link to gone, which does not exist",
+    ),
 }
 
 

@@ -11,7 +11,7 @@ def test_equal_clause_names_in_one_namespace_are_one_thing_too_many() -> None:
         + TEMPLATE
         + other.replace(
             "before <pick-start>)\n",
-            "before <pick-start>)\n//      ^^^^^^^^ duplicate-iri 'on-bench' already stands for something else\n",
+            "before <pick-start>)\n//      ^^^^^^^^ duplicate-iri 'on-bench' is already the name of something else\n",
         )
     )
     check(text + STORY)

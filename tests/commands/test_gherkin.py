@@ -80,7 +80,7 @@ def test_scenarios_are_selected(folder: Path, arguments: list[str], numbers: lis
     ("arguments", "words"),
     [
         (["--where", "part=nut or"], "--where, column 12: expected a variable instead of the end"),
-        (["--where", "art=nut"], "--where, column 1: there is no variable 'art'; there are part, robot, goal"),
+        (["--where", "art=nut"], "--where, column 1: unknown variable 'art'; known variables: part, robot, goal"),
         (["--where", "part=none"], "robbdd: no scenario fits the selection"),
         (["--first", "0"], "'0' is not a number above 0"),
         (["--sample", "many"], "'many' is not a number above 0"),

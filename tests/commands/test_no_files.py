@@ -38,7 +38,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (make_fifo, "'other.scene' is a named pipe; only regular files are read"),
         (link_to("/dev/zero"), "'other.scene' is a device (through a link); only regular files are read"),
         (link_to("other.scene"), "'other.scene' cannot be read: its symbolic links form a loop"),
-        (link_to("gone.scene"), "its link leads to gone.scene, which is missing"),
+        (link_to("gone.scene"), "it is a symbolic link to gone.scene, which does not exist"),
         (Path.mkdir, "'other.scene' is a folder; name a file in it"),
     ],
 )

@@ -256,7 +256,7 @@ def test_a_store_copied_without_its_log_says_what_it_lacks(store: RunStore, tmp_
     shutil.copytree(store.folder.parent, copied / ".robbdd", ignore=shutil.ignore_patterns("*-wal", "*-shm", "lock"))
     recording.close()
     (run,) = RunStore(copied / ".robbdd" / "runs").runs()
-    with pytest.raises(NoSuchRun, match=r"has no record of run 1.*copied without its log results\.sqlite-wal"):
+    with pytest.raises(NoSuchRun, match=r"has no record of run 1.*copy its write-ahead log results\.sqlite-wal"):
         run.status()
 
     # Now a log that had been written to the database in between.
@@ -265,7 +265,7 @@ def test_a_store_copied_without_its_log_says_what_it_lacks(store: RunStore, tmp_
         connection.commit()
     assert missing_parts(place) == [
         f"{store.database} lacks the results of 2 executions (000002, 000003), whose traces exist: "
-        "was it copied without its log results.sqlite-wal?"
+        "copy its write-ahead log results.sqlite-wal, too"
     ]
 
 

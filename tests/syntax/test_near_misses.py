@@ -25,7 +25,11 @@ def changed(old: str, new: str) -> str:
 @pytest.mark.parametrize(
     ("text", "blamed", "words"),
     [
-        (SINGLE, "<", "'set var' takes sets of values: write '{ { … } }', or use 'var' for one value in each scenario"),
+        (
+            SINGLE,
+            "<",
+            "the values of 'set var' are sets: write '{ { … } }', or use 'var' if each scenario has a single value",
+        ),
         (DOUBLE, "{", "'var' takes one value in each scenario: use 'set var'"),
         (
             changed(IN_TRAY, f"{IN_TRAY}\n        and held: holds(<part> is held by <robot>, after <place-end>)"),

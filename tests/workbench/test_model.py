@@ -63,7 +63,7 @@ def test_a_text_replaces_the_file_and_finds_its_imports(bench: Path) -> None:
 def test_a_folder_is_all_its_models_with_executions_first() -> None:
     model = load(EXAMPLES / "pickplace")
     assert [Path(file.name).suffix for file in model.runnable] == [".bddx", ".bdd"]
-    with pytest.raises(ValueError, match="each with its own graph"):
+    with pytest.raises(ValueError, match="cannot be loaded together"):
         model.graph()
 
 

@@ -186,7 +186,7 @@ def _failed(path: Path, error: OSError) -> Unreadable:
 
 
 def _dangling(path: Path) -> str:
-    return f": its link leads to {path.readlink()}, which is missing" if path.is_symlink() else ""
+    return f": it is a symbolic link to {path.readlink()}, which does not exist" if path.is_symlink() else ""
 
 
 def _too_large(name: str, limit: Limit, fact: str) -> Unreadable:

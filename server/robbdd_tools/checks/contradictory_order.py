@@ -46,7 +46,7 @@ def _contradictions(durations: list[tuple[Site, tree.During]], own: Site) -> Ite
             during,
             Severity.WARNING,
             "contradictory-order",
-            f"'{start}' comes after '{end}' elsewhere in this scenario, so this time is empty: swap the two events",
+            f"this interval is empty: elsewhere in this scenario, '{start}' occurs after '{end}'; swap the two events",
             (related_to(*other, f"here '{end}' comes first"),),
             (change(site, "Swap the two events", during, swapped),),
         )

@@ -50,7 +50,7 @@ def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
 
 def _report(first: Definition, second: Definition) -> Diagnostic:
     message = (
-        f"'{second.symbol.name}' already stands for something else in this namespace (both are <{second.iri}>): "
+        f"'{second.symbol.name}' is already the name of something else in this namespace (both are <{second.iri}>): "
         "give one of the two another name or namespace"
     )
     related = (Related(first.uri, first.span, "the first declaration"),)

@@ -40,7 +40,7 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     text = "write a video of each scenario and a picture of each violation to this folder"
     outputs.add_argument("--record", metavar="DIR", type=Path, help=text)
     outputs.add_argument("--viewer", action="store_true", help="follow each scenario in a window, in real time")
-    text = "keep features, manifest, logs and results here instead of in the store"
+    text = "keep features, manifest, logs and results in this folder instead of the store"
     outputs.add_argument("-o", "--output", metavar="DIR", type=Path, help=text)
     outputs.add_argument("--no-store", action="store_true", help="do not store the run")
     allow_store(outputs)
@@ -78,7 +78,7 @@ def allow_policy(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the run policy."""
     text = "agent processes at a time (default: as many as there are cores)"
     parser.add_argument("--jobs", metavar="N", type=positive, help=text)
-    text = "wall time limit of a scenario (default: 300; 0: none)"
+    text = "wall time limit of each scenario in seconds (default: 300; 0: no limit)"
     parser.add_argument("--timeout", metavar="SECONDS", type=_seconds, help=text)
     text = "MiB kept of each agent process's output, half from its beginning and half from its end (default: 4)"
     parser.add_argument("--log-limit", metavar="MIB", type=positive, help=text)

@@ -84,7 +84,7 @@ def check_where(expression: Expression, model: AcceptanceModel, variants: Sequen
     for comparison in _comparisons(expression):
         if comparison.variable not in names:
             known = ", ".join(dict.fromkeys(variable_name(variable) for _, variable in every)) or "none"
-            raise WhereError(comparison.column, f"there is no variable '{comparison.variable}'; there are {known}")
+            raise WhereError(comparison.column, f"unknown variable '{comparison.variable}'; known variables: {known}")
 
 
 def condition(expression: Expression, model: AcceptanceModel, variant: Variant) -> Condition:

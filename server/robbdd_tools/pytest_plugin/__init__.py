@@ -44,7 +44,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--robbdd-sample", metavar="N", type=int, help=text)
     text = "a small set of variations that covers all value combinations of any 2 or 3 variables"
     group.addoption("--robbdd-pairwise", metavar="2|3", type=int, help=text)
-    text = "wall time limit of a scenario (default: 300; 0: none)"
+    text = "wall time limit of each scenario in seconds (default: 300; 0: no limit)"
     group.addoption("--robbdd-timeout", metavar="SECONDS", type=float, help=text)
     text = "where the run is kept (default: .robbdd/runs in the project's root)"
     group.addoption("--robbdd-store", metavar="DIR", help=text)

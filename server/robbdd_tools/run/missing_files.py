@@ -30,7 +30,7 @@ def missing_parts(run: StoredRun) -> list[str]:
     if len(unknown) > status.jobs:
         found.append(
             f"{run.database} lacks the results of {_named(unknown)}, whose traces exist: "
-            f"was it copied without its log {run.database.name}{LOG}?"
+            f"copy its write-ahead log {run.database.name}{LOG}, too"
         )
     lost = {index for index, simulated in finished.items() if simulated}.difference(traces)
     if lost:

@@ -38,7 +38,7 @@ def back_ends() -> tuple[str, ...]:
 def advice() -> str:
     """Return what to do when no back end works."""
     if sys.platform in ("win32", "darwin"):
-        return "install the driver of the graphics card and start this in a session with a desktop"
+        return "install the graphics driver and run this command in a desktop session"
     return "install EGL (libegl1 and libgl1) or OSMesa (libosmesa6), or set MUJOCO_GL=glfw where there is a display"
 
 

@@ -196,7 +196,7 @@ class StoredRun:
                 raise NoSuchRun(problem) from error
             if self.database.exists() and (self.folder / RECORD).exists():
                 lacks = f"{self.database} has no record of run {self.number}, and its folder no {RESULTS}"
-                raise NoSuchRun(f"{lacks}: was the store copied without its log {NAME}{LOG}?") from error
+                raise NoSuchRun(f"{lacks}: copy its write-ahead log {NAME}{LOG}, too") from error
             raise
 
     def _json(self, name: str) -> dict[str, Any]:

@@ -41,7 +41,7 @@ _NEAR_MISSES = (
     NearMiss(
         rf"\bset\s+var\s*<\s*{_NAME}(?:\.{_NAME})*\s*>\s*:\s*\{{\s*\Z",
         r"[<\d\"'+\-.]",
-        "'set var' takes sets of values: write '{ { … } }', or use 'var' for one value in each scenario",
+        "the values of 'set var' are sets: write '{ { … } }', or use 'var' if each scenario has a single value",
         "{",
     ),
     NearMiss(

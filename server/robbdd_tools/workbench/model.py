@@ -149,7 +149,9 @@ class Model:
         from robbdd_tools.graph.rdf.serialize import serialize
 
         if len(self.files) != 1:
-            raise ValueError(f"{self.path} has {len(self.files)} models, each with its own graph: load one of them")
+            raise ValueError(
+                f"{self.path} has {len(self.files)} models, and they cannot be loaded together: load one of them"
+            )
         return serialize(self.files[0].graph.graph, form)
 
     def scenarios(

@@ -42,7 +42,7 @@ def unfinished_run(store: RunStore, word: str = LATEST, path: Path | None = None
     if word != LATEST:
         place = store.find(word)
         if path is not None and place.record().path != shown_path(path):
-            raise NoSuchRun(f"run {word} is one of {place.record().path}, not of {path}")
+            raise NoSuchRun(f"run {word} belongs to {place.record().path}, not to {path}")
         return place
     for place in reversed(store.runs()):
         with suppress(NoSuchRun):

@@ -74,7 +74,7 @@ def _keep_sparql_off_the_network() -> None:
 
     def refuse_service(_context: object, part: Any) -> Any:
         if part.name == "ServiceGraphPattern":
-            raise UnusableShapes("the SPARQL of a shape reads only this model: SERVICE is not followed")
+            raise UnusableShapes("a SPARQL query in a shape can read only this model: SERVICE is not supported")
         raise NotImplementedError
 
     loose: Any = sparql

@@ -177,7 +177,7 @@ def clash_finding(built: BuiltGraph, clash: Clash) -> Diagnostic:
     """Return the diagnostic for two names that denote the same node."""
     name = built.names.get(clash.iri, clash.iri).rpartition(".")[2]
     message = (
-        f"'{name}' already stands for something else in this namespace (both are <{clash.iri}>): "
+        f"'{name}' is already the name of something else in this namespace (both are <{clash.iri}>): "
         "give one of the two another name or namespace"
     )
     related = (Related(clash.first.uri, clash.first.span, "the first declaration"),)

@@ -140,7 +140,7 @@ def _followed_services(path: Path, document: Document, graph: Graph) -> Iterator
     for term in (SH.select, SH.ask, SH.construct):
         if any(_SERVICE.search(str(text)) for text in graph.objects(None, term)):
             found = _SERVICE.search(document.text)
-            message = "the SPARQL of a shape reads only this model: SERVICE is not followed"
+            message = "a SPARQL query in a shape can read only this model: SERVICE is not supported"
             yield _fault(path, found.start() if found else 0, "shapes-syntax", message)
 
 
