@@ -1,4 +1,4 @@
-"""Arguments shared by several commands. Imports nothing heavy until they are used."""
+"""Arguments that several commands share. Heavy modules are imported only when an argument is used."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def allow_selection(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments that select scenarios; the parser has ``--seed``."""
+    """Add the arguments that select scenarios to a parser that already has ``--seed``."""
     selection = parser.add_argument_group("selection of scenarios")
     text = "only scenarios with these values: 'robot=panda and target=~cube.*'"
     selection.add_argument("--where", metavar="EXPRESSION", help=text)

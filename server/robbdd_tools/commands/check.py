@@ -13,7 +13,7 @@ from robbdd_tools.workbench.model import NotAModel, load_all
 
 
 def check(paths: Sequence[Path], as_json: bool) -> int:
-    """Print the findings about files and folders; return the exit code."""
+    """Print all findings about files and about the models in folders; return the exit code."""
     try:
         model = load_all(paths)
     except NotAModel as error:

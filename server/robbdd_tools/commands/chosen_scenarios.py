@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def selection(model: AcceptanceModel, variants: Sequence[Variant], wanted: Wanted) -> Selected | None:
-    """Return the selected scenarios of some variants; print the reason and return ``None`` if there are none."""
+    """Return the selected scenarios of some variants. If there are none, print the reason and return ``None``."""
     try:
         selected = Selected(model, variants, wanted)
     except SelectionError as error:

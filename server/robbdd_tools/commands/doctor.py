@@ -30,7 +30,10 @@ SIGNS = {State.WORKS: "✔", State.MISSING: "–", State.FAILED: "✗"}
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One part of the installation, its test result, and how to fix it (empty: nothing to fix)."""
+    """One part of the installation and its test result.
+
+    ``fix`` says how to repair the part; it is empty if the part works.
+    """
 
     name: str
     state: State
@@ -62,7 +65,11 @@ def _parts(path: Path) -> Iterator[Part]:
 
 
 def examine(name: str, test: Callable[[], str]) -> Part:
-    """Return the state of a part; ``test`` returns a description, or raises ``Unavailable`` or any other exception."""
+    """Test a part of the installation and return its state.
+
+    ``test`` returns a description of the part. If the part does not work, ``test`` raises ``Unavailable`` or any other
+    exception.
+    """
     try:
         return Part(name, State.WORKS, test())
     except Unavailable as reason:

@@ -1,4 +1,4 @@
-"""Follow a run, a replay or a judgement on the terminal; signals end it cleanly."""
+"""Show a run, a replay or a judgement on the terminal while it executes. A signal ends it cleanly."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ class Followed(Protocol):
     ending: str
 
     def messages(self) -> Iterator[RunMessage]:
-        """Yield the messages in the manifest's order."""
+        """Yield the messages in the order of the manifest."""
         ...
 
     def cancel(self, reason: str) -> None:
-        """End it early."""
+        """End the work early for the given reason."""
         ...
 
 
 def follow_run(run: Run) -> int:
-    """Execute a run and show it; return the number of the signal that ended it, else 0."""
+    """Execute a run and show its progress. Return the number of the signal that ended the run, or 0."""
 
     def watching(display: Display) -> None:
         run.listen(display.watch)
@@ -41,7 +41,10 @@ def follow_run(run: Run) -> int:
 
 
 def follow(work: Followed, total: int | None = None) -> int:
-    """Show a replay or a judgement of ``total`` scenarios; return as ``follow_run``. Raises ``OSError``."""
+    """Show the progress of a replay or a judgement of ``total`` scenarios. Raises ``OSError``.
+
+    Returns the number of the signal that ended it, or 0.
+    """
     return _follow(work, total, None)
 
 

@@ -23,9 +23,10 @@ PICTURE = "svg"
 
 
 def print_graph(path: Path, more: Sequence[Path], form: str, results: str | None) -> int:
-    """Print the graph of a model and its imports, with the results of a run if given; return the exit code.
+    """Print the graph of a model and its imports, and return the exit code.
 
-    ``more`` are further graph files of the model.
+    ``more`` are further graph files that belong to the model. ``results`` names a run whose results are added to the
+    graph.
     """
     from robbdd_tools.graph.rdf.serialize import UnwritableGraph, serialize
 
@@ -43,7 +44,7 @@ def print_graph(path: Path, more: Sequence[Path], form: str, results: str | None
 
 
 def _picture(snapshot: Snapshot, built: BuiltGraph, path: Path) -> str:
-    """Return the structure of a model as SVG; its places name files relative to the model's folder."""
+    """Return the structure of a model as SVG. The places in it name files relative to the model's folder."""
     from robbdd_tools.graph.ask.structure import structure_of
     from robbdd_tools.graph.ask.svg import draw
 

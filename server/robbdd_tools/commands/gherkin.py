@@ -25,9 +25,13 @@ LARGEST_CHECKED = 4 * 1024 * 1024
 
 @dataclass(frozen=True, slots=True)
 class GherkinOptions:
-    """Model, output and template: ``more`` are further graph files of the model.
+    """The options of ``robbdd gherkin``.
 
-    ``template`` is the name of a built-in one or a path; runs use ``wanted.seed``, too.
+    - ``path``: the model.
+    - ``more``: further graph files that belong to the model.
+    - ``folder``: the folder to write.
+    - ``template``: the name of a built-in template, or the path of a user's template.
+    - ``wanted``: the selection of scenarios. Runs of the features use its ``seed``, too.
     """
 
     path: Path
@@ -38,7 +42,7 @@ class GherkinOptions:
 
 
 def write_gherkin(options: GherkinOptions) -> int:
-    """Write the features of a model with behave's files and print their paths; return the exit code."""
+    """Write the features of a model and the files that behave needs, and print their paths. Return the exit code."""
     from robbdd_tools.gherkin.feature_files import clause_origins, whole_plan
     from robbdd_tools.gherkin.render import TemplateProblem
     from robbdd_tools.gherkin.user_template import sheet
@@ -93,7 +97,7 @@ def _write(plan: FeaturePlan, total: int | None, options: GherkinOptions, json_l
 
 
 def _check_gherkin(feature: Path, *, template: str) -> None:
-    """Raise ``TemplateProblem`` if a user's template produced invalid Gherkin; large files are not checked."""
+    """Raise ``TemplateProblem`` if a user's template produced invalid Gherkin. Large features are not checked."""
     from robbdd_tools.gherkin.render import OURS, TemplateProblem
 
     if template in OURS or feature.stat().st_size > LARGEST_CHECKED:

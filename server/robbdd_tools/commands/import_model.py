@@ -23,7 +23,7 @@ _MODEL = "model.bdd"
 
 
 def import_model(path: Path, output: Path, *, overwrite: bool) -> int:
-    """Write a model as RobBDD text to ``output`` and its scenes, if any, to a ``.scene`` with the same name."""
+    """Write a model as RobBDD text to ``output``. Scenes are written to a ``.scene`` with the same name."""
     from robbdd_tools.graph.rdf.records import Incomplete
     from robbdd_tools.graph.text.losses import compare
     from robbdd_tools.graph.text.model_text import write_model
@@ -68,14 +68,14 @@ def _opened(text: ModelText, scene_name: str) -> Project:
 
 
 def _graph(project: Project, name: str) -> BuiltGraph:
-    """Return the graph of the model, or of its scene, selected by file name."""
+    """Return the graph of a file in the project, which is either the model or its scene."""
     from robbdd_tools.graph.write.build import build_graph
 
     return build_graph(project.snapshot(), _FOLDER + name)
 
 
 def _first_error(project: Project, scene_name: str) -> str | None:
-    """Return the first syntax error or unresolved name of a text with its line, ``None`` if there is none."""
+    """Return the first syntax error or unresolved name of a written text with its line, or ``None``."""
     snapshot = project.snapshot()
     for name in (scene_name, _MODEL):
         file = snapshot.file(_FOLDER + name)

@@ -1,4 +1,4 @@
-"""Lookups of ``robbdd doctor``: versions, libraries, extras, the editor."""
+"""Find the versions, libraries, extras and editor extensions that ``robbdd doctor`` reports."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ _OPTIONAL = ("video", "fast-queries")
 
 
 class Unavailable(Exception):
-    """A part does not work; the message gives the reason, ``fix`` the remedy. An ``optional`` part may be missing."""
+    """A part of the installation does not work.
+
+    The message gives the reason, and ``fix`` says how to repair the part. A part that is ``optional`` may be missing.
+    """
 
     def __init__(self, reason: str, fix: str, *, optional: bool = False) -> None:
         super().__init__(reason)
@@ -79,7 +82,10 @@ def extras() -> str:
 
 
 def editor() -> str:
-    """Return the installed VS Code extensions and Node; raises ``Unavailable`` without an extension."""
+    """Return the installed VS Code extensions and the version of Node.
+
+    Raises ``Unavailable`` if no extension is installed.
+    """
     node = f"Node {_node()}"
     found = list(_extensions())
     if not found:
@@ -94,7 +100,7 @@ def editor() -> str:
 
 
 def _required(extra: str | None) -> list[str]:
-    """Return the names of the distributions required by this one or by one of its extras."""
+    """Return the distributions that this distribution requires: always, or with the given ``extra``."""
     try:
         stated = metadata.requires(DISTRIBUTION) or []
     except metadata.PackageNotFoundError:
@@ -118,7 +124,7 @@ def _versions(names: list[str]) -> dict[str, str | None]:
 
 
 def _node() -> str:
-    """Return the version of Node, which only the extension's developers need."""
+    """Return the version of Node, which only developers of the VS Code extension need."""
     program = shutil.which("node")
     # Do not start a program from the working directory (Windows, or a relative entry of PATH).
     if program is None or not Path(program).is_absolute():
@@ -133,7 +139,7 @@ def _node() -> str:
 
 
 def _extensions() -> Iterator[tuple[Path, str]]:
-    """Yield folder and version of each installed copy of the extension."""
+    """Yield the folder and the version of each installed copy of the VS Code extension."""
     for editor_folder in EDITORS:
         for manifest in sorted((Path.home() / editor_folder / "extensions").glob(f"{EXTENSION}-*/package.json")):
             try:

@@ -1,4 +1,4 @@
-"""``robbdd judge``: judge the traces of a stored run against the clauses of an edited model, without simulating."""
+"""``robbdd judge``: judge the traces of a stored run by the clauses of an edited model, without simulating."""
 
 from __future__ import annotations
 
@@ -21,7 +21,13 @@ from robbdd_tools.workbench.stored import store_at
 
 @dataclass(frozen=True, slots=True)
 class JudgeOptions:
-    """The run (a number, ``latest`` or a folder), the edited models, the store of runs, the output file."""
+    """The options of ``robbdd judge``.
+
+    - ``run``: the stored run, given as a number, as ``latest`` or as a folder.
+    - ``paths``: the edited models.
+    - ``store``: the store of runs.
+    - ``report``: the output file.
+    """
 
     run: str
     paths: Sequence[Path]
@@ -30,7 +36,7 @@ class JudgeOptions:
 
 
 def judge(options: JudgeOptions) -> int:
-    """Print the verdicts of a model's clauses on stored traces; return the exit code as ``robbdd run``."""
+    """Judge stored traces by a model's clauses and print the verdicts. Return the exit code as ``robbdd run`` does."""
     return report_problems(Outputs(report=options.report), viewer=False, work=lambda: _judge(options))
 
 

@@ -1,4 +1,4 @@
-"""``robbdd format``: rewrite models in canonical layout, or report which are not."""
+"""``robbdd format``: rewrite models in canonical layout, or list the models that are not in it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,11 @@ from robbdd_tools.workbench.model import NotAModel, named_files
 
 
 def format_models(paths: Sequence[Path], check: bool) -> int:
-    """Format files and the models in folders; with ``check`` only list those that would change (exit code 1)."""
+    """Format files and the models in folders.
+
+    With ``check``, no file is written: the files that would change are listed, and if there are any, the exit code is
+    1.
+    """
     try:
         files = named_files(paths)
     except NotAModel as error:

@@ -1,4 +1,4 @@
-"""Survive lost output: a closed pipe, a vanished terminal, a full disk."""
+"""Keep a command alive when its output is lost: a closed pipe, a vanished terminal, a full disk."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, TextIO
 
 
 class _Expendable:
-    """Text stream that drops output that can no longer be written; otherwise it behaves as the wrapped stream."""
+    """A wrapper of a text stream that drops output that can no longer be written."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream

@@ -20,9 +20,10 @@ HOSTS_FORM = 'a list of host names, such as ["example.org"]'
 
 
 def valid_model(path: Path, more: Sequence[Path] = ()) -> ModelFile | None:
-    """Load one model for a command that needs it free of errors; print its errors and return ``None`` if it has any.
+    """Load one model for a command that requires it to be free of errors.
 
-    ``more`` are further graph files of the model.
+    If the model has errors, they are printed and ``None`` is returned. ``more`` are further graph files that belong to
+    the model.
     """
     if path.is_dir():
         fail(f"{path} is a folder; name a file in it")
@@ -41,7 +42,7 @@ def valid_model(path: Path, more: Sequence[Path] = ()) -> ModelFile | None:
 
 
 def print_findings(found: Iterable[Finding], print_: Callable[[str], None]) -> None:
-    """Print findings as ``file:line:column: severity: message [code]``, each with its related places below."""
+    """Print each finding as ``file:line:column: severity: message [code]``, followed by its related places."""
     for finding in found:
         print_(str(finding))
         for related in finding.related:
@@ -49,10 +50,11 @@ def print_findings(found: Iterable[Finding], print_: Callable[[str], None]) -> N
 
 
 def fetch_contexts(paths: Iterable[Path], hosts: Iterable[str]) -> str | None:
-    """Fetch the JSON-LD contexts of models from hosts that the user allows; return a message if a fetch fails.
+    """Fetch the JSON-LD contexts of models; return an error message if a fetch fails.
 
-    Allowed are ``hosts`` and those of ``context-hosts`` in the user's own configuration; the setting in the model's
-    project is reported as ignored. Fetched contexts are kept, so that later reads need no network.
+    Only hosts that the user allows are contacted: ``hosts``, and the setting ``context-hosts`` in the user's own
+    configuration. If the model's project contains this setting, it is reported as ignored. Fetched contexts are cached,
+    so that later reads need no network.
     """
     allowed = frozenset(hosts)
     for path in paths:

@@ -55,10 +55,10 @@ STYLES = {Outcome.HOLDS: "green", Outcome.VIOLATED: "bold red", Outcome.UNKNOWN:
 
 
 class Display:
-    """Prints a run.
+    """Prints the messages of a run.
 
-    A terminal with a movable cursor gets a bar and lines wrapped between words. Other output gets unwrapped plain
-    lines, so that other programs can read them.
+    If the cursor of the terminal can be moved, a progress bar is shown and lines are wrapped between words. Any other
+    output gets plain lines without wrapping, so that other programs can read them.
     """
 
     def __init__(self, results: RunResults, total: int | None = None) -> None:
@@ -95,7 +95,7 @@ class Display:
         self._progress.stop()
 
     def watch(self, message: RunMessage) -> None:
-        """Count a message on arrival, before its turn to be shown."""
+        """Count a message on arrival, which may be before it is shown."""
         match message:
             case ScenarioStarted():
                 self._fails.discard(message.index)
@@ -110,7 +110,7 @@ class Display:
                 pass
 
     def show(self, message: RunMessage) -> None:
-        """Show a message after the results have applied it."""
+        """Show a message. Its effect must already be in the results."""
         match message:
             case RunStarted():
                 self._progress.update(self._task, counts=self._counts())
@@ -128,7 +128,10 @@ class Display:
                 pass
 
     def _fault(self, fault: Fault) -> None:
-        """Print an error in users' code with its traceback; only once, even if it spoils several scenarios."""
+        """Print an error in users' code with its traceback.
+
+        An error that affects several scenarios is printed only once.
+        """
         if fault.id in self._faults:
             return
         self._faults[fault.id] = number = len(self._faults) + 1
@@ -137,7 +140,7 @@ class Display:
             self._console.print(plain(line))
 
     def _output(self, lines: Sequence[str]) -> None:
-        """Print the output of users' code, visibly separate from ours."""
+        """Print the output of users' code so that it can be distinguished from the output of RobBDD."""
         for line in lines[:MAX_PRINTED]:
             self._console.print(plain(f"  │ {line}"))
         if len(lines) > MAX_PRINTED:
@@ -145,7 +148,7 @@ class Display:
             self._console.print(Text(f"  │ … {more} in the log of the run"))
 
     def broken(self, reason: str) -> None:
-        """Print why the run is incomplete, and the scenarios left open."""
+        """Print why the run is incomplete."""
         self._progress.stop()
         self._console.print(plain(f"the run is incomplete: {reason}", STYLES[Outcome.VIOLATED]))
 
@@ -178,7 +181,7 @@ class Display:
         return Text.assemble((f"{self._held} hold", STYLES[Outcome.HOLDS]), ", ", failed)
 
     def _vacuous(self) -> Iterator[tuple[str, str]]:
-        """Yield name and reason of every clause that proves little, in model order."""
+        """Yield the name of each clause whose verdict proves little, and the reason, in the order of the model."""
         clauses = (clause for scenario in self._results.scenarios for clause in scenario.spec.clauses)
         names = {clause.iri: clause.name for clause in clauses}
         reasons = self._results.vacuous()
@@ -227,7 +230,10 @@ class _Counts(ProgressColumn):
 
 
 def _executions(finished: Iterable[ScenarioResult]) -> list[ScenarioResult]:
-    """Return one scenario for each shared execution: the one with the longest simulated time."""
+    """Return one scenario for each execution.
+
+    For a shared execution, this is the scenario with the longest simulated time.
+    """
     furthest: dict[int | str, ScenarioResult] = {}
     for number, scenario in enumerate(finished):
         key = number if scenario.spec.tree is None else scenario.spec.tree.name
@@ -243,7 +249,7 @@ def _clause_line(judged: ClauseJudged, sentence: str, width: int) -> Text:
 
 
 def _clause_cells(judged: ClauseJudged, sentence: str, width: int) -> Table:
-    """Lay out a clause in a table: a long sentence wraps in its column; margin and instant do not."""
+    """Lay out a clause in a table. A long sentence wraps in its column; the margin and the instant do not wrap."""
     cells = Table.grid(Column(width=4), Column(width=width), Column(no_wrap=True))
     sign, shown = _verdict(judged)
     cells.add_row(Text("  ").append(sign), Text(sentence), shown)
@@ -251,7 +257,7 @@ def _clause_cells(judged: ClauseJudged, sentence: str, width: int) -> Table:
 
 
 def _verdict(judged: ClauseJudged) -> tuple[Text, Text]:
-    """Return a clause's sign, and its margin and instant if it has them."""
+    """Return the sign of a judged clause, and its margin and its instant if it has them."""
     outcome = Outcome(judged.verdict)
     style = STYLES[outcome]
     shown = printable(margin(judged.robustness, judged.unit))

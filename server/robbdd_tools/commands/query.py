@@ -26,9 +26,10 @@ NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
 
 def query(path: Path, text: str | None, file: Path | None, name: str | None, form: str, results: str | None) -> int:
-    """Print the answer to one query, given as text, in a file, or as the name of a built-in one; return the exit code.
+    """Print the answer to one query and return the exit code.
 
-    The results of a run (see ``graph_with_results``) are part of the queried graph.
+    The query is given as text, as a file, or as the name of a built-in query. If ``results`` names a run, its results
+    are part of the queried graph (see ``graph_with_results``).
     """
     from robbdd_tools.graph.ask.query import BadQuery, run_query
 
@@ -57,7 +58,7 @@ def query(path: Path, text: str | None, file: Path | None, name: str | None, for
 
 
 def _save(rows: Rows, form: str) -> int:
-    """Print the graph that a query constructed in one of the graph formats."""
+    """Print the graph that a CONSTRUCT or DESCRIBE query returns in one of the graph formats."""
     from robbdd_tools.graph.rdf.serialize import UnwritableGraph, serialize
 
     if rows.graph is None:
@@ -70,7 +71,7 @@ def _save(rows: Rows, form: str) -> int:
 
 
 def _source(text: str | None, file: Path | None, name: str | None) -> tuple[str, str] | None:
-    """Return a query's display name and text; print a message unless exactly one query is given."""
+    """Return the display name and the text of the query. If not exactly one query is given, a message is printed."""
     from robbdd_tools.graph.ask.query import ready_queries, ready_query
 
     if sum(given is not None for given in (text, file, name)) != 1:
@@ -119,7 +120,10 @@ def _csv(rows: Rows) -> None:
 
 
 def _cell(value: str) -> str:
-    """Return a value as one line that no spreadsheet reads as a formula; numbers, also negative, stay unchanged."""
+    """Return a value as one line that no spreadsheet interprets as a formula.
+
+    Numbers, including negative ones, stay unchanged.
+    """
     cell = printable(value)
     return f"'{cell}" if cell.lstrip().startswith(FORMULA) and not NUMBER.fullmatch(cell) else cell
 

@@ -19,9 +19,13 @@ from robbdd_tools.workbench.stored import store_at
 
 @dataclass(frozen=True, slots=True)
 class ReplayOptions:
-    """The run (a number, ``latest`` or a folder), the scenario names, the store of runs, the simulation policy.
+    """The options of ``robbdd replay``.
 
-    ``force`` simulates with the current files, even if they have changed.
+    - ``run``: the stored run, given as a number, as ``latest`` or as a folder.
+    - ``policy``: the policy of the simulation.
+    - ``names``: the names of the scenarios to replay.
+    - ``store``: the store of runs.
+    - ``force``: simulate with the current files, even if they have changed since the run.
     """
 
     run: str
@@ -32,7 +36,10 @@ class ReplayOptions:
 
 
 def replay(options: ReplayOptions) -> int:
-    """Print for each scenario whether its trace is identical; return 0 if all are, else 1."""
+    """Simulate the scenarios again and print for each of them whether its trace is identical.
+
+    Returns 0 if all traces are identical, otherwise 1.
+    """
     return report_problems(Outputs(), viewer=False, work=lambda: _replay(options))
 
 

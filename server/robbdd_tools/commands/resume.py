@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ResumeOptions:
-    """The run (a number, ``latest`` or a folder) and the model, if given, and how to continue.
+    """The options of ``robbdd run --resume``.
 
-    ``jobs``, ``timeout`` (s) and ``stop_on_failure``, if given, replace those of the run.
+    They are the run (a number, ``latest`` or a folder), the model if it is given, and the settings with which to
+    continue. If ``jobs``, ``timeout`` (s) or ``stop_on_failure`` is given, it replaces the setting of the run.
     """
 
     run: str
@@ -35,7 +36,7 @@ class ResumeOptions:
 
 
 def resume(options: ResumeOptions) -> int:
-    """Execute the open scenarios of a run; return the exit code as ``robbdd run``."""
+    """Execute the open scenarios of a run; return the exit code as ``robbdd run`` does."""
     return report_problems(options.outputs, viewer=options.viewer, work=lambda: _resume(options))
 
 

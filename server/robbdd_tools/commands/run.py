@@ -44,10 +44,12 @@ class Outputs:
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """Models, or folders of models, to run, and options.
+    """The options of ``robbdd run``.
 
-    ``repeat`` replaces the repetitions of executions. ``rerun_failed`` selects what failed in the last stored run;
-    ``viewer`` opens a window on each scenario, one after another.
+    - ``paths``: the models, or folders of models, to run.
+    - ``repeat``: replaces the number of repetitions that executions state.
+    - ``rerun_failed``: select the scenarios that failed in the last stored run.
+    - ``viewer``: open a window on each scenario, one after another.
     """
 
     paths: Sequence[Path]
@@ -65,7 +67,7 @@ def run(options: RunOptions) -> int:
 
 
 def report_problems(outputs: Outputs, *, viewer: bool, work: Callable[[], int]) -> int:
-    """Do the work of a run; print why it failed, if so, and return the exit code."""
+    """Call ``work``, which does the work of a run, and return the exit code. If it fails, print the reason."""
     problem = _unwritable(outputs) or (no_display() if viewer else "")
     if problem:
         return fail(problem)
@@ -84,7 +86,10 @@ def report_problems(outputs: Outputs, *, viewer: bool, work: Callable[[], int]) 
 
 
 def viewed_policy(policy: Policy, *, viewer: bool) -> Policy:
-    """Return the policy for a run shown in the viewer, one scenario after another, if ``viewer``."""
+    """Return the policy of a run.
+
+    If ``viewer`` is true, scenarios are executed one after another, so that the viewer can show them.
+    """
     if not viewer:
         return policy
     os.environ[VIEWER] = "1"
@@ -92,7 +97,7 @@ def viewed_policy(policy: Policy, *, viewer: bool) -> Policy:
 
 
 def conclude(run: Run, outputs: Outputs, ended_by: int) -> int:
-    """Write the reports of a run, print where it is kept, and return the exit code. Raises ``OSError``."""
+    """Write the reports of a run, print where the run is stored, and return the exit code. Raises ``OSError``."""
     results = run.progress
     # Print this first: a report that cannot be written loses no result.
     if run.place.kept:
@@ -139,7 +144,7 @@ def _run(options: RunOptions) -> int:
 
 
 def _unwritable(outputs: Outputs) -> str:
-    """Return why reports cannot be written to their places; empty if they can."""
+    """Return the reason why reports cannot be written to their places; empty if they can be written."""
     for report in (outputs.report, outputs.junit):
         if report is not None and not report.absolute().parent.is_dir():
             return f"cannot write {report}: there is no folder {report.parent}"

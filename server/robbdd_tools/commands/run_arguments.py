@@ -1,4 +1,4 @@
-"""Arguments of ``robbdd run`` and related commands. Imports nothing heavy until they are used."""
+"""Arguments of ``robbdd run`` and related commands. Heavy modules are imported only when an argument is used."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def argument_problem(options: argparse.Namespace) -> str:
 
 
 class TakesArguments(Protocol):
-    """Common interface of a parser and an argument group."""
+    """Common interface of an argument parser and an argument group."""
 
     def add_argument(self, *names: str, **options: Any) -> argparse.Action:
         """Add an argument, as ``argparse`` does."""

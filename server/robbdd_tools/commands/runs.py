@@ -1,4 +1,4 @@
-"""``robbdd runs``: the stored runs of a project."""
+"""``robbdd runs``: list the stored runs of a project."""
 
 from __future__ import annotations
 

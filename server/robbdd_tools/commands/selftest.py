@@ -1,4 +1,4 @@
-"""Tests of ``robbdd doctor``: our own commands on an example, in processes with a time limit."""
+"""Tests of ``robbdd doctor``. They execute commands of RobBDD on an example in processes with a time limit."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def features(folder: Path) -> str:
 
 
 def simulation(folder: Path) -> str:
-    """Execute one scenario of the example, and read its verdict from the example's store."""
+    """Execute one scenario of the example, and read its verdict from the example's store of runs."""
     done = _robbdd("run", folder / MODEL, "--first", "1", "--jobs", "1")
     try:
         run = store_beside(folder / MODEL).find("latest")
@@ -79,7 +79,7 @@ def simulation(folder: Path) -> str:
 
 
 def rendering(folder: Path) -> str:
-    """Render the example's scene with the first working back end; raises ``Unavailable`` if none works."""
+    """Render the example's scene with the first graphics back end that works. Raises ``Unavailable`` if none works."""
     failures: list[str] = []
     for back_end in back_ends():
         picture = folder.with_name(f"{back_end}.png")

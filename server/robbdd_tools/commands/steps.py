@@ -11,9 +11,9 @@ from robbdd_tools.commands.output import fail, print_document, print_line
 
 
 def write_steps(path: Path, target: Path | None, *, undefined: bool = False) -> int:
-    """Print the skeleton, or add missing steps to ``target``; return the exit code.
+    """Print the skeleton or, if there is a file ``target``, add the missing steps to it. Return the exit code.
 
-    ``undefined`` leaves out the sentences that the catalog defines.
+    If ``undefined`` is true, the skeleton leaves out the sentences that the catalog defines.
     """
     from robbdd_tools.gherkin.skeleton import add_steps, free_patterns, patterns, skeleton
 

@@ -1,4 +1,4 @@
-"""Console of commands that draw on a terminal; it prints text without interpreting markup or control codes."""
+"""The console of commands that draw on a terminal. It interprets neither markup nor control codes in a text."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from robbdd_tools.base.printable import printable
 
 
 def terminal(*, stderr: bool = False) -> Console:
-    """Return a console that interprets no markup and no emoji names, and highlights nothing."""
+    """Return a console that interprets neither markup nor emoji names, and that highlights nothing."""
     return Console(stderr=stderr, markup=False, emoji=False, highlight=False)
 
 
 def plain(text: str, style: str = "") -> Text:
-    """Return one line of text in a style, escaped by ``printable``."""
+    """Return one line of text in a style. ``printable`` escapes the text."""
     return Text(printable(text), style)

@@ -1,4 +1,4 @@
-"""``robbdd view``: render a scenario's initial scene, with its workspaces labelled."""
+"""``robbdd view``: render the initial scene of a scenario with labelled workspaces."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def view(path: Path, name: str | None, seed: int | None, output: Path | None) -> int:
-    """Write the picture of the first scenario, or of the one called ``name``; return the exit code."""
+    """Write the picture of the scenario called ``name``, or of the first scenario. Return the exit code."""
     return report_problems(Outputs(), viewer=False, work=lambda: _view(path, name, seed, output))
 
 
@@ -42,7 +42,7 @@ def _view(path: Path, name: str | None, seed: int | None, output: Path | None) -
 
 
 def _index(manifest: Manifest, name: str | None) -> int | None:
-    """Return the first scenario with a name, its own or its variant's."""
+    """Return the number of the first scenario that has a name, or whose variant has it."""
     for index, scenario in enumerate(manifest.scenarios):
         if name is None or name in (scenario.name, _variant(scenario.name)):
             return index

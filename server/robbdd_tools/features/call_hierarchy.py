@@ -1,4 +1,4 @@
-"""Call hierarchy: a user story calls its variants, these their templates, a template its behaviours."""
+"""Call hierarchy: a user story calls its variants, a variant its template, and a template its behaviours."""
 
 from __future__ import annotations
 
@@ -21,20 +21,23 @@ _CALLABLE = (SymbolKind.STORY, SymbolKind.VARIANT, SymbolKind.TEMPLATE, SymbolKi
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """The other end of a use, and the places of the use (absolute, in the user's document)."""
+    """One entry of a call hierarchy: the caller or the called declaration, and the places of the calls.
+
+    The places are absolute and in the document of the caller.
+    """
 
     other: Definition
     spans: tuple[Span, ...]
 
 
 def callable_at(snapshot: Snapshot, uri: str, offset: int) -> Definition | None:
-    """Return the story, variant, template or behaviour under a cursor."""
+    """Return the story, variant, template or behaviour at an offset."""
     found = symbol_at(snapshot, uri, offset)
     return found[1] if found is not None and found[1].kind in _CALLABLE else None
 
 
 def calls_from(snapshot: Snapshot, definition: Definition) -> list[Call]:
-    """Return the uses in a story, variant or template, in text order."""
+    """Return the declarations that a story, variant or template calls, in text order."""
     match definition.kind:
         case SymbolKind.STORY:
             return [Call(part, (part.span,)) for part in _parts(snapshot, definition, SymbolKind.VARIANT)]
@@ -47,7 +50,7 @@ def calls_from(snapshot: Snapshot, definition: Definition) -> list[Call]:
 
 
 def calls_to(snapshot: Snapshot, definition: Definition) -> list[Call]:
-    """Return the users of a variant, template or behaviour, file by file in text order."""
+    """Return the callers of a variant, template or behaviour, file by file in text order."""
     match definition.kind:
         case SymbolKind.BEHAVIOUR | SymbolKind.VARIANT:
             owner = _owner(snapshot, definition)

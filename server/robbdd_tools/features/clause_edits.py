@@ -1,4 +1,4 @@
-"""Edits of clauses: remove some from a conjunction, add others to one."""
+"""Text edits that remove clauses from a conjunction or add clauses to one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,11 @@ def operands(expression: tree.Expression) -> tuple[tree.Expression, ...]:
 
 
 def removals(spans: Sequence[Span], gone: Sequence[bool]) -> Iterator[Span]:
-    """Yield the spans that remove some operands of a conjunction, not all: each with the ``and`` to a remaining one."""
+    """Yield the spans to delete in order to remove some operands of a conjunction.
+
+    ``gone`` marks the operands to remove; at least one operand must remain. Each span includes the ``and`` that would
+    become superfluous.
+    """
     first_kept = gone.index(False)
     for position, span in enumerate(spans):
         if gone[position] and position < first_kept:
@@ -33,9 +37,10 @@ def removals(spans: Sequence[Span], gone: Sequence[bool]) -> Iterator[Span]:
 
 
 def additions(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> Iterator[Change]:
-    """Yield the changes that add clauses after those in ``Given`` or ``Then`` of a template's body.
+    """Yield the changes that add clauses to the end of ``Given`` or ``Then`` in the body of a template.
 
-    Spans count from the start of the template's declaration; the second and later lines of ``texts`` from column 0.
+    Spans count from the start of the template's declaration. In ``texts``, all lines but the first must have no
+    indentation of their own.
     """
     there = body.given if label == "Given" else body.then
     if there is None:
@@ -54,7 +59,7 @@ def additions(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> 
 
 
 def changed(text: str, span: Span, changes: Iterable[Change]) -> str:
-    """Return a span of a text after changes, which count from the start of the text."""
+    """Return a span of a text after some changes. The spans of the changes count from the start of the text."""
     piece = text[: span.end]
     for place, new in sorted(changes, key=lambda change: change[0], reverse=True):
         piece = piece[: place.start] + new + piece[place.end :]
@@ -62,7 +67,11 @@ def changed(text: str, span: Span, changes: Iterable[Change]) -> str:
 
 
 def column(site: Site, offset: int) -> int:
-    """Return the column of an offset in a declaration, or that of its line's content plus one indentation step."""
+    """Return the column at which further clauses are indented.
+
+    This is the column of the offset if nothing precedes it on its line. Otherwise it is one step more than the line's
+    indentation.
+    """
     document = site.file.document
     place = document.position(site.placed.offset + offset)
     line = document.line_text(place.line)
@@ -71,13 +80,13 @@ def column(site: Site, offset: int) -> int:
 
 
 def unindented(text: str, by: int) -> str:
-    """Return a text with the indentation of all lines but the first reduced."""
+    """Return a text in which the indentation of all lines but the first is reduced by ``by`` columns."""
     first, *rest = text.splitlines(keepends=True)
     return "".join((first, *(line[min(by, len(line) - len(line.lstrip(" "))) :] for line in rest)))
 
 
 def _new_part(site: Site, body: tree.Body, label: str, texts: Sequence[str]) -> Change:
-    """Return the change that adds a whole ``Given`` before, or ``Then`` after, the middle of a body."""
+    """Return the change that adds a new ``Given`` at the start of a body, or a new ``Then`` at its end."""
     middle = body.when or body.for_all
     assert middle is not None
     outer = column(site, middle.span.start)

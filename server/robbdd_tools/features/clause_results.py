@@ -1,4 +1,4 @@
-"""Results of runs, aggregated over variations and mapped to clauses and table rows."""
+"""Aggregate results of runs over variations, and map them to clauses and table rows."""
 
 from __future__ import annotations
 
@@ -30,11 +30,15 @@ MAX_LINES_OF_FAILURES = 5
 
 @dataclass(frozen=True, slots=True)
 class ResultHint:
-    """The hint after a clause or row at ``span`` (absolute); ``lines`` describe variations, the worst first.
+    """The hint to show after the clause or table row at ``span`` (absolute).
 
-    ``outcome`` is the worst one; ``stale``: the text has changed since. ``failing`` are the verdicts on a clause that
-    did not hold, the worst first; ``worst`` is the worst of all. ``vacuous`` says why the clause could not have failed,
-    ``substitutions`` which catalog behaviours were executed instead of the model's.
+    - ``outcome``: the worst outcome of all variations.
+    - ``lines``: descriptions of the variations, the worst first.
+    - ``stale``: true if the text has changed since the run.
+    - ``failing``: the verdicts on a clause that did not hold, the worst first.
+    - ``worst``: the worst of all verdicts.
+    - ``vacuous``: the reason why the clause could not have failed.
+    - ``substitutions``: the catalog behaviours that were executed instead of the model's.
     """
 
     span: Span
@@ -49,7 +53,7 @@ class ResultHint:
 
     @property
     def tooltip(self) -> str:
-        """The full text, shortened if there are many variations."""
+        """The full text of the hint. It is shortened if there are many variations."""
         remarks = [_CHANGED] * self.stale + [f"It proves little: {self.vacuous}."] * bool(self.vacuous)
         remarks += self.substitutions
         return "\n".join((*remarks, *_shortened(self.lines, MAX_LINES)))
@@ -57,7 +61,7 @@ class ResultHint:
 
 @dataclass(frozen=True, slots=True)
 class PassRate:
-    """Number of passed scenarios of a variant, and of all that were run; ``outcome`` is the worst one."""
+    """The number of a variant's scenarios that passed and of those that were run. ``outcome`` is the worst outcome."""
 
     passed: int
     run: int
@@ -66,7 +70,7 @@ class PassRate:
 
     @property
     def label(self) -> str:
-        """The rate as text."""
+        """The pass rate as text."""
         return f"{SIGNS[self.outcome]} {self.passed}/{self.run} passed" + (f" {STALE}" if self.stale else "")
 
 
@@ -76,7 +80,7 @@ def appearance(shown: ResultHint | PassRate) -> dict[str, Any]:
 
 
 def verdict_of(outcome: str) -> str:
-    """Return the verdict of an outcome: a clause that no step can judge is unknown."""
+    """Return the verdict for an outcome. A clause that no step can judge has the verdict *unknown*."""
     return "unknown" if outcome == "undefined" else outcome
 
 
@@ -93,7 +97,7 @@ def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[Resul
 
 
 def row_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHint]:
-    """Return a hint for each table row whose scenario was run, with the failed clauses."""
+    """Return a hint for each table row whose scenario was run. The hint lists the clauses that failed."""
     hints: list[ResultHint] = []
     for variant in variants_of(snapshot, uri) if findings.variants else ():
         scenarios = findings.variants.get(variant.iri, ())
@@ -107,7 +111,7 @@ def row_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[ResultHi
 
 
 def pass_rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> PassRate | None:
-    """Return the pass rate of a variant's last runs, ``None`` if it was never run."""
+    """Return the pass rate of a variant in its last runs, or ``None`` if it was never run."""
     known = findings.variants.get(variant.iri)
     if known is None:
         return None
@@ -116,14 +120,17 @@ def pass_rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) ->
 
 
 def execution_rate(snapshot: Snapshot, execution: PlacedExecution, findings: Findings) -> PassRate | None:
-    """Return the pass rate of a variant's last runs by an execution, ``None`` if there is none."""
+    """Return the pass rate of an execution's variant in its last runs by this execution.
+
+    Returns ``None`` if there are no such runs.
+    """
     now = execution_digest(snapshot, execution)
     own = (one for one in findings.variants.get(execution.variant.iri, ()) if one.execution == execution.iri)
     return _rate((one, one.execution_digest == now) for one in own)
 
 
 def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
-    """Return the pass rate of scenarios, each with whether the current text was judged."""
+    """Return the pass rate of scenarios. Each scenario is given with whether its run judged the current text."""
     finished = [(one.outcome, current) for one, current in scenarios if one.finished]
     if not finished:
         return None
@@ -133,10 +140,11 @@ def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
 
 
 def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:
-    """Return a diagnostic for each clause that did not hold in some variation; none if the text has changed since.
+    """Return a diagnostic for each clause that did not hold in some variation.
 
-    It lists the worst variations with their instants, with links to their table rows; a ``brief`` one, shown above a
-    hover with the full list, names only the worst.
+    Clauses whose text has changed since the run have none. A diagnostic lists the worst variations with their instants,
+    and links to their table rows. If it is ``brief``, it names only the worst variation, because a hover below it shows
+    the full list.
     """
     rows = _rows(snapshot, uri) if findings.clauses else {}
     found: list[Diagnostic] = []
@@ -211,7 +219,7 @@ def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -
 
 
 def substitutions(scenarios: Iterable[JudgedScenario]) -> tuple[str, ...]:
-    """Return the distinct substitutions of model behaviours by catalog behaviours, in words."""
+    """Return a text for each distinct substitution of a behaviour of the model by a behaviour of the catalog."""
     found = (scenario.substitution for scenario in scenarios)
     return tuple(map(str, dict.fromkeys(one for one in found if one is not None)))
 

@@ -1,4 +1,4 @@
-"""Completion: keywords that the grammar accepts at the cursor, and names in scope."""
+"""Completion: propose the keywords that the grammar accepts at the cursor, and the names in scope."""
 
 from __future__ import annotations
 
@@ -44,11 +44,15 @@ _VALUE_RULES = {f"{role}Path" for role in ("Element", "ObjectSet", "WorkspaceSet
 
 @dataclass(frozen=True, slots=True)
 class Completion:
-    """One proposal: ``kind`` is ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog``, ``setting`` or a symbol's.
+    """One completion proposal.
 
-    ``text`` replaces ``span`` or, including the text after the cursor, ``whole``; a snippet's text has placeholders.
-    The proposal with the smaller ``rank`` fits better. ``edits`` are additional (an import). ``origin`` is the document
-    and qualified name of a name, or the URI of a file and ``""``.
+    - ``kind``: ``keyword``, ``snippet``, ``file``, ``folder``, ``catalog``, ``setting``, or the kind of a symbol.
+    - ``text``: the text to insert. The text of a snippet contains placeholders.
+    - ``span``: the text that ``text`` replaces.
+    - ``whole``: like ``span``, but including the rest of the word after the cursor.
+    - ``rank``: a proposal with a smaller rank fits better.
+    - ``edits``: additional edits, for example a new import.
+    - ``origin``: the document and the qualified name of a proposed name, or the URI of a proposed file and ``""``.
     """
 
     label: str
@@ -63,10 +67,11 @@ class Completion:
 
 
 def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | None = None) -> list[Completion]:
-    """Return the proposals at a cursor, keywords first, each group in alphabetical order.
+    """Return the proposals at a cursor: first keywords, then names, each group in alphabetical order.
 
-    Variables of the wrong type for a slot come last; values of the wrong type for their variable, or outside of their
-    variant's scene, are left out. Names of files not yet imported come with the import.
+    Variables whose type does not fit the slot are last. Values are left out if their type does not fit their variable,
+    or if the scene of their variant does not contain them. Names in files that are not yet imported are proposed
+    together with the import.
     """
     analysis = snapshot.file(uri)
     if analysis is None:
@@ -99,7 +104,10 @@ def complete(snapshot: Snapshot, uri: str, offset: int, elsewhere: Elsewhere | N
 
 
 def _expected(language: str, before: str) -> tuple[str, Expectation | None]:
-    """Return the expectation after a text, and the parsed text: unparsable lines are blanked."""
+    """Return what the grammar expects after a text, and the text that was parsed.
+
+    Lines that cannot be parsed are blanked.
+    """
     for _ in range(MAX_BROKEN_LINES):
         parsed = parse_chunk(language, before)
         if isinstance(parsed, Parsed):
@@ -116,7 +124,7 @@ def _expected(language: str, before: str) -> tuple[str, Expectation | None]:
 
 
 def _phrases(language: str, before: str, expected: Expectation) -> list[str]:
-    """Return the accepted keywords, each with the keywords that must follow it."""
+    """Return each accepted keyword together with the keywords that must follow it."""
     found: set[str] = set()
     for literal in expected.literals:
         if not literal[:1].isalpha():
@@ -171,7 +179,7 @@ class _Names:
                 yield Completion(event, "event", f"of {', '.join(names)}", event, self.cursor.span, self.whole)
 
     def proposals(self, rules: Iterable[str], bracket: str) -> Iterator[Completion]:
-        """Yield the names that match some rules: those in scope, then those of files to import."""
+        """Yield the names that match some rules: first the names in scope, then the names in importable files."""
         uri = self.file.document.uri
         roles = sorted(rule.removesuffix("Path") for rule in rules if rule.endswith("Path"))
         wanted, members = ANYTHING, None
@@ -196,7 +204,7 @@ class _Names:
             yield self._written(name, definition), definition, int(name in misfits)
 
     def _written(self, name: str, definition: Definition) -> str:
-        """Return the shortest form of a name that starts with the typed qualifier."""
+        """Return the shortest form of a name that starts with the qualifier that the user typed."""
         qualifier, dot, _ = self.cursor.word.rpartition(".")
         path = definition.symbol.path
         if not dot or definition.uri != self.file.document.uri or not path.endswith(name):
@@ -223,7 +231,10 @@ class _Names:
 
 
 def _misfits(cursor: Cursor) -> frozenset[str]:
-    """Return the variables of the declaration at the cursor whose type in other phrases does not fit."""
+    """Return the variables in the declaration at the cursor whose type does not fit the slot at the cursor.
+
+    The type of a variable is inferred from the other phrases that use it.
+    """
     wanted = slot_wanted(cursor.before)
     if cursor.placed is None or wanted == ANYTHING:
         return frozenset()
@@ -233,7 +244,7 @@ def _misfits(cursor: Cursor) -> frozenset[str]:
 
 
 def _needs_closing(text: str, cursor: Cursor) -> bool:
-    """Return whether a reference at the cursor still lacks its ``>``."""
+    """Return whether the reference at the cursor still lacks its closing ``>``."""
     return re.compile(r"[\w\-.]*\s*>").match(text, cursor.span.end) is None
 
 

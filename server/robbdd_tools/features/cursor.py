@@ -1,4 +1,4 @@
-"""Context of a cursor: the chunk, the enclosing declarations, the partly typed word."""
+"""The context of a cursor: its chunk, the enclosing declarations, and the partly typed word."""
 
 from __future__ import annotations
 
@@ -22,11 +22,13 @@ _BLOCK = re.compile(r"(?<![\w\-.<])(?:kgraph\s*\([^()]*\)|body)\s*([^\W\d][\w\-]
 
 @dataclass(frozen=True, slots=True)
 class Cursor:
-    """A place in a file.
+    """The context of an offset in a file.
 
-    ``before`` is the text of the chunk up to the word at the cursor, in a story without the preceding scenarios;
-    ``word`` is the typed part of the word and ``span`` its absolute place; ``scopes`` are the paths of the enclosing
-    declarations, innermost first; ``quoted`` is the open comment or string, if the cursor is inside one.
+    - ``before``: the text from the start of the declaration to the word at the cursor. In a story, it leaves out the
+      scenarios before the current one.
+    - ``word``: the part of the word that the user has typed, and ``span`` is its absolute place.
+    - ``scopes``: the paths of the enclosing declarations, innermost first.
+    - ``quoted``: the open comment or string that contains the cursor, if any.
     """
 
     placed: PlacedDeclaration | None
@@ -49,7 +51,10 @@ def cursor_at(analysis: FileAnalysis, offset: int) -> Cursor:
 
 
 def _before(analysis: FileAnalysis, placed: PlacedDeclaration | None, offset: int) -> str:
-    """Return the text of a declaration up to the cursor, of a story without the scenarios before the current one."""
+    """Return the text of a declaration up to the cursor.
+
+    In a story, the text leaves out the scenarios before the current one.
+    """
     if placed is None:
         return analysis.document.text[:offset]
     parts = placed.parts
@@ -72,7 +77,7 @@ def _scopes(placed: PlacedDeclaration | None, before: str) -> tuple[str, ...]:
 
 
 def _open_blocks(before: str) -> Iterator[str]:
-    """Yield the names of the blocks open at the end of a text, outermost first."""
+    """Yield the names of the blocks that are still open at the end of a text, outermost first."""
     blocks = list(_BLOCK.finditer(before))
     code = _QUOTED.sub(lambda match: " " * len(match[0]), before) if blocks else ""
     for block in blocks:

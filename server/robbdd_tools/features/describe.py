@@ -1,4 +1,4 @@
-"""Descriptions of names in Markdown, for hover and for resolved completions."""
+"""Describe names in Markdown, for hover and for resolved completions."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ _COMPLETE = {
 
 
 def describe(snapshot: Snapshot, definition: Definition, findings: Findings = NOTHING) -> str:
-    """Describe a name: kind, type, comment above it, IRI, contents, sentence, results, uses."""
+    """Describe a name: its kind, type, preceding comment, IRI, contents, sentence, results and uses."""
     site = site_of(snapshot, definition)
     parts = [_title(snapshot, definition), *_comment(site, definition)]
     if site is not None:
@@ -104,7 +104,7 @@ def describe_import(snapshot: Snapshot, uri: str) -> str:
 
 
 def describe_words(words: str) -> str | None:
-    """Describe the catalog words whose phrases contain some keywords."""
+    """Describe the words of the catalog whose phrases contain the given keywords."""
     catalog = load_catalog()
     known = (*catalog.predicates.values(), *catalog.behaviours.values())
     found = [word_meaning(word) for word in known if f" {words} " in f" {word.phrase} "]
@@ -112,7 +112,7 @@ def describe_words(words: str) -> str | None:
 
 
 def variants_of(snapshot: Snapshot, template: Definition) -> Iterator[Scenario]:
-    """Yield the variants of a template, in its own file and in those that import it."""
+    """Yield the variants of a template, both in its own file and in the files that import it."""
     for uri in (template.uri, *snapshot.importers(template.uri)):
         file = snapshot.file(uri)
         for site in story_sites(snapshot, file) if file is not None else ():
@@ -194,7 +194,7 @@ def _clause(site: Site, definition: Definition) -> Iterator[str]:
 
 
 def _tree_node(site: Site, definition: Definition) -> Iterator[str]:
-    """Yield the action of a behaviour tree's node, and its linked behaviours."""
+    """Yield lines about a node of a behaviour tree: its action and the behaviours that are linked to it."""
     for node in walk(site.tree) if site.tree is not None else ():
         if isinstance(node, tree.TreeComposite) and site.span(node.name) == definition.span:
             parts = ", ".join(f"`{part.name.text}`" for part in node.nodes)
@@ -247,7 +247,7 @@ def result_words(hint: ResultHint) -> str:
 
 
 def _rate(snapshot: Snapshot, variant: PlacedVariant, findings: Findings) -> Iterator[str]:
-    """Yield the pass rate of a variant, and the scenarios that did not pass."""
+    """Yield lines about a variant: its pass rate, and the scenarios that did not pass."""
     rate = pass_rate(snapshot, variant, findings)
     if rate is None:
         return

@@ -1,4 +1,4 @@
-"""Descriptions of completion proposals in Markdown: every kind of entry, loaded or not."""
+"""Describe completion proposals of every kind in Markdown, whether their file is loaded or not."""
 
 from __future__ import annotations
 
@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 
 
 def describe_entry(snapshot: Snapshot, kind: str, uri: str, path: str) -> str | None:
-    """Describe a proposal by its kind, its document (or that of a name or file) and its label (or qualified name)."""
+    """Describe a completion proposal.
+
+    ``kind`` is the kind of the proposal. For a name, ``uri`` is the document that declares it and ``path`` is its
+    qualified name. For a file, ``uri`` is its URI. For any other proposal, ``uri`` is the current document and ``path``
+    is the label.
+    """
     match kind:
         case "keyword":
             return _keyword(language_of(uri), path)
@@ -66,7 +71,7 @@ def _file(snapshot: Snapshot, uri: str) -> str:
 
 
 def _with(snapshot: Snapshot, uri: str) -> Snapshot:
-    """Return a snapshot that contains a file: this one, or a temporary one of that file."""
+    """Return a snapshot that contains a file: the given snapshot, or a temporary one of that file."""
     if uri in snapshot.sources:
         return snapshot
     project = Project()

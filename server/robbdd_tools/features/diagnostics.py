@@ -1,4 +1,4 @@
-"""All diagnostics of a file: fast ones on every keystroke, and slow ones from the shapes."""
+"""All diagnostics of a file: the fast ones for every keystroke, and the slow ones from SHACL shapes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
 
 def fast_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-    """Return syntax, name and rule diagnostics of one file; a single one at its start if it is unreadable."""
+    """Return the diagnostics of one file that concern syntax, names and rules.
+
+    An unreadable file has a single diagnostic at its start.
+    """
     unreadable = snapshot.unreadable(uri)
     if unreadable is not None:
         return [Diagnostic(uri, Span(0, 0), Severity.ERROR, unreadable.code, unreadable.reason)]
@@ -35,11 +38,11 @@ def shape_diagnostics(
     validation: Validation | None = None,
     is_superseded: Callable[[], bool] = lambda: False,
 ) -> list[Diagnostic]:
-    """Return the SHACL diagnostics of the graph of a file merged with its imports, each in its own file.
+    """Return the SHACL diagnostics of the graph of a file and its imports. Each diagnostic names its own file.
 
-    Those that a fast rule reports at the same place are left out. ``shapes`` are added to the project's. A
-    ``validation`` that knows an earlier revision checks only the changes since, and raises ``Superseded`` when it is
-    outdated.
+    A diagnostic is left out if a fast rule already reports it at the same place. ``shapes`` are added to the shapes of
+    the project. If a ``validation`` of an earlier revision is given, only the changes since then are checked. It raises
+    ``Superseded`` when ``is_superseded`` returns true.
     """
     from robbdd_tools.graph.shapes.project_shapes import project_shapes
     from robbdd_tools.graph.shapes.validate import validate
@@ -58,7 +61,7 @@ def shape_diagnostics(
 
 
 def all_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-    """Return every diagnostic of a file and its imports, sorted by file and place."""
+    """Return every diagnostic of a file and of its imports, sorted by file and place."""
     found = dict.fromkeys(fast_diagnostics(snapshot, uri))
     if snapshot.file(uri) is not None:
         for analysis in snapshot.closure(uri)[1:]:

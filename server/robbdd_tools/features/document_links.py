@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DocumentLink:
-    """A path in a text (absolute span, without quotes) and the linked document."""
+    """A path in a text and the document that it names. The span is absolute and excludes the quotes."""
 
     span: Span
     target: str
 
 
 def document_links(snapshot: Snapshot, uri: str) -> list[DocumentLink]:
-    """Return the links of a file with existing targets, in text order."""
+    """Return the links of a file whose targets exist, in text order."""
     file = snapshot.file(uri)
     if file is None:
         return []

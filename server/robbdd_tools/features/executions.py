@@ -1,4 +1,4 @@
-"""The executions of a ``.bddx``, read from its text, for test trees."""
+"""List the executions of a ``.bddx`` for test trees. They are read from the text of the file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _HOW = (".bddx", ".scenex", ".ktree")
 
 @dataclass(frozen=True, slots=True)
 class PlacedExecution:
-    """An execution: its definition, its tree, its declaration, and the executed variant."""
+    """An execution in a text: its definition, its syntax tree, its declaration and the variant that it executes."""
 
     definition: Definition
     iri: str
@@ -49,7 +49,10 @@ def executions_of(snapshot: Snapshot, uri: str) -> Iterator[PlacedExecution]:
 
 
 def relevant_declarations(execution: PlacedExecution) -> list[Site]:
-    """Return its declaration and those that it depends on in files of these kinds, directly or indirectly, in order."""
+    """Return the declaration of an execution and the declarations that it depends on, directly or indirectly.
+
+    Only declarations in files that describe execution are included, sorted by document and position.
+    """
     site = execution.site
     found = {(site.uri, site.placed.offset): site}
     fresh = [site]

@@ -35,7 +35,7 @@ _SETS = (SymbolKind.OBJECT_SET, SymbolKind.WORKSPACE_SET, SymbolKind.AGENT_SET)
 
 
 def with_fixes(snapshot: Snapshot, file: FileAnalysis, found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield the diagnostics of name resolution with the fixes that the loaded files allow."""
+    """Yield the diagnostics of name resolution, each with the quick fixes that the loaded files allow."""
     for diagnostic in found:
         if diagnostic.code not in ("unknown-name", "wrong-kind"):
             yield diagnostic
@@ -67,7 +67,10 @@ def reference_at(file: FileAnalysis, span: Span) -> tuple[PlacedDeclaration, Ref
 
 
 def imports_of(file: FileAnalysis, reference: Reference, others: Iterable[Importable]) -> Iterator[Fix]:
-    """Yield an import of each file that declares a name of the right kind."""
+    """Yield a fix for each file that declares the missing name with the right kind.
+
+    The fix adds the import of that file.
+    """
     kinds = ROLE_KINDS[reference.ref.role]
     for other in others:
         if any(kind in kinds for kind in other.names.get(reference.ref.path, ())):
@@ -94,7 +97,10 @@ def _declarations(
 def _template(
     snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, owner: str
 ) -> tuple[Site, tree.Template] | None:
-    """Return the template of a qualified variable; without a qualifier, the enclosing one."""
+    """Return the template that declares a qualified variable.
+
+    ``owner`` is the qualifier. Without a qualifier, it is the template in which the variable is used.
+    """
     for entry in file.declarations if owner else (placed,):
         root = entry.declaration.tree
         if isinstance(root, tree.Template) and owner in ("", root.name.text):
@@ -119,7 +125,10 @@ def _variable(site: Site, template: tree.Template, name: str, words: str) -> Ite
 def _other_role(
     snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, reference: Reference
 ) -> Iterator[Fix]:
-    """Yield the keyword that matches a link's target: ``ws set <places>`` instead of ``obj set <places>``."""
+    """Yield a fix that replaces the keyword before a link by the one that matches the kind of its target.
+
+    For example, ``obj set <places>`` becomes ``ws set <places>``.
+    """
     root = placed.declaration.tree
     nodes = walk(root) if root is not None else ()
     link = next((node for node in nodes if isinstance(node, tree.Link) and node.reference == reference.ref), None)

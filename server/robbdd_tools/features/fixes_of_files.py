@@ -1,4 +1,4 @@
-"""Fixes of diagnostics about other files: missing imports and models, cyclic imports."""
+"""Quick fixes of diagnostics about other files: missing imports, missing models and cyclic imports."""
 
 from __future__ import annotations
 
@@ -33,7 +33,11 @@ _EMPTY_MODELS: Mapping[str, str] = {
 
 
 def import_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield similar paths for an import and the creation of the missing file, or its removal if nothing is similar."""
+    """Yield fixes for an import that cannot be resolved.
+
+    They replace the path by a similar one or create the missing file. For an import of the file itself or of a file of
+    the wrong kind, they remove the import.
+    """
     link = _link(file, diagnostic.span)
     if link is None:
         return
@@ -52,7 +56,7 @@ def import_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic)
 
 
 def model_file_fixes(_: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield similar paths for a model, and an empty model at the missing path."""
+    """Yield fixes for a missing model file: similar paths, and the creation of an empty model at the missing path."""
     uri, own = file.document.uri, uri_to_path(file.document.uri)
     model = _model(file, diagnostic.span)
     if model is None or own is None or not isinstance(model.source, tree.SystemPath):
@@ -68,7 +72,10 @@ def model_file_fixes(_: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) ->
 
 
 def cycle_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield the removal of needless imports in a cycle: this one, or those by which other files lead back here."""
+    """Yield fixes for an import cycle. Each removes an import that is not needed.
+
+    The import is the reported one, or one by which another file in the cycle imports this file again.
+    """
     link = _link(file, diagnostic.span)
     if link is None:
         return
@@ -84,7 +91,10 @@ def cycle_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) 
 
 
 def _is_needless(snapshot: Snapshot, importer: str, imported: str) -> bool:
-    """Return whether a file and its importers still reach all that they use without an import."""
+    """Return whether an import is not needed.
+
+    It is not needed if the file and the files that import it can still access everything that they use without it.
+    """
     edges = {
         uri: [link.uri for link in source.imports if (uri, link.uri) != (importer, imported)]
         for uri, source in snapshot.sources.items()
@@ -117,7 +127,7 @@ def _model(file: FileAnalysis, span: Span) -> tree.Model | None:
 
 
 def _alike(written: str, uri: str, files: Iterable[str]) -> Iterator[str]:
-    """Yield the paths, relative to a file, of files with names similar to the written one."""
+    """Yield the relative paths of files whose names are similar to the written one."""
     paths = sorted(path for found in files if (path := import_path(uri, found)) is not None)
     stems = list(dict.fromkeys(map(_stem, paths)))
     for stem in get_close_matches(_stem(written), stems, n=MAX_OFFERED, cutoff=MIN_ALIKE):

@@ -1,4 +1,4 @@
-"""Fixes computed only on request: they need the disk, or a search of all names and uses."""
+"""Quick fixes that are computed only on request, because they read the disk or search all names and uses."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ Finder = Callable[["Snapshot", "FileAnalysis", Diagnostic], Iterator[Fix]]
 def fixes_on_demand(
     snapshot: Snapshot, uri: str, diagnostic: Diagnostic, elsewhere: Elsewhere | None = None
 ) -> tuple[Fix, ...]:
-    """Return the fixes of a diagnostic that it does not contain; all importers of its file must be loaded."""
+    """Return the quick fixes that a diagnostic does not contain yet.
+
+    All files that import the file of the diagnostic must be loaded.
+    """
     file, find = snapshot.file(uri), _FINDERS.get(diagnostic.code)
     if file is not None and diagnostic.code == "unknown-name":
         return tuple(_imports(snapshot, file, diagnostic, elsewhere))
@@ -46,7 +49,7 @@ def fixes_on_demand(
 def _imports(
     snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic, elsewhere: Elsewhere | None
 ) -> Iterator[Fix]:
-    """Yield imports of unloaded files that declare an unknown name."""
+    """Yield fixes for an unknown name. Each adds the import of a file that declares the name but is not loaded."""
     used, uri = reference_at(file, diagnostic.span), file.document.uri
     if used is not None:
         yield from imports_of(file, used[1], beside(snapshot, uri))
@@ -54,7 +57,7 @@ def _imports(
 
 
 def _another_name(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield a new name for a declaration with a duplicate IRI, at all its uses."""
+    """Yield a fix for a declaration with a duplicate IRI. The fix renames the declaration and all its uses."""
     span = diagnostic.span
     tables = (source.names.entries for source in snapshot.sources.values() if isinstance(source, FileIndex))
     name = free_name(file.document.text[span.start : span.end], (path for table in tables for path in table))
@@ -65,7 +68,7 @@ def _another_name(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic
 
 
 def _another_end(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield events that a duration may end with, first those declared after its start event."""
+    """Yield fixes that end a duration with another event. The events declared after its start event are first."""
     site = _site(snapshot, file, diagnostic)
     for clauses in clauses_of(site.placed.declaration) if site is not None else ():
         for during in clauses.durations:
@@ -105,7 +108,10 @@ def _another_set(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic)
 
 
 def _has_only(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> bool:
-    """Return whether a set has elements and these are of some kinds; a variable's type may be unknown."""
+    """Return whether a set has elements and all of them are of the given kinds.
+
+    The type of a variable may be unknown.
+    """
     if definition.kind is SymbolKind.SET_VARIABLE:
         return bool(variable_type(snapshot, definition).kinds & kinds)
     elements = elements_of(site_of(snapshot, definition))
@@ -113,7 +119,7 @@ def _has_only(snapshot: Snapshot, definition: Definition, kinds: Kinds) -> bool:
 
 
 def _without_values(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield the removal of a variable together with its values in the scenarios of its file."""
+    """Yield a fix that removes a variable together with its values in the scenarios of its file."""
     found = next((one for one in file.definitions.values() if one.span == diagnostic.span), None)
     if found is None or diagnostic.fixes or found.symbol.path.count(".") != 1:
         return
@@ -132,7 +138,10 @@ def _without_values(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnost
 
 
 def _column_removed(scenario: Scenario, number: int) -> tuple[Edit, ...]:
-    """Return the edits that remove a line or a column of a variation; none if it is the only one."""
+    """Return the edits that remove one variable of a variation: its line in a product or its column in a table.
+
+    Returns no edits if it is the only variable.
+    """
     variation = scenario.variant.variation
     if isinstance(variation, tree.Table):
         return column_removed(scenario.site, variation, number)

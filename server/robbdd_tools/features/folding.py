@@ -22,7 +22,10 @@ _LINE_END = re.compile(r"\r\n|\r|\n")
 
 @dataclass(frozen=True, slots=True, order=True)
 class Fold:
-    """Lines (from 0) that can be folded into the first; ``kind`` is ``region``, ``comment`` or ``imports``."""
+    """A range of lines (from 0) that can be folded into its first line.
+
+    ``kind`` is ``region``, ``comment`` or ``imports``.
+    """
 
     first: int
     last: int
@@ -56,7 +59,10 @@ def _brackets(file: FileAnalysis) -> Iterator[Fold]:
 
 @dataclass(frozen=True, slots=True)
 class _Brackets:
-    """The lines of the brackets in a text, counted from its first line: pairs, and unmatched ones."""
+    """The line numbers of the brackets in a text, counted from the first line of the text.
+
+    ``pairs`` are the lines of matching brackets. ``closed`` and ``opened`` are the lines of unmatched brackets.
+    """
 
     pairs: tuple[tuple[int, int], ...]
     closed: tuple[int, ...]

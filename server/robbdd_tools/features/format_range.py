@@ -1,4 +1,4 @@
-"""Formatting of a range, and of lines while typing."""
+"""Format a range of lines, and format lines while the user types."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ENDING = re.compile(r"\r\n|\r|\n")
 
 
 def format_range(document: Document, within: Span) -> list[Edit]:
-    """Return the edits that format the lines of a range as in the whole formatted text."""
+    """Return the edits that give the lines of a range the layout that they have in the formatted document."""
     first, last = document.position(within.start).line, document.position(within.end).line
     if last > first and document.position(within.end).column == 0:
         last -= 1
@@ -27,7 +27,11 @@ def format_range(document: Document, within: Span) -> list[Edit]:
 
 
 def format_on_type(document: Document, offset: int, typed: str) -> list[Edit]:
-    """Return the edits after a typed character: ``}`` and ``|`` format their lines, a new line is indented."""
+    """Return the edits to make after the user typed a character.
+
+    After ``}``, its line is formatted. After ``|``, its line and the table rows above it are formatted. After a line
+    break, the new line is indented.
+    """
     line = document.position(offset).line
     if typed != "\n":
         first = line
@@ -46,7 +50,7 @@ def format_on_type(document: Document, offset: int, typed: str) -> list[Edit]:
 
 
 def _changes(document: Document, first: int, last: int) -> Iterator[Edit]:
-    """Yield the differences to the formatted text within some lines; lines keep their own endings."""
+    """Yield the edits that turn some lines into the lines of the formatted text. Line endings stay unchanged."""
     end = 0
     for line in laid_out(document.text):
         yield from _without(document, max(end, first), min(line.first, last + 1))

@@ -1,4 +1,4 @@
-"""Go to definition: from a reference or an import to its declaration."""
+"""Go to definition: find the declaration of a referenced name, or the file of an import."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def symbol_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definition] | None:
-    """Return the name under a cursor (absolute span) with its definition, whether used or declared there.
+    """Return the name at an offset and its definition. The offset may be at a use or at the declaration.
 
-    Of a qualified name it is the part under the cursor.
+    The span of the name is absolute. In a qualified name, the part at the offset is returned.
     """
     analysis = snapshot.file(uri)
     if analysis is None:
@@ -36,7 +36,7 @@ def symbol_at(snapshot: Snapshot, uri: str, offset: int) -> tuple[Span, Definiti
 
 
 def definition(snapshot: Snapshot, uri: str, offset: int) -> tuple[str, Span] | None:
-    """Return the document and absolute span of the definition of a cursor's name or import."""
+    """Return the document and the absolute span of the definition of the name or import at an offset."""
     analysis = snapshot.file(uri)
     if analysis is None:
         return None
@@ -48,7 +48,10 @@ def definition(snapshot: Snapshot, uri: str, offset: int) -> tuple[str, Span] | 
 
 
 def _in_broken_text(snapshot: Snapshot, analysis: FileAnalysis, offset: int) -> tuple[Span, Definition] | None:
-    """Look a name up by its text: in a broken declaration, or if a part of it is unresolved."""
+    """Look up the text of a name.
+
+    This is used in a broken declaration, and for a name of which a part is unresolved.
+    """
     cursor = cursor_at(analysis, offset)
     if cursor.quoted is not None or cursor.placed is None:
         return None

@@ -1,4 +1,4 @@
-"""The picture of a model's graph, with links between nodes and text."""
+"""Draw the graph of a model as a picture whose nodes are linked to their places in the text."""
 
 from __future__ import annotations
 
@@ -19,10 +19,13 @@ MAX_DRAWN = 600
 
 @dataclass(frozen=True, slots=True)
 class GraphPicture:
-    """An SVG whose nodes carry ``data-iri``, and its nodes' places.
+    """A picture of a graph.
 
-    ``places`` are the source ranges of a node: its declaration, and every reference to it. ``total`` counts the nodes
-    of the whole graph; ``root`` is the node whose dependencies are drawn if that is not all.
+    - ``svg``: the picture. Each of its nodes has the attribute ``data-iri``.
+    - ``nodes``: the drawn nodes.
+    - ``places``: pairs of an IRI and a source range, for the declaration of each node and for every reference to it.
+    - ``total``: the number of nodes of the whole graph.
+    - ``root``: the node whose dependencies are drawn; ``None`` if the whole graph is drawn.
     """
 
     svg: str
@@ -37,8 +40,8 @@ def graph_picture(
 ) -> GraphPicture:
     """Draw the graph of a file without errors.
 
-    Of a graph with more than ``most`` nodes, the story around ``offset`` is drawn, otherwise the one with the node
-    ``before``.
+    If the graph has more than ``most`` nodes, only one story is drawn: the story at ``offset`` or, if there is none,
+    the story that contains the node ``before``.
     """
     from robbdd_tools.graph.ask.excerpt import limited
     from robbdd_tools.graph.ask.structure import structure_of
@@ -70,7 +73,7 @@ def _places(snapshot: Snapshot, uri: str) -> Iterator[tuple[str, Location]]:
 
 
 def _around(places: Sequence[tuple[str, Location]], uri: str, offset: int | None) -> list[str]:
-    """Return the nodes whose text contains a place, innermost first."""
+    """Return the nodes whose source ranges contain an offset, innermost first."""
     if offset is None:
         return []
     found = [

@@ -1,4 +1,4 @@
-"""Hover on a name, a phrase of the catalog, a time constraint or an import."""
+"""Hover: describe a name, a phrase of the catalog, a time constraint or an import."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Hover:
-    """Markdown about the text in ``span`` (absolute).
+    """A Markdown description of the text in ``span`` (absolute).
 
-    ``judged`` is the result shown, if any: of a clause the worst one, of a scenario that of its worst clause.
+    ``judged`` is the result that the hover shows, if any. For a clause, it is the worst result. For a scenario, it is
+    the result of its worst clause.
     """
 
     markdown: str
@@ -34,9 +35,9 @@ class Hover:
 
 
 def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHING) -> Hover | None:
-    """Describe the name or import under a cursor, otherwise the enclosing phrase or time constraint.
+    """Describe the name or import at an offset. Without one, describe the enclosing phrase or time constraint.
 
-    ``findings`` are the last results of clauses.
+    ``findings`` are the latest results of clauses.
     """
     hint = next((one for one in clause_hints(snapshot, uri, findings) if one.span.contains(offset)), None)
     found = symbol_at(snapshot, uri, offset)

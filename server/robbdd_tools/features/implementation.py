@@ -1,4 +1,4 @@
-"""Go to implementation: from a template to its variants, from a clause to its policy or evaluator."""
+"""Go to implementation: from a template to its variants, and from a clause to its policy or evaluator."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _FILE_START = Span(0, 0)
 
 
 def implementation(snapshot: Snapshot, uri: str, offset: int) -> list[Place]:
-    """Return the implementations of the name under a cursor; a word of the catalog leads to its Python file."""
+    """Return the implementations of the name at an offset. The implementation of a catalog word is its Python file."""
     found = symbol_at(snapshot, uri, offset)
     if found is None:
         return [place for phrase in _phrases_at(snapshot, uri, offset) for place in _python(phrase)]
@@ -59,7 +59,7 @@ def _declaring(
     kind: type[tree.Template | tree.SceneInstance | tree.Execution | tree.Policy | tree.TreeInstance],
     role: str,
 ) -> Iterator[Place]:
-    """Yield the declarations of a kind that refer to a definition with some role."""
+    """Yield the declarations of a kind that refer to a definition in the given role."""
     for uri in (definition.uri, *snapshot.importers(definition.uri)):
         file = snapshot.file(uri)
         for placed in file.declarations if file is not None else ():
@@ -73,7 +73,7 @@ def _declaring(
 
 
 def _implementations(snapshot: Snapshot, behaviour: Definition) -> Iterator[Place]:
-    """Yield the implementations of a behaviour in the executions of its template."""
+    """Yield the implementations that the executions of a behaviour's template choose for the behaviour."""
     file = snapshot.file(behaviour.uri)
     template = None if file is None else file.definitions.get(behaviour.symbol.path.partition(".")[0])
     variants = list(variants_of(snapshot, template)) if template is not None else []
@@ -108,7 +108,7 @@ def _phrases_at(snapshot: Snapshot, uri: str, offset: int) -> Iterator[tree.Phra
 
 
 def _python(phrase: tree.PhraseUse) -> Iterator[Place]:
-    """Yield the source file of a catalog word: the loaded module that contains it."""
+    """Yield the source file of a catalog word, which is the loaded module that contains the word."""
     load_catalog()
     word = word_of(phrase)
     for _, module in sorted(sys.modules.items()):

@@ -18,13 +18,13 @@ _IMPORT = re.compile(r"\bimport\s*([\"'])(.*?)\1")
 
 @dataclass(frozen=True, slots=True)
 class ImportGraph:
-    """The direct importers of each file on disk, by URI."""
+    """Maps each file on disk, by URI, to the files that import it directly."""
 
     users: Mapping[str, frozenset[str]]
 
     @classmethod
     def of(cls, files: Iterable[str]) -> ImportGraph:
-        """Read some files; results are cached until a file changes on disk."""
+        """Build the graph of some files. The imports of a file are cached until the file changes on disk."""
         users: dict[str, set[str]] = {}
         for uri in files:
             checkpoint()
@@ -38,7 +38,7 @@ class ImportGraph:
 
 
 def imported_on_disk(uris: Iterable[str]) -> frozenset[str]:
-    """Return the files that some files on disk import, directly or indirectly, and these files themselves."""
+    """Return some files on disk together with all files that they import, directly or indirectly."""
     found = set(uris)
     waiting = list(found)
     while waiting:
@@ -50,7 +50,7 @@ def imported_on_disk(uris: Iterable[str]) -> frozenset[str]:
 
 
 def imports_on_disk(uri: str) -> frozenset[str]:
-    """Return the URIs of the import lines of a file on disk; empty if it cannot be read."""
+    """Return the URIs that the import lines of a file on disk name; empty if the file cannot be read."""
     state = file_state(uri)
     return frozenset() if state is None else _imports_of(state)
 

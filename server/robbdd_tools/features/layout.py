@@ -1,6 +1,7 @@
-"""Canonical layout: indentation, spacing, aligned tables. Line breaks stay.
+"""Canonical layout of a text: indentation, spacing and aligned tables. Line breaks stay.
 
-It works on tokens, not on trees, so comments keep their place and broken text is formatted as far as possible.
+The layout is computed from tokens instead of syntax trees. So comments keep their place, and broken text is formatted
+as far as possible.
 """
 
 from __future__ import annotations
@@ -27,9 +28,10 @@ _NAMESPACE = re.compile(r"\(\s*ns\s*=\s*([^\W\d][\w\-]*)\s*\)")
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One formatted line of tokens, with its comment and the cells of a table row separate.
+    """One formatted line.
 
-    It comes from the source lines ``first`` up to ``end`` (excluded).
+    Its comment and the cells of a table row are stored separately. The line was made from the source lines from
+    ``first`` up to, but excluding, ``end``.
     """
 
     text: str
@@ -40,13 +42,13 @@ class Line:
 
     @property
     def written(self) -> str:
-        """The line with its comment."""
+        """The text of the line with its comment."""
         return f"{self.text}  {self.comment}" if self.text and self.comment else self.text or self.comment
 
 
 @dataclass(frozen=True, slots=True)
 class LaidOut:
-    """A line in canonical layout, for the source lines ``first`` up to ``end`` (excluded)."""
+    """A line in canonical layout, made from the source lines from ``first`` up to, but excluding, ``end``."""
 
     text: str
     first: int
@@ -55,12 +57,15 @@ class LaidOut:
 
 @dataclass(slots=True)
 class _Levels:
-    """The open brackets, each with whether a label indents the lines inside it."""
+    """The brackets that are open at a line.
+
+    ``labelled`` states for each bracket whether a label indents the lines inside the bracket.
+    """
 
     labelled: list[bool] = field(default_factory=lambda: [False])
 
     def indentation(self, text: str) -> str:
-        """Return the indentation of a line: a closing bracket aligns with the line that opened it."""
+        """Return the indentation of a line. A closing bracket has the indentation of the line that opened it."""
         closing = len(text) - len(text.lstrip("})"))
         inner = self.labelled[: max(1, len(self.labelled) - closing)]
         depth = len(inner) - 1 + sum(inner)
@@ -83,12 +88,15 @@ class _Levels:
 
 
 def lay_out(text: str) -> str:
-    """Return a text in canonical layout; the operation is idempotent."""
+    """Return a text in canonical layout. A text that is already in canonical layout stays unchanged."""
     return "".join(f"{line.text}\n" for line in laid_out(text))
 
 
 def laid_out(text: str) -> Iterator[LaidOut]:
-    """Yield the lines of a text in canonical layout; blank lines are merged, and removed at both ends."""
+    """Yield the lines of a text in canonical layout.
+
+    Consecutive blank lines are merged, and blank lines at both ends of the text are removed.
+    """
     begun = False
     blank: LaidOut | None = None
     for line in _indented(text):
@@ -118,7 +126,7 @@ def _indented(text: str) -> Iterator[LaidOut]:
 
 
 def _lines(text: str) -> Iterator[Line]:
-    """Yield the lines of a text with single spaces; a string keeps its own line breaks."""
+    """Yield the lines of a text with single spaces between words. A string keeps its own line breaks."""
     pieces: list[str] = []
     comment = ""
     first = number = 0
@@ -159,7 +167,7 @@ def _line(pieces: list[str], comment: str, first: int, end: int) -> Line:
 
 
 def _rows(lines: Iterator[Line]) -> Iterator[Line]:
-    """Join the lines of a broken table row, unless a comment is between them."""
+    """Join the lines of a table row that was broken into several lines, unless there is a comment between them."""
     row: Line | None = None
     for line in lines:
         if row is not None and not row.comment and line.text.endswith("|") and not line.text.startswith("|"):
@@ -188,7 +196,7 @@ def _with_cells(row: Line) -> Line:
 
 
 def _aligned(block: list[Line]) -> Iterator[str]:
-    """Yield the rows of a table with their columns aligned; the rule under the header spans each column."""
+    """Yield the rows of a table with aligned columns. The dashes under the header fill each column."""
     columns = max(len(row.cells) for row in block)
     widths = [3] * columns
     for row in block:

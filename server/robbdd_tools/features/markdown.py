@@ -1,4 +1,4 @@
-"""Render users' text literally in Markdown."""
+"""Write users' text in Markdown so that it is rendered literally."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ MAX_LINES = 10
 
 
 def literal(text: str) -> str:
-    """Return Markdown that renders as the literal text: no pictures, no HTML, no hidden links.
+    """Return Markdown that renders as the given text, without pictures, HTML or hidden links.
 
-    ``<names>`` become code, so that clients show every character; text in backticks stays code, and ``<https://…>``
+    ``<names>`` become code, so that clients show every character. Text in backticks stays code, and ``<https://…>``
     stays a link.
     """
     pieces: list[str] = []
@@ -30,7 +30,7 @@ def literal(text: str) -> str:
 
 
 def code(text: str) -> str:
-    """Return a text as inline code, whatever backticks and line ends it contains."""
+    """Return a text as inline code. The text may contain backticks and line breaks."""
     line = " ".join(text.splitlines())
     marks = "`" * _longer_than_runs(line, 1)
     space = " " if "`" in line else ""
@@ -42,12 +42,12 @@ def _escaped(text: str) -> str:
 
 
 def _longer_than_runs(text: str, least: int) -> int:
-    """Return a number of backticks greater than any run of them in the text."""
+    """Return a number of backticks, at least ``least``, that exceeds every run of backticks in the text."""
     return max((least, *(len(run) + 1 for run in re.findall("`+", text))))
 
 
 def code_block(text: str, language: str) -> str:
-    """Return the first lines of a text as a code block of a language (``bdd``, ``scenex`` …), dedented."""
+    """Return the first lines of a text as a code block. ``language`` is, for example, ``bdd`` or ``scenex``."""
     first, *rest = text.rstrip().splitlines()
     lines = [first, *textwrap.dedent("\n".join(rest)).splitlines()] if rest else [first]
     shown = lines if len(lines) <= MAX_LINES else [*lines[: MAX_LINES - 1], "…"]

@@ -1,4 +1,4 @@
-"""Fixes of ``no-model``: a ``.scenex`` entry with a catalog model for an element of a scene."""
+"""Quick fixes of ``no-model``: add an entry to a ``.scenex`` that assigns a catalog model to an element of a scene."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _WORDS = {"object": "obj", "agent": "agn"}
 
 
 def model_choices(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield for each catalog model the entry that assigns it to the reported elements."""
+    """Yield a fix for each catalog model. The fix adds the entry that assigns the model to the reported elements."""
     for placed in file.declarations:
         for gap in gaps_of(Site(snapshot, file, placed)):
             if gap.span == diagnostic.span:
@@ -48,7 +48,7 @@ def _choices(gap: Gap, kind: str) -> Iterator[Fix]:
 
 
 def _entries(gap: Gap, kind: str, model: str) -> Iterator[str]:
-    """Yield an entry for each element, or one for all members of a ``similar`` set."""
+    """Yield one entry for each element, or a single entry for all members of a ``similar`` set."""
     references: dict[str, None] = {}
     for element in gap.elements:
         if element.kind == kind:
@@ -68,7 +68,10 @@ def _is_similar(snapshot: Snapshot, uri: str, name: str) -> bool:
 
 
 def _new_file(scene: Site, entries: tuple[str, ...]) -> NewFile | None:
-    """Return a new ``.scenex`` next to the scene's file; ``None`` if it exists or the scene has no namespace."""
+    """Return a new ``.scenex`` in the folder of the scene's file.
+
+    Returns ``None`` if this file already exists or if the scene has no namespace.
+    """
     root = scene.tree
     symbol = scene.placed.declaration.symbols[0]
     if not isinstance(root, tree.Scene) or symbol.namespace in (None, FILE_NAMESPACE):

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A declared name: absolute spans of the name and of its whole declaration, and the names declared inside."""
+    """A declared name with the names that are declared inside it.
+
+    It has the absolute span of the name and the absolute span of the whole declaration.
+    """
 
     name: str
     kind: str

@@ -1,4 +1,4 @@
-"""Fix of ``no-evaluator``: write an observation policy for a clause into a ``.bddx``."""
+"""Quick fix of ``no-evaluator``: add an observation policy for a clause to a ``.bddx``."""
 
 from __future__ import annotations
 
@@ -28,7 +28,11 @@ MAX_WORDS = 4
 
 
 def policy_fixes(snapshot: Snapshot, file: FileAnalysis, diagnostic: Diagnostic) -> Iterator[Fix]:
-    """Yield the policy in the first loaded ``.bddx`` that imports the model, or in a new one next to it."""
+    """Yield a fix that adds a policy for the reported clause.
+
+    The policy is written into the first loaded ``.bddx`` that imports the model or, if there is none, into a new one in
+    the folder of the model.
+    """
     for found in unjudged(snapshot, file):
         if found.span == diagnostic.span:
             yield from _fix(Site(snapshot, file, found.placed), found)
@@ -63,7 +67,7 @@ def _fix(site: Site, found: Unjudged) -> Iterator[Fix]:
 
 
 def _owner(site: Site, found: Unjudged) -> str | None:
-    """Return the qualified name of the template or variant that a clause is in."""
+    """Return the qualified name of the template or variant that contains a clause."""
     root = site.tree
     match root:
         case tree.Template():
@@ -79,7 +83,7 @@ def _owner(site: Site, found: Unjudged) -> str | None:
 
 
 def _observed(site: Site, found: Unjudged, owner: str) -> list[str]:
-    """Return the variables that a clause uses, or all of its template if it uses none."""
+    """Return the variables that a clause uses. If it uses none, return all variables of its template."""
     arguments: tuple[tree.TextArgument, ...] = ()
     if isinstance(found.clause, tree.Fluent) and isinstance(found.clause.predicate, tree.TextPredicate):
         arguments = found.clause.predicate.arguments
@@ -102,7 +106,7 @@ def _free_name(site: Site, owner: str, text: str) -> str:
 
 
 def _named(site: Site, clause: tree.TextClause, name: str) -> Edit:
-    """Return the edit that names a clause, for reference by a policy."""
+    """Return the edit that gives a clause a name, so that a policy can refer to it."""
     document = site.file.document
     words, time = (document.text[span.start : span.end] for span in (site.span(clause.text), site.span(clause.time)))
     return Edit(site.uri, site.span(clause), f"{name}: holds(pred({words}), {time})")
@@ -119,7 +123,7 @@ def _namespace(file: FileAnalysis) -> str | None:
 
 
 def _provider(file: FileAnalysis) -> str | None:
-    """Return the first provider of a file that is available in simulation."""
+    """Return the first observation provider in a file that is available in simulation."""
     for placed in file.declarations:
         root = placed.declaration.tree
         if isinstance(root, tree.Provider) and isinstance(root.source, tree.GroundTruth):
@@ -128,7 +132,7 @@ def _provider(file: FileAnalysis) -> str | None:
 
 
 def _policy(path: str, name: str, namespace: str, observed: list[str], provider: str | None) -> str:
-    """Return the text of a policy that calls the user's function, with its observations."""
+    """Return the text of a policy that observes some variables and calls a function of the user."""
     own = f"(ns={namespace})"
     text = ""
     if provider is None:
@@ -144,7 +148,7 @@ def _policy(path: str, name: str, namespace: str, observed: list[str], provider:
 
 
 def _used(snapshot: Snapshot, file: FileAnalysis, owner: str, policy: str) -> Iterator[Edit]:
-    """Yield the edits that add a policy to the executions of a clause's variants."""
+    """Yield the edits that make the executions of a clause's variants use a new policy."""
     text = file.document.text
     for placed in file.declarations:
         root = placed.declaration.tree
@@ -175,7 +179,10 @@ def _owners(site: Site, execution: tree.Execution) -> Iterator[str]:
 
 
 def _new_file(site: Site, policy: Callable[[str], str]) -> NewFile | None:
-    """Return a new ``.bddx`` next to a model; ``None`` if it exists or the clause has no namespace."""
+    """Return a new ``.bddx`` in the folder of the model.
+
+    Returns ``None`` if this file already exists or if the clause has no namespace.
+    """
     symbols = site.placed.declaration.symbols
     namespace = symbols[0].namespace if symbols else None
     folder, _, own = site.uri.rpartition("/")

@@ -1,4 +1,4 @@
-"""Completions inside quotes: the path of an import or of a model file, or an entry of the catalog."""
+"""Completion inside quotes: the path of an import, the path of a model file, or a name in the catalog."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ MODEL_ENDINGS: Mapping[str, frozenset[str]] = {
 
 
 def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
-    """Yield the completions for the quotes that a line ends in: name, kind, length of the typed part, file."""
+    """Yield the completions inside the open quotes at the end of a line.
+
+    Each one has a name, a kind, the part of the name that is already typed, and the URI of its file (or ``""``).
+    """
     if match := _ENTRY.search(line):
         yield from ((name, "catalog", match[1], "") for name in sorted(known_entries(language_of(uri))))
         return
@@ -39,7 +42,7 @@ def quoted(uri: str, line: str) -> Iterator[tuple[str, str, str, str]]:
 
 
 def _entries(uri: str, folder: str, endings: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Yield the folders (ending in ``/``) and the files with some extensions in a folder, relative to a file."""
+    """Yield the folders in a folder (ending in ``/``) and its files with the given extensions, as relative paths."""
     own, place = uri_to_path(uri), uri_to_path(urljoin(uri, quote(folder) or "./"))
     if own is None or place is None:
         return

@@ -1,6 +1,7 @@
-"""Refactoring: move clauses of a variant into its template, or into a copy of a template that others share.
+"""Refactoring: move clauses of a variant into its template.
 
-The scenarios stay the same; in the graph the clauses then belong to the template.
+If other variants share the template, the clauses are moved into a copy of it. The scenarios stay the same. In the
+graph, the clauses belong to the template afterwards.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """The clauses to remove from ``Given`` or ``Then``, and the absolute spans to remove with them."""
+    """The clauses to remove from a ``Given`` or ``Then``, and the absolute spans to delete with them."""
 
     label: str
     clauses: tuple[tree.Expression, ...]
@@ -37,7 +38,7 @@ class _Part:
 
 @dataclass(frozen=True, slots=True)
 class _Move:
-    """The clauses to move out of a variant of the story ``site``, and the place of its template."""
+    """The clauses to move out of a variant in the story ``site``, and the place of the variant's template."""
 
     site: Site
     variant: tree.Variant
@@ -48,10 +49,11 @@ class _Move:
 
 
 def extracted_clauses(snapshot: Snapshot, uri: str, selected: Span) -> Fix | None:
-    """Return the fix that moves the selected clauses of a variant (all of them for an empty selection) into a template.
+    """Return the fix that moves the selected clauses of a variant into its template.
 
-    The target is a copy of the template if that has other variants or is in another file. ``None`` for a variant whose
-    executions name policies: these refer to clauses and variables of the original template.
+    If nothing is selected, all clauses of the variant are moved. If the template has other variants or is in another
+    file, the clauses are moved into a copy of it. If executions of the variant name policies, ``None`` is returned,
+    because the policies refer to clauses and variables of the original template.
     """
     move = _move(snapshot, uri, selected)
     if move is None:
@@ -85,7 +87,7 @@ def _of_scenario(site: Site, scenario: Scenario, selected: Span) -> _Move | None
 
 
 def _part(site: Site, label: str, variant: tree.Variant, selected: Span) -> _Part | None:
-    """Return the selected clauses of one part; ``None`` if there are none or a comment would be lost."""
+    """Return the selected clauses of one part. Return ``None`` if there are none or if a comment would be lost."""
     own = variant.given if label == "Given" else variant.then
     if own is None:
         return None
@@ -105,7 +107,7 @@ def _part(site: Site, label: str, variant: tree.Variant, selected: Span) -> _Par
 
 
 def _label(site: Site, label: str, variant: tree.Variant, own: tree.Expression) -> int | None:
-    """Return the start of a part's label, including the white space before it."""
+    """Return the start of the label of a part, including the white space before it."""
     before = [variant.scene, *(variant.events if label == "Then" else ())]
     start = site.span(before[-1]).end
     found = re.compile(rf"[ \t]*\b{label}\s*:").search(site.file.document.text, start, site.span(own).start)
@@ -113,7 +115,7 @@ def _label(site: Site, label: str, variant: tree.Variant, own: tree.Expression) 
 
 
 def _with_line(text: str, span: Span) -> Span:
-    """Return a span extended to the end of its line if nothing else follows there."""
+    """Return a span extended to the end of its line, unless other text follows it on that line."""
     line = text.find("\n", span.end)
     return Span(span.start, line + 1) if line >= 0 and not text[span.end : line].strip() else span
 
@@ -154,7 +156,7 @@ def _into_copy(move: _Move) -> Fix | None:
 
 
 def _leaving(move: _Move, template: str) -> Iterator[Edit]:
-    """Yield the edits that remove the clauses, and those of references to them elsewhere."""
+    """Yield the edits that remove the clauses from the variant, and remove references to them in other places."""
     site = move.site
     for part in move.parts:
         yield from (Edit(site.uri, span, "") for span in part.removed)
@@ -167,7 +169,7 @@ def _leaving(move: _Move, template: str) -> Iterator[Edit]:
 
 
 def _arriving(move: _Move, paths: Mapping[tree.Ref, str]) -> Iterator[Change]:
-    """Yield the insertions into the template, where some references get new paths."""
+    """Yield the edits that insert the clauses into the template. References in ``paths`` get new paths."""
     text = move.site.placed.declaration.text
     for part in move.parts:
         texts: list[str] = []
@@ -179,9 +181,9 @@ def _arriving(move: _Move, paths: Mapping[tree.Ref, str]) -> Iterator[Change]:
 
 
 def _renamed(site: Site, owner: tree.Node, move: _Move, name: str) -> dict[tree.Ref, str] | None:
-    """Return the new paths of references inside a node that lead to the template or into it.
+    """Return new paths for the references in a node whose target is the moved template or a part of it.
 
-    ``None`` if a reference uses another path than the template's name.
+    Returns ``None`` if a reference does not start with the template's name.
     """
     old, found = move.root.name.text, dict[tree.Ref, str]()
     for reference in site.placed.declaration.references:
@@ -198,7 +200,7 @@ def _renamed(site: Site, owner: tree.Node, move: _Move, name: str) -> dict[tree.
 
 
 def _leading_to(snapshot: Snapshot, definition: Definition) -> Iterator[tuple[str, Span]]:
-    """Yield the references to a definition itself, with the span of their whole paths."""
+    """Yield each reference to a definition itself, and the span of its whole path."""
     for uri in (definition.uri, *snapshot.importers(definition.uri)):
         file = snapshot.file(uri)
         for placed in file.declarations if file is not None else ():
@@ -208,7 +210,7 @@ def _leading_to(snapshot: Snapshot, definition: Definition) -> Iterator[tuple[st
 
 
 def _free_suffix(snapshot: Snapshot, names: Sequence[str]) -> str:
-    """Return the first suffix ``-2``, ``-3`` … that makes all names unused in the whole project."""
+    """Return the first suffix in ``-2``, ``-3`` … with which none of the names is used in the project."""
     indices = [source for source in snapshot.sources.values() if isinstance(source, FileIndex)]
     taken = {path.rpartition(".")[2] for index in indices for path in index.names.entries}
     return next(suffix for suffix in map("-{}".format, count(2)) if taken.isdisjoint(name + suffix for name in names))

@@ -1,4 +1,4 @@
-"""Refactorings of whole declarations: rewrite them in the current form, move a scene to a new file."""
+"""Refactorings of whole declarations: rewrite them in the current syntax, or move a scene to a new file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def modernised(snapshot: Snapshot, uri: str) -> Fix | None:
-    """Return the edits that rewrite a whole file in the current form; its graph stays the same."""
+    """Return the edits that rewrite a whole file in the current syntax. The graph of the file stays the same."""
     file = snapshot.file(uri)
     found = list(published_form(snapshot, file)) if file is not None else []
     edits = tuple(edit for diagnostic in found for fix in diagnostic.fixes for edit in fix.edits)
@@ -27,9 +27,10 @@ def modernised(snapshot: Snapshot, uri: str) -> Fix | None:
 
 
 def split_scene(snapshot: Snapshot, uri: str, offset: int) -> Fix | None:
-    """Return the fix that moves the scene at a cursor into a new file; every graph with it stays the same.
+    """Return the fix that moves the scene at an offset into a new file.
 
-    The new file imports the old one; the files that use the scene import the new one.
+    The new file imports the old file, and the files that use the scene import the new file. The contents of all graphs
+    that contain the scene stay the same.
     """
     file = snapshot.file(uri)
     placed = None if file is None else _declaration_at(file, offset)
@@ -56,7 +57,7 @@ def _declaration_at(file: FileAnalysis, offset: int) -> PlacedDeclaration | None
 
 
 def _with_line_end(file: FileAnalysis, placed: PlacedDeclaration) -> Span:
-    """Return a declaration's span including white space after it, up to the next declaration or comment."""
+    """Return the span of a declaration, including the white space up to the next declaration or comment."""
     text = placed.declaration.text
     comment = re.search(r"\n[ \t]*//", text)
     end = placed.span.end if comment is None else placed.offset + comment.start() + 1

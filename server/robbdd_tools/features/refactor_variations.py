@@ -1,7 +1,8 @@
-"""Refactorings of variations: product and table, sets and their values, rows from the scene.
+"""Refactorings of variations.
 
-All but the last keep the scenarios; converting between table and product makes a new node in the graph with the same
-bindings.
+A product can become a table and a table a product. A reference to a set can be replaced by its values. Table rows can
+be added from the scene. All refactorings but the last one keep the scenarios the same. Converting between a table and a
+product creates a new node in the graph, which has the same bindings.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def variation_refactorings(snapshot: Snapshot, uri: str, span: Span) -> Iterator
 
 
 def _as_table(scenario: Scenario) -> Iterator[Fix]:
-    """Expand a product into table rows; the last variable varies fastest."""
+    """Convert a product to a table with one row for each combination. The last variable varies fastest."""
     variation = scenario.variant.variation
     if not isinstance(variation, tree.Product) or not variation.assignments:
         return
@@ -53,7 +54,7 @@ def _as_table(scenario: Scenario) -> Iterator[Fix]:
 
 
 def _as_product(scenario: Scenario) -> Iterator[Fix]:
-    """Convert a table to a product, if its rows are exactly the product of its columns, in order."""
+    """Convert a table to a product. This is possible if its rows are exactly the product of its columns, in order."""
     variation = scenario.variant.variation
     if not isinstance(variation, tree.Table) or not variation.rows:
         return
@@ -72,7 +73,7 @@ def _as_product(scenario: Scenario) -> Iterator[Fix]:
 
 
 def _filled(scenario: Scenario) -> Iterator[Fix]:
-    """Add all missing rows with scene elements to a table; this creates new scenarios."""
+    """Add all missing rows to a table, with the elements of the scene as values. This creates new scenarios."""
     site, variation = scenario.site, scenario.variant.variation
     is_known = scene_members(site.follow(scenario.variant.scene)) is not None
     if not isinstance(variation, tree.Table) or not is_known or _has_sets(variation):
@@ -108,7 +109,7 @@ def _inlined(scenario: Scenario, span: Span) -> Iterator[Fix]:
 
 
 def _choices(site: Site, written: object) -> list[str] | None:
-    """Return the written values of a product's line; ``None`` if table cells cannot express them."""
+    """Return the values in one line of a product as written. Return ``None`` if table cells cannot express them."""
     match written:
         case tree.ValueList():
             return [_text(site, value) for value in written.values]
@@ -123,7 +124,7 @@ def _choices(site: Site, written: object) -> list[str] | None:
 
 
 def _text(site: Site, node: tree.Node) -> str:
-    """Return a value as written, with qualified names, for use in another declaration."""
+    """Return a value as written, but with qualified names, so that it can be used in another declaration."""
     if isinstance(node, tree.Ref):
         element = element_of(site, node)
         return f"<{element.name if element is not None else node.path}>"
@@ -156,7 +157,7 @@ def _replaced(scenario: Scenario, title: str, text: str) -> Fix:
 
 
 def _headed(scenario: Scenario) -> bool:
-    """Return whether the variation has a ``variation:`` line; the published form has neither that nor tables."""
+    """Return whether a variation begins with ``variation:``. The published syntax has neither this line nor tables."""
     start = scenario.site.span(scenario.variant.variation).start
     return scenario.site.file.document.text[:start].rstrip().endswith(":")
 

@@ -1,4 +1,4 @@
-"""References: all uses of a name, in every file of the project that can access it."""
+"""References: find all uses of a name in every file of the project that can access it."""
 
 from __future__ import annotations
 
@@ -26,14 +26,17 @@ Place = tuple[str, Span]
 
 @dataclass(frozen=True, slots=True)
 class Highlight:
-    """A place of a name; it ``writes`` where the name is declared or a variation assigns values to the variable."""
+    """A place where a name is written.
+
+    ``writes`` is true where the name is declared, and where a variation assigns values to the variable of this name.
+    """
 
     span: Span
     writes: bool
 
 
 def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool) -> list[Place]:
-    """Return the uses of the name under a cursor, sorted by file and place."""
+    """Return the uses of the name at an offset, sorted by file and place."""
     found = symbol_at(snapshot, uri, offset)
     if found is None:
         return []
@@ -45,7 +48,7 @@ def references(snapshot: Snapshot, uri: str, offset: int, with_declaration: bool
 
 
 def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
-    """Return the places of the name under a cursor in its own document, in text order."""
+    """Return the places of the name at an offset in the same document, in text order."""
     found = symbol_at(snapshot, uri, offset)
     file = snapshot.file(uri)
     if found is None or file is None:
@@ -60,7 +63,7 @@ def highlights(snapshot: Snapshot, uri: str, offset: int) -> list[Highlight]:
 
 
 def _written(file: FileAnalysis) -> set[Span]:
-    """Return the spans where the variations of a file name the variables that they assign."""
+    """Return the spans in a file where variations name the variables to which they assign values."""
     return {
         Span(ref.span.end - len(ref.path.rpartition(".")[2]), ref.span.end).shifted(placed.offset)
         for placed in file.parts()
@@ -71,7 +74,10 @@ def _written(file: FileAnalysis) -> set[Span]:
 
 
 def uses(snapshot: Snapshot, definition: Definition) -> Iterator[Place]:
-    """Yield every use of a name, alone or as a part of a qualified name (a set before its element)."""
+    """Yield every use of a name, alone or as a part of a qualified name.
+
+    For example, a set is used in the qualified name of its element.
+    """
     for uri in sorted({definition.uri, *snapshot.importers(definition.uri)}):
         file = snapshot.file(uri)
         if file is not None:

@@ -1,4 +1,4 @@
-"""Rename: a declared name and all references to it or to its parts, in all files."""
+"""Rename: change a declared name and all references to it or to its parts, in all files."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _NAME = re.compile(r"[^\W\d][\w\-]*")
 
 
 class RenameRefused(Exception):
-    """The name cannot be changed, or not to this one; the message gives the reason."""
+    """The name cannot be changed, or it cannot be changed to the new name. The message gives the reason."""
 
 
 def prepare_rename(snapshot: Snapshot, uri: str, offset: int) -> Span | None:
-    """Return the span that a rename at a cursor would replace; ``None`` if there is no name."""
+    """Return the span that a rename at an offset would replace, or ``None`` if there is no name."""
     found = symbol_at(snapshot, uri, offset)
     return found[0] if found is not None and _is_written(snapshot, found[1]) else None
 
 
 def rename(snapshot: Snapshot, uri: str, offset: int, name: str) -> list[Edit]:
-    """Return the edits that rename the name under a cursor; raises ``RenameRefused``."""
+    """Return the edits that rename the name at an offset. Raises ``RenameRefused``."""
     found = symbol_at(snapshot, uri, offset)
     if found is None:
         raise RenameRefused("there is no name here")
@@ -46,12 +46,12 @@ def rename(snapshot: Snapshot, uri: str, offset: int, name: str) -> list[Edit]:
 
 
 def name_places(snapshot: Snapshot, definition: Definition) -> list[tuple[str, Span]]:
-    """Return every place where a declared name itself is written, also as a part of qualified names."""
+    """Return every place where a declared name is written, including parts of qualified names."""
     return sorted({(definition.uri, definition.span), *uses(snapshot, definition)})
 
 
 def linked_places(snapshot: Snapshot, uri: str, offset: int) -> list[Span]:
-    """Return the places of the name under a cursor for linked editing, in its own document only."""
+    """Return the places of the name at an offset in the same document, for linked editing."""
     found = symbol_at(snapshot, uri, offset)
     if found is None or not _is_written(snapshot, found[1]):
         return []
@@ -69,7 +69,7 @@ def _refuse_clash(snapshot: Snapshot, definition: Definition, name: str) -> None
 
 
 def _is_written(snapshot: Snapshot, definition: Definition) -> bool:
-    """Return whether a name is written in the text: names in a similar set are generated."""
+    """Return whether a name is written in the text. Names in a ``similar`` set are generated instead."""
     analysis = snapshot.file(definition.uri)
     span = definition.span
     return analysis is not None and analysis.document.text[span.start : span.end] == definition.symbol.name

@@ -1,4 +1,4 @@
-"""File renames: edits of the imports in moved files, and of the imports of them."""
+"""Edit imports when files are renamed: the imports in the moved files, and those in files that import them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class ImportLines:
 
 
 def affected_files(files: Iterable[str], moves: Mapping[str, str]) -> Iterator[ImportLines]:
-    """Yield the model files, as on disk, that move or directly import a moved file."""
+    """Yield the model files on disk that move, and those that directly import a file that moves."""
     for uri in files:
         imported = imports_on_disk(uri)
         path = uri_to_path(uri)
@@ -35,9 +35,9 @@ def affected_files(files: Iterable[str], moves: Mapping[str, str]) -> Iterator[I
 
 
 def import_edits(files: Iterable[FileIndex | ImportLines], moves: Mapping[str, str]) -> list[Edit]:
-    """Return the edits of imports that keep them valid after moves.
+    """Return the edits that keep imports valid after files move.
 
-    ``moves`` map the URIs of files or folders to their new ones; edits are for the texts at their old places.
+    ``moves`` maps the URI of a file or folder to its new URI. The edits are for the files at their old URIs.
     """
     edits = [edit for file in files for edit in _of_file(file, moves)]
     return sorted(edits, key=lambda edit: (edit.uri, edit.span))

@@ -1,4 +1,4 @@
-"""Results of runs by scenario, with digests of the judged text."""
+"""Results of runs for each scenario, with digests of the text that was judged."""
 
 from __future__ import annotations
 
@@ -30,11 +30,14 @@ MAX_DIGESTS = 20_000
 class Judgement:
     """One verdict on a clause.
 
-    ``outcome`` is ``holds``, ``violated``, ``unknown`` or ``undefined`` (no step can judge it); ``margin`` and ``said``
-    are texts, the latter with instant and reason; of several verdicts, the one with the smallest ``rank`` is the worst.
-    ``digest`` is that of the clause's text when judged; ``line`` is that of its step in the feature. ``vacuous`` says
-    why the clause could not have failed in the whole run, empty if it could. ``fault`` is the ``id`` of the error in
-    users' code that made it unknown.
+    - ``outcome``: ``holds``, ``violated``, ``unknown``, or ``undefined`` if no step can judge the clause.
+    - ``margin``: the margin as text.
+    - ``said``: the verdict as text, with its instant and its reason.
+    - ``rank``: of several verdicts, the one with the smallest rank is the worst.
+    - ``digest``: the digest of the clause's text when it was judged.
+    - ``line``: the line of the clause's step in the feature.
+    - ``vacuous``: why the clause could not have failed in the whole run; empty if it could.
+    - ``fault``: the ``id`` of the error in users' code that made the clause unknown.
     """
 
     name: str
@@ -51,13 +54,18 @@ class Judgement:
 
 @dataclass(slots=True)
 class JudgedScenario:
-    """An executed scenario: number ``variation`` of a variant, its values in words, its clauses by IRI.
+    """One execution of a scenario: number ``variation`` of a variant, its values in words, and its clauses by IRI.
 
-    ``digest`` is that of the text of the variant and its template, ``row`` that of its table row (empty without).
-    ``run`` is the number of the stored run in which it is scenario number ``index``; 0 if unknown. ``execution`` is the
-    IRI of its ``.bddx`` execution and ``execution_digest`` that of its text, both empty without one. ``faults`` are the
-    errors in users' code. ``repetition`` counts the executions of the scenario in the run (from 1); ``seed`` is the
-    user's seed of the run, or ``None``. ``substitution`` is the catalog behaviour executed instead of the model's.
+    - ``digest``: the digest of the text of the variant and its template.
+    - ``row``: the digest of the scenario's table row; empty if it has none.
+    - ``run``: the number of the stored run; 0 if unknown.
+    - ``index``: the number of the scenario in that run.
+    - ``execution``: the IRI of the ``.bddx`` execution; empty without one.
+    - ``execution_digest``: the digest of the text of that execution; empty without one.
+    - ``faults``: the errors in users' code.
+    - ``repetition``: the number of this execution of the scenario in the run (from 1).
+    - ``seed``: the seed that the user gave for the run, or ``None``.
+    - ``substitution``: the catalog behaviour that was executed instead of the model's.
     """
 
     model: str
@@ -79,20 +87,20 @@ class JudgedScenario:
 
     @property
     def outcome(self) -> str:
-        """Violated if a clause is, else unknown if one is or nothing was judged, else holds."""
+        """Violated if any clause is violated, else unknown if any is unknown or none was judged, else holds."""
         outcomes = {judgement.outcome for judgement in self.clauses.values()}
         if "violated" in outcomes:
             return "violated"
         return "holds" if self.finished and outcomes == {"holds"} else "unknown"
 
     def judge(self, iri: str, judgement: Judgement) -> None:
-        """Add a verdict; a clause repeated within the scenario keeps its worst one."""
+        """Add a verdict on a clause. A clause that is repeated within the scenario keeps its worst verdict."""
         known = self.clauses.get(iri)
         if known is None or judgement.rank < known.rank:
             self.clauses[iri] = judgement
 
     def mark_vacuous(self, reasons: Mapping[str, str]) -> None:
-        """Add the reasons why clauses (by IRI) could not have failed in the run."""
+        """Add the reasons, by the IRI of the clause, why clauses could not have failed in the run."""
         for iri in self.clauses.keys() & reasons.keys():
             self.clauses[iri] = replace(self.clauses[iri], vacuous=reasons[iri])
 
@@ -102,7 +110,7 @@ Judged = tuple[JudgedScenario, Judgement]
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """Results at one moment: verdicts by clause, scenarios by variant."""
+    """The results at one moment: verdicts for each clause, and scenarios for each variant."""
 
     clauses: Mapping[str, tuple[Judged, ...]]
     variants: Mapping[str, tuple[JudgedScenario, ...]]
@@ -112,7 +120,7 @@ NOTHING = Findings({}, {})
 
 
 class Results:
-    """The latest result of every scenario; a new result replaces the previous one."""
+    """The latest result of every scenario. A new result replaces the previous one."""
 
     def __init__(self, scenarios: Iterable[JudgedScenario] = ()) -> None:
         self._scenarios: dict[tuple[str, int], list[JudgedScenario]] = {}
@@ -123,23 +131,24 @@ class Results:
         return (scenario for several in self._scenarios.values() for scenario in several)
 
     def add(self, scenarios: Iterable[JudgedScenario]) -> None:
-        """Add scenarios without replacing others; one may be executed several times."""
+        """Add scenarios without replacing others, because a scenario may be executed several times."""
         for scenario in scenarios:
             self._scenarios.setdefault((scenario.variant, scenario.variation), []).append(scenario)
 
     def drop(self, variant: str, variation: int, execution: str = "", repetition: int | None = None) -> None:
         """Remove the results of a scenario that is executed again.
 
-        Results of executions other than ``execution`` stay; with a ``repetition``, those of other repetitions stay too.
+        Results by executions other than ``execution`` stay. If a ``repetition`` is given, the results of other
+        repetitions stay, too.
         """
         known = self._scenarios.pop((variant, variation), [])
         self.add(one for one in known if not _is_replaced(one, execution, repetition))
 
     def merge(self, scenarios: Iterable[JudgedScenario], newest: int, *, some_repetitions: bool = False) -> None:
-        """Add the results of one stored run, except for scenarios with results of the same or a later run.
+        """Add the results of one stored run. A scenario that has results of the same or a later run is skipped.
 
-        ``newest`` is the number of the latest run in its store; ``some_repetitions``: it executed only some
-        repetitions, and the others keep their results.
+        ``newest`` is the number of the latest run in the store. ``some_repetitions`` is true if the run executed only
+        some of the repetitions; the others then keep their results.
         """
         groups: dict[tuple[str, int, str, int | None], list[JudgedScenario]] = {}
         for one in scenarios:
@@ -153,17 +162,17 @@ class Results:
                 self.add(group)
 
     def discard(self, scenario: JudgedScenario) -> None:
-        """Remove one result."""
+        """Remove the result of one execution of a scenario."""
         known = self._scenarios.pop((scenario.variant, scenario.variation), [])
         self.add(one for one in known if one is not scenario)
 
     def drop_others(self, variant: str, kept: Collection[int]) -> None:
-        """Remove the scenarios that a variant no longer has."""
+        """Remove the results of scenarios that a variant no longer has."""
         for key in [key for key in self._scenarios if key[0] == variant and key[1] not in kept]:
             del self._scenarios[key]
 
     def drop_deleted(self, model: str, variants: Collection[str], executions: Collection[str] = ()) -> None:
-        """Remove the results of variants and executions that a model no longer has."""
+        """Remove the results of variants and executions that a model no longer contains."""
         gone = {entry.variant for entry in self if entry.model == model} - set(variants)
         for key in [key for key in self._scenarios if key[0] in gone]:
             del self._scenarios[key]
@@ -186,16 +195,20 @@ class Results:
 
 
 def _is_replaced(known: JudgedScenario, execution: str, repetition: int | None) -> bool:
-    """Whether a new result of an execution, of one repetition or (``None``) of all, replaces a known one."""
+    """Return whether a new result of ``execution`` replaces a known one.
+
+    If ``repetition`` is ``None``, the new result replaces all repetitions, otherwise only that repetition.
+    """
     by_other = execution != "" and known.execution not in ("", execution)
     return not by_other and repetition in (None, known.repetition)
 
 
 @dataclass(frozen=True, slots=True)
 class Digests:
-    """Digests of the text that runs judge: of clauses and variants by IRI, of rows by variant and number.
+    """Digests of the text that runs judge.
 
-    ``executions`` are those declared in the file itself, by IRI.
+    The digests of clauses and variants are stored by IRI, those of table rows by variant and number. ``executions`` are
+    the digests of the executions that the file itself declares, by IRI.
     """
 
     clauses: Mapping[str, str]
@@ -221,7 +234,7 @@ def digests_of(snapshot: Snapshot, uri: str) -> Digests:
 
 
 def digest(snapshot: Snapshot, uri: str, span: Span) -> str:
-    """Return the digest of a span; comments and layout are ignored."""
+    """Return the digest of the text in a span. It does not depend on comments and layout."""
     file = snapshot.file(uri)
     return "" if file is None else _digest(file.document.text[span.start : span.end])
 
@@ -233,7 +246,7 @@ def variant_digest(snapshot: Snapshot, variant: PlacedVariant) -> str:
 
 
 def execution_digest(snapshot: Snapshot, execution: PlacedExecution) -> str:
-    """Return the digest of an execution, of its dependencies, and of its variant."""
+    """Return the digest of an execution, its dependencies and its variant."""
     own = (digest(snapshot, site.uri, site.placed.span) for site in relevant_declarations(execution))
     return " ".join((*own, variant_digest(snapshot, execution.variant)))
 
@@ -265,5 +278,8 @@ def as_json(scenario: JudgedScenario) -> dict[str, Any]:
 
 
 def from_json(data: object) -> JudgedScenario:
-    """Return the scenario of plain data; raises ``KeyError``, ``TypeError`` or ``AttributeError`` for other data."""
+    """Return the scenario that plain data describes.
+
+    Raises ``KeyError``, ``TypeError`` or ``AttributeError`` if the data has another form.
+    """
     return from_plain(JudgedScenario, data)

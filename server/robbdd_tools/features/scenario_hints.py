@@ -1,4 +1,4 @@
-"""Inlay hints with the number of scenarios of each variant."""
+"""Inlay hints that show the number of scenarios of each variant."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioHint:
-    """The hint after a variant's name, which is at ``span`` (absolute)."""
+    """The inlay hint after the name of a variant. ``span`` is the absolute span of the name."""
 
     span: Span
     label: str
 
 
 def scenario_hints(snapshot: Snapshot, uri: str, within: Span) -> list[ScenarioHint]:
-    """Return a hint for each variant in a span of a file if its sets are known."""
+    """Return a hint for each variant in a span of a file. A variant that uses an unknown set has no hint."""
     file = snapshot.file(uri)
     hints: list[ScenarioHint] = []
     for site in story_sites(snapshot, file, within) if file is not None else ():

@@ -12,6 +12,6 @@ if TYPE_CHECKING:
 
 
 def number_of_scenarios(variant: PlacedVariant) -> int | None:
-    """Return the number of scenarios, ``None`` while a set is unknown or the text has errors."""
+    """Return the number of scenarios of a variant, or ``None`` if a set is unknown or the text has errors."""
     found = next((one for one in scenarios(variant.site) if one.variant is variant.node), None)
     return None if found is None else scenario_count(found)

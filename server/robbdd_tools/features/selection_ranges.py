@@ -1,4 +1,4 @@
-"""Selection ranges: word, enclosing node, and so on up to the whole text."""
+"""Selection ranges: the word, the enclosing syntax node, and so on up to the whole text."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(
 
 
 def selections(snapshot: Snapshot, uri: str, offset: int) -> list[Span]:
-    """Return growing spans around a cursor, smallest first; in broken text they follow the brackets."""
+    """Return growing spans around an offset, smallest first. In broken text, the spans follow the brackets."""
     file = snapshot.file(uri)
     if file is None:
         return []
@@ -35,7 +35,7 @@ def selections(snapshot: Snapshot, uri: str, offset: int) -> list[Span]:
 
 
 def _brackets(text: str) -> list[Span]:
-    """Return the spans of bracketed parts, each with and without its brackets."""
+    """Return two spans for each pair of brackets in a text: with the brackets and without them."""
     opened: list[int] = []
     found: list[Span] = []
     for match in _BRACKETS.finditer(text):

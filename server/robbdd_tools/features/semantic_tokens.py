@@ -1,7 +1,7 @@
 """Semantic tokens: the concept of each word, for colouring by meaning.
 
-Keywords are found by tokens of the text, names by the trees and their definitions. So broken text keeps the colours of
-the parts that can still be analysed.
+Keywords are found by tokenising the text. Names are found in the syntax trees and by their definitions. So the readable
+parts of broken text keep their colours.
 """
 
 from __future__ import annotations
@@ -47,7 +47,10 @@ _WORD = re.compile(r"[^\W\d][\w\-]*")
 
 @dataclass(frozen=True, slots=True, order=True)
 class Token:
-    """A part of one line (absolute span): ``concept`` is a constant of this module or the kind of a symbol."""
+    """A part of one line (absolute span).
+
+    ``concept`` is a constant of this module or the kind of a symbol.
+    """
 
     span: Span
     concept: str
@@ -56,16 +59,16 @@ class Token:
 
 @dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
 class Coloured:
-    """The tokens of a text, in order and disjoint; spans count from its start."""
+    """The tokens of a text, in order and without overlap. Their spans count from the start of the text."""
 
     tokens: tuple[Token, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """The colours of a declaration, with the ``paths`` that they depend on besides the targets of references.
+    """The cached colours of a declaration.
 
-    ``tables`` are those of the files in which the paths were looked up.
+    Besides the targets of references, the colours depend on the names ``paths``, which were looked up in ``tables``.
     """
 
     tables: tuple[NameTable, ...]
@@ -74,7 +77,10 @@ class _Known:
 
 
 def semantic_tokens(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[Token]:
-    """Return the tokens of a file, or those that touch a span, in order and disjoint."""
+    """Return the semantic tokens of a file, in order and without overlap.
+
+    If ``within`` is given, only tokens that touch this span are returned.
+    """
     return [
         Token(token.span.shifted(offset), token.concept, token.is_declaration)
         for offset, piece in coloured(snapshot, uri, within)
@@ -84,9 +90,10 @@ def semantic_tokens(snapshot: Snapshot, uri: str, within: Span | None = None) ->
 
 
 def coloured(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[tuple[int, Coloured]]:
-    """Return the tokens of a file, or of its pieces that touch a span, as pairs of offset and tokens.
+    """Return the tokens of a file piece by piece, each as a pair of the piece's offset and its tokens.
 
-    A piece that an edit did not change stays the same object.
+    With ``within``, only pieces that touch this span are returned. The tokens of a piece that an edit did not change
+    stay the same object.
     """
     analysis = snapshot.file(uri)
     if analysis is None:
@@ -108,7 +115,7 @@ def coloured(snapshot: Snapshot, uri: str, within: Span | None = None) -> list[t
 def _of_declaration(
     snapshot: Snapshot, file: FileAnalysis, placed: PlacedDeclaration, tables: tuple[NameTable, ...]
 ) -> Coloured:
-    """Return the colours of a declaration, from the cache unless a dependency changed."""
+    """Return the colours of a declaration. They are cached until one of its dependencies changes."""
     known = _known.get(placed.targets.resolution)
     if known is not None and known.tables is tables:
         return known.coloured
@@ -133,7 +140,7 @@ def _changed(before: tuple[NameTable, ...], after: tuple[NameTable, ...]) -> fro
 
 @dataclass(slots=True)
 class _Names:
-    """Determines the concepts of names in a declaration; ``paths`` are those that it looked up."""
+    """Determines the concepts of names in a declaration. ``paths`` are the names that it looked up."""
 
     snapshot: Snapshot
     file: FileAnalysis
@@ -195,7 +202,10 @@ _own_tokens: WeakKeyDictionary[Declaration, tuple[Token, ...]] = WeakKeyDictiona
 
 
 def _own(language: str, declaration: Declaration) -> tuple[Token, ...]:
-    """Return the tokens that depend on the declaration alone, cached with it; spans count from its start."""
+    """Return the tokens that depend on the declaration alone. They are cached with the declaration.
+
+    Spans count from the start of the declaration.
+    """
     found = _own_tokens.get(declaration)
     if found is None:
         found = _own_tokens[declaration] = _read_tokens(language, declaration)
@@ -230,7 +240,10 @@ def _read_tokens(language: str, declaration: Declaration) -> tuple[Token, ...]:
 
 
 def _concepts(declaration: Declaration) -> Iterator[tuple[int, Token]]:
-    """Yield the concepts of words according to the tree, by start offset; later ones win."""
+    """Map the start offset of each word to its concept, according to the syntax tree.
+
+    A later entry replaces an earlier one.
+    """
     nodes: list[tree.Node] = []
     for node in walk(declaration.tree) if declaration.tree is not None else ():
         checkpoint()
@@ -254,7 +267,7 @@ def _concepts(declaration: Declaration) -> Iterator[tuple[int, Token]]:
 
 
 def _names(node: tree.Node) -> Iterator[tuple[tree.Name, str]]:
-    """Yield the names in a node that are neither declarations nor references in the model."""
+    """Yield the names in a node that neither declare nor refer to anything in the model."""
     match node:
         case tree.PhraseUse():
             yield from ((value, ARGUMENT) for _, value in node.arguments if isinstance(value, tree.Name))
@@ -285,7 +298,7 @@ def _between(text: str) -> Coloured:
 
 
 def _lines(text: str, token: Token) -> Iterator[Token]:
-    """Split a token at line ends: few clients accept multi-line tokens."""
+    """Split a token at line breaks, because few clients accept tokens of several lines."""
     if "\n" not in text[token.span.start : token.span.end]:
         yield token
         return

@@ -1,4 +1,4 @@
-"""Clauses and phrases in words: the Gherkin sentence of a clause, with its variables in ``<…>``."""
+"""Describe clauses and phrases in words: the Gherkin sentence of a clause, with its variables in ``<…>``."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def clause_sentence(clause: tree.Fluent | tree.BehaviourUse) -> str:
-    """Return the sentence of a clause or behaviour with variables instead of values."""
+    """Return the sentence of a clause or behaviour. It contains variables instead of values."""
     if isinstance(clause, tree.BehaviourUse):
         return _phrase_sentence(clause.action)
     predicate = clause.predicate
@@ -31,7 +31,7 @@ def time_words(time: tree.TimeConstraint) -> str:
 
 
 def time_meaning(time: tree.TimeConstraint) -> str:
-    """Describe at which samples of a trace a clause with this time constraint is judged."""
+    """Describe the samples of a trace at which a clause with this time constraint is judged."""
     if isinstance(time, tree.During):
         return f"Judged from `{time.start.path}` until `{time.end.path}`, both included: it must hold throughout."
     side = "at or before" if isinstance(time, tree.Before) else "at or after"
@@ -55,7 +55,7 @@ def word_of(use: tree.PhraseUse) -> Predicate | Behaviour:
 
 
 def word_meaning(word: Predicate | Behaviour) -> str:
-    """Describe a catalog word: its phrase, its meaning, the unit of its margin."""
+    """Describe a catalog word: its phrase, its meaning and the unit of its margin."""
     lines = [f"`{word.phrase}`", word.doc]
     unit = getattr(word, "unit", None)
     if unit is not None:

@@ -1,4 +1,4 @@
-"""Snippets of whole declarations, generated from the grammar: the required parts, with placeholders."""
+"""Snippets of whole declarations. They are generated from the grammar and contain the required parts."""
 
 from __future__ import annotations
 
@@ -57,20 +57,24 @@ _MARK = re.compile(r"X(\d+)X")
 
 @dataclass(frozen=True, slots=True)
 class Snippet:
-    """A declaration: ``label`` are its first keywords; ``body`` has placeholders ``${1:name}``, ``${2|one,other|}``."""
+    """The snippet of one kind of declaration.
+
+    ``label`` has its first keywords. ``body`` is its text, with placeholders such as ``${1:name}`` and
+    ``${2|one,other|}``.
+    """
 
     label: str
     body: str
 
     @property
     def plain(self) -> str:
-        """The body with the text of its placeholders, for clients without snippet support."""
+        """The body in which each placeholder is replaced by its text, for clients without snippet support."""
         return re.sub(r"\$\{\d+(?::([^}]*)|\|([^,|]*)[^}]*)\}", lambda match: match[1] or match[2] or "", self.body)
 
 
 @cache
 def declaration_snippets(language: str) -> tuple[Snippet, ...]:
-    """Return a snippet for each kind of declaration of a file kind, in the order of the grammar."""
+    """Return a snippet for each kind of declaration in a kind of file, in the order of the grammar."""
     rules = read_grammar(grammar_text(language))
     root = rules[f"{grammar_name(language).capitalize()}Declaration"]
     options = root.options if isinstance(root, Choice) else (root,)
@@ -79,7 +83,10 @@ def declaration_snippets(language: str) -> tuple[Snippet, ...]:
 
 @cache
 def keyword_form(language: str, words: str) -> str | None:
-    """Return the form that some keywords start, up to its end, or else the whole form around them."""
+    """Return the syntax of the form that starts with some keywords.
+
+    If no form starts with them, the whole form that contains them is returned.
+    """
     rules = read_grammar(grammar_text(language))
     wanted = words.split()
     every = [parts for rule in rules.values() for parts in _sequences(rule)]
@@ -118,7 +125,10 @@ def _sequences(part: Expression) -> Iterator[tuple[Expression, ...]]:
 
 
 def _up_to_label(parts: tuple[Expression, ...], words: int) -> tuple[Expression, ...]:
-    """Return the first parts, up to the next part with a label, or to a bracket opened before them."""
+    """Return the parts of a form up to the next part that has a label.
+
+    The parts end earlier at a bracket that was opened before them.
+    """
     depth = 0
     for number, part in enumerate(parts):
         if part in (Literal("{"), Literal("(")):
@@ -143,7 +153,7 @@ def _has_literal(part: Expression, text: str) -> bool:
 
 
 class _Writer:
-    """Writes one declaration with markers for its placeholders, which the layout treats as names."""
+    """Writes one declaration with markers for its placeholders. The layout treats these markers as names."""
 
     def __init__(self, rules: Mapping[str, Expression]) -> None:
         self._rules = rules
@@ -233,7 +243,10 @@ def _in_words(role: str) -> str:
 
 
 def _begins_line(parts: tuple[Expression, ...]) -> bool:
-    """Return whether parts of a rule start with a labelled part (``base name:``), or a line of a story."""
+    """Return whether the parts of a rule belong on a new line.
+
+    They do if they start with a label (``base name:``), or if they are a line of a story (``As``, ``I``, ``So``).
+    """
     first = parts[0].part if isinstance(parts[0], Optional) else parts[0]
     if isinstance(first, Sequence):
         return _begins_line(first.parts)
@@ -248,7 +261,10 @@ def _is_word(parts: tuple[Expression, ...]) -> bool:
 
 
 def _broken_into_lines(words: list[str]) -> str:
-    """Join words, with line breaks after each opening brace and section label and before each closing brace."""
+    """Join words to lines.
+
+    There is a line break after each opening brace and section label, and before each closing brace.
+    """
     text = ""
     for number, word in enumerate(words):
         before = words[number - 1] if number else ""

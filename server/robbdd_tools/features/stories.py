@@ -1,4 +1,4 @@
-"""The user stories of a file with their variants, read from its text, for test trees."""
+"""List the user stories of a file with their variants for test trees. They are read from the text of the file."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _PATTERNS = {".bdd": re.compile(r"\bUser\s+Story\b"), ".bddx": re.compile(r"\bSc
 
 @dataclass(frozen=True, slots=True)
 class ListedVariant:
-    """A variant; ``count`` is the number of its scenarios (``None`` while unknown).
+    """A variant in a test tree. ``count`` is the number of its scenarios, or ``None`` while it is unknown.
 
-    ``variation`` is the absolute span of its values: the whole table, or the first line of a product.
+    ``variation`` is the absolute span of the variant's values: the whole table, or the first line of a product.
     """
 
     placed: PlacedVariant
@@ -38,7 +38,7 @@ class ListedVariant:
 
 @dataclass(frozen=True, slots=True)
 class ListedStory:
-    """A story with its role, feature and benefit, and its variants in text order."""
+    """A story with its role, feature and benefit, and with its variants in text order."""
 
     definition: Definition
     iri: str
@@ -61,7 +61,10 @@ def stories_in(snapshot: Snapshot, uri: str) -> list[ListedStory]:
 
 
 def story_files(snapshot: Snapshot, folders: Iterable[str]) -> list[str]:
-    """Return the files with stories or executions, open ones and those on disk below some folders, sorted."""
+    """Return the files that contain stories or executions, sorted.
+
+    These are open files and files on disk below the given folders.
+    """
     known = {uri: source.document.text for uri, source in snapshot.sources.items() if isinstance(source, FileIndex)}
     candidates = sorted({*model_files(folders), *known})
     patterns = ((uri, _PATTERNS.get(f".{uri.rpartition('.')[2]}")) for uri in candidates)

@@ -1,4 +1,4 @@
-"""Go to type definition: from a variant to its template, an element to its set, a variable to its values."""
+"""Go to type definition: from a variant to its template, from an element to its set, from a variable to its values."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _VARIABLES = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
 
 
 def type_definition(snapshot: Snapshot, uri: str, offset: int) -> list[tuple[str, Span]]:
-    """Return the places that define the type of the name under a cursor, sorted by file and place."""
+    """Return the places that define the type of the name at an offset, sorted by file and place."""
     found = symbol_at(snapshot, uri, offset)
     site = None if found is None else site_of(snapshot, found[1])
     if found is None or site is None:
@@ -59,7 +59,7 @@ def _type_refs(site: Site, definition: Definition) -> list[tree.Ref]:
 
 
 def _value_sets(site: Site, variable: Definition) -> list[Definition]:
-    """Return the sets, and the sets of the elements, that variants assign to a variable."""
+    """Return the sets that variants assign to a variable, and the sets of the elements that they assign."""
     template = site.file.definitions.get(variable.symbol.path.partition(".")[0])
     found: list[Definition] = []
     for scenario in variants_of(site.snapshot, template) if template is not None else ():

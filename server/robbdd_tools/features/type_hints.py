@@ -1,4 +1,4 @@
-"""Inlay hints with the types of variables at their declarations."""
+"""Inlay hints that show the types of variables at their declarations."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class TypeHint:
-    """The hint after a declared variable, whose name is at ``span`` (absolute)."""
+    """The inlay hint after a declared variable. ``span`` is the absolute span of the variable's name."""
 
     span: Span
     type: VariableType
@@ -30,7 +30,7 @@ class TypeHint:
 
 
 def type_hints(snapshot: Snapshot, uri: str, within: Span) -> list[TypeHint]:
-    """Return a hint for each variable with a known type that is declared in a span of a file."""
+    """Return a hint for each variable that a span of a file declares and whose type is known."""
     file = snapshot.file(uri)
     hints: list[TypeHint] = []
     if file is None:
@@ -47,7 +47,7 @@ def type_hints(snapshot: Snapshot, uri: str, within: Span) -> list[TypeHint]:
 
 
 def _declared(placed: PlacedDeclaration) -> Iterator[tuple[str, Span]]:
-    """Yield the qualified names of the variables declared in a declaration, with their absolute spans."""
+    """Yield the qualified name and the absolute span of each variable that a declaration declares."""
     root = placed.declaration.tree
     if isinstance(root, tree.Template):
         for variable in root.variables:

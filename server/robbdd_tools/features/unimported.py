@@ -1,4 +1,4 @@
-"""Model files that a file could import: loaded ones, those in its folder, those elsewhere in the workspace."""
+"""Model files that a file could import: loaded files, files in its folder, and other files of the workspace."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MAX_NEIGHBOURS = 200
 
 @dataclass(frozen=True, slots=True)
 class Importable:
-    """A file: the path to write for it, and the kinds of its names."""
+    """A file that can be imported: the path to write in the import, and the kinds of the names that it declares."""
 
     path: str
     uri: str
@@ -33,13 +33,13 @@ class Importable:
 
 
 class Elsewhere:
-    """The names in the workspace's unloaded files, at the time of the last ``look``."""
+    """The names in those files of the workspace that were not loaded at the last ``update``."""
 
     def __init__(self) -> None:
         self._known: dict[str, tuple[FileState, Kinds]] = {}
 
     def update(self, uris: Iterable[str]) -> None:
-        """Use exactly these files; only changed ones are read."""
+        """Set the files to search. Only files that have changed are read again."""
         found = dict.fromkeys(uris)
         for uri in found:
             checkpoint()
@@ -52,20 +52,23 @@ class Elsewhere:
             del self._known[gone]
 
     def importable(self, snapshot: Snapshot, uri: str) -> list[Importable]:
-        """Return the files that a file may import, neither loaded nor in its folder, sorted by import path."""
+        """Return the files that a file may import, sorted by import path.
+
+        Files that are loaded or in the folder of the file are left out; see ``loaded`` and ``beside``.
+        """
         passed_over = {*snapshot.sources, *_beside(uri)}
         return _importable(uri, ((name, found) for name, (_, found) in self._known.items() if name not in passed_over))
 
 
 def loaded(snapshot: Snapshot, uri: str) -> list[Importable]:
-    """Return the files of the project that a file does not import yet but may, sorted by import path."""
+    """Return the loaded files that a file may import but does not import yet, sorted by import path."""
     reached = {file.document.uri for file in snapshot.scope(uri).files}
     indices = (source for source in snapshot.sources.values() if isinstance(source, FileIndex))
     return _importable(uri, ((i.document.uri, i.names.kinds) for i in indices if i.document.uri not in reached))
 
 
 def beside(snapshot: Snapshot, uri: str) -> list[Importable]:
-    """Return the unloaded files in a file's folder that it may import."""
+    """Return the files in the folder of a file that it may import and that are not loaded."""
     unread = (file_on_disk(name) for name in _beside(uri) if name not in snapshot.sources)
     return _importable(uri, ((index.document.uri, index.names.kinds) for index in unread if index is not None))
 
@@ -92,7 +95,7 @@ def _beside(uri: str) -> list[str]:
 
 
 def file_on_disk(uri: str) -> FileIndex | None:
-    """Return the index of a file on disk, cached until it changes; ``None`` if it cannot be read."""
+    """Return the index of a file on disk, which is cached until the file changes; ``None`` if it cannot be read."""
     state = file_state(uri)
     return None if state is None else _index_of(state)
 

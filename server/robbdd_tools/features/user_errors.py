@@ -1,4 +1,4 @@
-"""Errors of users' code in the last runs, mapped to the places in models that refer to that code."""
+"""Map the errors of users' code in the last runs to the places in models that refer to that code."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ CODE = "user-code-error"
 
 @dataclass(frozen=True, slots=True)
 class UserError:
-    """One cause, with the scenarios that are unknown because of it."""
+    """One error in users' code, and the scenarios that are unknown because of it."""
 
     fault: Fault
     scenarios: tuple[JudgedScenario, ...]
 
     @property
     def words(self) -> str:
-        """Summary of the error in one line."""
+        """A summary of the error in one line."""
         place = self.fault.place
         where = "" if place is None else f" ({Path(place.file).name}:{place.line})"
         return f"{self.fault.code} failed: {self.fault.summary}{where}"
@@ -41,7 +41,8 @@ class UserError:
 def user_errors(snapshot: Snapshot, scenarios: Iterable[JudgedScenario]) -> list[UserError]:
     """Return the distinct errors that still apply to the current text and code.
 
-    Errors of a scenario are dropped if its text or the code's file has changed since its execution.
+    The errors of a scenario are dropped if its text or the file of the code has changed since the scenario was
+    executed.
     """
     broken = [scenario for scenario in scenarios if scenario.faults]
     found: dict[str, tuple[Fault, list[JudgedScenario]]] = {}
@@ -61,10 +62,10 @@ def user_errors(snapshot: Snapshot, scenarios: Iterable[JudgedScenario]) -> list
 
 
 def errors_in(snapshot: Snapshot, uri: str, errors: Sequence[UserError]) -> Iterator[tuple[Span, UserError, str]]:
-    """Yield the errors to show in a model file: span, error, message.
+    """Yield the errors to show in a model file, each with its span and message.
 
-    An error is shown at the name of each scenario without evidence, and in a ``.bddx`` at the ``bhv:`` or the
-    declaration that names the code.
+    An error is shown at the name of each scenario that lacks evidence because of it. In a ``.bddx``, it is shown at the
+    ``bhv:`` or the declaration that names the code.
     """
     for variant in variants_of(snapshot, uri) if errors else ():
         for error in errors:
@@ -81,7 +82,10 @@ def errors_in(snapshot: Snapshot, uri: str, errors: Sequence[UserError]) -> Iter
 def _origins(
     snapshot: Snapshot, uri: str, error: UserError, executions: Mapping[str, PlacedExecution]
 ) -> Iterator[Span]:
-    """Yield the places where a file names the code: ``bhv:`` of the executions, otherwise the name's declaration."""
+    """Yield the places where a file names the code.
+
+    These are the ``bhv:`` of executions or, without one, the declaration of the name.
+    """
     origin = error.fault.origin
     named = False
     for iri in dict.fromkeys(scenario.execution for scenario in error.scenarios):
@@ -96,7 +100,7 @@ def _origins(
 
 
 def _is_unchanged(fault: Fault, known: dict[str, str]) -> bool:
-    """Return whether the file of a fault is unchanged; ``known`` caches digests of files."""
+    """Return whether the file of a fault is unchanged. ``known`` caches the digests of files."""
     place = fault.place
     if place is None:
         return True

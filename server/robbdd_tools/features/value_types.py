@@ -1,4 +1,7 @@
-"""The kinds that fit at a cursor, read from partly typed text: a cell, a line of values, a slot of a phrase."""
+"""Determine which kinds of names fit at a cursor in partly typed text.
+
+The cursor may be in a table cell, in a line of values or in a slot of a phrase.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +48,7 @@ def values_wanted(snapshot: Snapshot, uri: str, before: str) -> Kinds:
 
 
 def scene_wanted(snapshot: Snapshot, uri: str, before: str) -> frozenset[Element] | None:
-    """Return the members of the scene of the variant that a text ends in; ``None`` if unknown."""
+    """Return the members of the scene of the variant at the end of a text, or ``None`` if they are unknown."""
     variant = before[before.rfind("Scenario") :]
     match = _SCENE.search(variant)
     scope = snapshot.scope(uri)
@@ -56,9 +59,10 @@ def scene_wanted(snapshot: Snapshot, uri: str, before: str) -> frozenset[Element
 
 
 def fits(snapshot: Snapshot, definition: Definition, wanted: Kinds, members: frozenset[Element] | None = None) -> bool:
-    """Return whether a value or a set of values fits some kinds.
+    """Return whether a value, or a set of values, is of one of the wanted kinds.
 
-    With the ``members`` of a scene, an element of a kind that the scene has must be one of them.
+    If the ``members`` of a scene are given, and the scene has members of the kind of an element, the element must be
+    one of them.
     """
     if definition.kind in _MEMBER_KINDS:
         elements = [Element(str(definition.kind), definition.symbol.path, (definition.uri, definition.symbol.path))]
@@ -74,17 +78,17 @@ def fits(snapshot: Snapshot, definition: Definition, wanted: Kinds, members: fro
 
 
 def may_be(kind: SymbolKind, wanted: Kinds) -> bool:
-    """Return whether a name of some kind, or a set of that kind, fits some kinds."""
+    """Return whether a name of the given kind, or a set of this kind, may be of one of the wanted kinds."""
     return _ELEMENT_KINDS.get(kind) is None or _ELEMENT_KINDS[kind] in wanted
 
 
 def slot_wanted(before: str) -> Kinds:
-    """Return the kinds of the slot that a text ends in; any kind if no phrase has started."""
+    """Return the kinds of the slot at the end of a text. If no phrase has started there, any kind fits."""
     return next((kinds for pattern, kinds in _beginnings() if pattern.search(before)), ANYTHING)
 
 
 def kinds_in_text(text: str) -> dict[str, Kinds]:
-    """Return the kinds of variables according to the complete phrases in a text, which need not parse."""
+    """Return the kinds of variables according to the complete phrases in a text. The text need not be valid."""
     found: dict[str, Kinds] = {}
     for pattern, slots in _phrases():
         for match in pattern.finditer(text):
@@ -112,7 +116,7 @@ def _variable_of_cell(before: str) -> str | None:
 
 @cache
 def _beginnings() -> tuple[tuple[re.Pattern[str], Kinds], ...]:
-    """Return the beginnings of all phrases up to a slot, longest first, with the slot's kinds."""
+    """Return a pattern for each part of a phrase before a slot, longest first, with the kinds of the slot."""
     found: list[tuple[str, Kinds]] = []
     for word, pieces in _words():
         for index, (pattern, slot) in enumerate(pieces):
@@ -132,7 +136,7 @@ def _phrases() -> tuple[tuple[re.Pattern[str], tuple[Kinds, ...]], ...]:
 
 
 def _words() -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """Yield each catalog word with the patterns of its pieces, each with its slot's name, if any."""
+    """Yield each catalog word with the pieces of its phrase: a pattern, and the slot's name or ``""``."""
     catalog = load_catalog()
     for word in (*catalog.predicates.values(), *catalog.behaviours.values()):
         pieces: list[tuple[str, str]] = []

@@ -19,7 +19,7 @@ _PASSED_OVER = frozenset({"node_modules", "__pycache__", "build", "dist"})
 
 
 def model_files(folders: Iterable[str]) -> list[str]:
-    """Return the URIs of the model files below some folders in alphabetical order; hidden folders are skipped."""
+    """Return the URIs of the model files below some folders, in alphabetical order. Hidden folders are skipped."""
     found: dict[str, None] = {}
     for folder in folders:
         path = uri_to_path(folder)
@@ -31,12 +31,12 @@ def model_files(folders: Iterable[str]) -> list[str]:
 
 
 def model_files_near(uri: str) -> list[str]:
-    """Return the model files in a file's folder and below, in up to ``MAX_FOLDERS`` folders, sorted."""
+    """Return the model files in the folder of a file and below it, sorted. At most ``MAX_FOLDERS`` folders are read."""
     return files_near(uri, language_of)
 
 
 def files_near(uri: str, wanted: Callable[[str], object]) -> list[str]:
-    """Return the files with wanted names in a file's folder and below, see ``model_files_near``."""
+    """Return the files with wanted names in the folder of a file and below it, as ``model_files_near`` does."""
     path = uri_to_path(uri)
     return sorted(_below(path.parent, wanted, MAX_FOLDERS)) if path is not None else []
 

@@ -30,7 +30,10 @@ class Named:
 
 
 def workspace_symbols(snapshot: Snapshot, folders: Iterable[str], query: str, most: int = 200) -> list[Named]:
-    """Return the names that contain the query's letters in order, in the project's files and those below folders."""
+    """Return the names that contain the letters of the query in their order.
+
+    The project's loaded files and the files on disk below ``folders`` are searched.
+    """
     found: list[Named] = []
     for uri in sorted({*model_files(folders), *snapshot.sources}):
         checkpoint()
@@ -55,7 +58,7 @@ def _fitting(snapshot: Snapshot, uri: str, letters: str) -> Iterator[Named]:
 
 
 def _paths(uri: str) -> tuple[str, ...]:
-    """Return the names in a file on disk; cached for many more files than ``file_on_disk``."""
+    """Return the names that a file on disk declares. Many more files are cached than by ``file_on_disk``."""
     state = file_state(uri)
     return () if state is None else _paths_of(state)
 
