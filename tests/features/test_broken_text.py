@@ -9,10 +9,11 @@ from itertools import chain
 
 import pytest
 
-from kit import FOLDER, SCENE
+from kit import FOLDER, MODEL, SCENE
 from names.test_kinds import ARM, CELL, RUN, VARIANT
 from robbdd_tools.base.document import Span
 from robbdd_tools.features.completion import Completion, complete
+from robbdd_tools.features.diagnostics import fast_diagnostics
 from robbdd_tools.features.folding import folds
 from robbdd_tools.features.goto_definition import definition
 from robbdd_tools.features.hover import hover
@@ -202,3 +203,14 @@ def declaration(snapshot: Snapshot, offered: Completion) -> tuple[str, int] | No
         if file is None or offered.origin is None
         else (offered.origin[0], file.definitions[offered.origin[1]].span.start)
     )
+
+
+def test_a_text_that_ends_early_has_each_message_once_at_its_place() -> None:
+    end = MODEL.index("<places.tray_ws")
+    for cut in range(end - 40, end + 16):
+        project = Project()
+        project.open(FOLDER + "lab.scene", 1, SCENE)
+        project.open(FOLDER + "main.bdd", 1, MODEL[:cut])
+        found = fast_diagnostics(project.snapshot(), FOLDER + "main.bdd")
+        shown = [(one.span, one.code, one.message) for one in found]
+        assert len(set(shown)) == len(shown) > 0, MODEL[:cut][-30:]

@@ -28,7 +28,11 @@ def fast_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
     analysis = snapshot.file(uri)
     if analysis is None:
         return []
-    return sorted([*with_fixes(snapshot, analysis, analysis.diagnostics), *run_checks(snapshot, uri)], key=sort_key)
+    # Repairs that fail one after another at the end of a text give the same message with different fixes.
+    first: dict[object, Diagnostic] = {}
+    for found in (*with_fixes(snapshot, analysis, analysis.diagnostics), *run_checks(snapshot, uri)):
+        first.setdefault((found.span, found.code, found.message, found.related), found)
+    return sorted(first.values(), key=sort_key)
 
 
 def shape_diagnostics(
