@@ -109,7 +109,8 @@ def test_diagnostics_as_json_follow_their_schema(folder: Path) -> None:
         ("missing.bdd", None, "there is no file 'missing.bdd'"),
         ("binary.bdd", b"\0\1", "is a binary file"),
         ("latin.bdd", b"ns a = '\xff'", "is not UTF-8"),
-        ("huge.bdd", b"a" * 10 * 1024 * 1024, "split the model"),
+        # A test's name goes into its environment, which older versions of pytest do not shorten.
+        pytest.param("huge.bdd", b"a" * 10 * 1024 * 1024, "split the model", id="huge"),
         ("notes.txt", b"hello", "its name must end in one of .bdd, .scene, .scenex, .ktree, .bddx, .ttl"),
         ("notes", None, "there is no file or folder notes"),
     ],
