@@ -112,7 +112,7 @@ def test_a_resumed_run_gives_the_results_of_one_that_was_not_interrupted(folder:
     process.wait()
     refused = robbdd(folder, "run", "--resume", "--seed", "4")
     assert refused.returncode == 2
-    assert "leave out --seed" in refused.stderr
+    assert "omit --seed" in refused.stderr
     # The steps are part of the run.
     steps = folder / "steps" / "pickplace_steps.py"
     endless = steps.read_text(encoding="utf-8")
