@@ -174,7 +174,12 @@ def test_a_template_and_its_variable_are_renamed_apart() -> None:
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("1st", "is no name"), ("a b", "is no name"), ("robot", "is already declared"), ("", "is no name")],
+    [
+        ("1st", "is not a valid name"),
+        ("a b", "is not a valid name"),
+        ("robot", "is already declared"),
+        ("", "is not a valid name"),
+    ],
 )
 def test_a_rename_that_would_break_the_model_is_refused(name: str, words: str) -> None:
     case, uri = marked("var part", "var pa$0rt")
