@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import threading
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
 from math import inf
@@ -41,6 +41,7 @@ from robbdd_tools.run.agent_worker import GRACE, AgentWorker
 from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.run.message_check import misfit
 from robbdd_tools.run.message_order import OrderedMessages
+from robbdd_tools.run.tasks import earlier_than, grouped
 
 TIMEOUT = 300.0
 """Default wall time of a scenario, s."""
@@ -69,19 +70,6 @@ class Policy:
         policy = cls(stop_on_failure=stop_on_failure)
         policy = policy if jobs is None else replace(policy, jobs=jobs)
         return policy if timeout is None else replace(policy, timeout=timeout)
-
-
-def _tasks(manifest: Manifest, indices: Iterable[int]) -> Iterator[tuple[int, ...]]:
-    """Group the scenarios that share an execution. A group has the position of its first scenario."""
-    together: dict[int | str, list[int]] = {}
-    for index in indices:
-        tree = manifest.scenarios[index].tree
-        together.setdefault(index if tree is None else tree.name, []).append(index)
-    return map(tuple, together.values())
-
-
-def _before(index: int, task: Iterable[int]) -> tuple[int, ...]:
-    return tuple(waiting for waiting in task if waiting < index)
 
 
 Event = tuple[AgentWorker, RunMessage | None]
@@ -123,7 +111,7 @@ class Scheduler:
         self._watch = watch
         self._events: SimpleQueue[Event | None] = SimpleQueue()
         self._indices = range(len(self._specs)) if indices is None else indices
-        self._waiting = deque(_tasks(manifest, self._indices))
+        self._waiting = deque(grouped(manifest, self._indices))
         self._workers: list[AgentWorker] = []
         self._order = OrderedMessages(self._indices)
         self._agent_numbers = count(first_agent)
@@ -307,12 +295,12 @@ class Scheduler:
         """
         if index != self._indices[-1]:
             self.ending, self._stopped = STOPPED, True
-        self._waiting = deque(earlier for task in self._waiting if (earlier := _before(index, task)))
+        self._waiting = deque(earlier for task in self._waiting if (earlier := earlier_than(index, task)))
         self._order.forget(index + 1)
         beyond = [worker for worker in self._workers if worker.index is not None and worker.index > index]
         self._workers = [worker for worker in self._workers if worker not in beyond]
         for worker in self._workers:
-            worker.following = deque(_before(index, worker.following))
+            worker.following = deque(earlier_than(index, worker.following))
         stop(worker.agent for worker in beyond)
 
     def _close_ended(self, worker: AgentWorker) -> Iterator[RunMessage]:

@@ -30,14 +30,7 @@ from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.database import LOG, NAME, DatabaseProblem
 from robbdd_tools.run.results import RunResults
 from robbdd_tools.run.store_maintenance import make_ready, remove_runs
-from robbdd_tools.run.stored_results import (
-    FINISHED,
-    INTERRUPTED,
-    RunStatus,
-    numbers,
-    read_results,
-    read_status,
-)
+from robbdd_tools.run.stored_results import FINISHED, INTERRUPTED, RunStatus, numbers, read_results, read_status
 
 MARKS = ("pyproject.toml", "robbdd.toml", ".git")
 """Files or folders that mark a project's root."""
@@ -163,11 +156,11 @@ class StoredRun:
 
     def write_record(self, record: RunRecord) -> None:
         """Write the record; raises ``OSError``."""
-        _write(self.folder / RECORD, asdict(record))
+        replace_file(self.folder / RECORD, printable_json(asdict(record), indent=1) + "\n")
 
     def write_results(self, results: Mapping[str, Any]) -> None:
         """Write the results; raises ``OSError``."""
-        _write(self.folder / RESULTS, results)
+        replace_file(self.folder / RESULTS, printable_json(results, indent=1) + "\n")
 
     def discard(self) -> None:
         """Remove the folder, because the run never began."""
@@ -349,8 +342,3 @@ def store_beside(path: Path) -> RunStore:
 def shown_path(path: Path) -> str:
     """Return a model's path relative to its project's root."""
     return full_path(path).relative_to(project_root(path)).as_posix()
-
-
-def _write(path: Path, document: object) -> None:
-    """Write a document atomically, so that a concurrent reader gets either the old document or the new one."""
-    replace_file(path, printable_json(document, indent=1) + "\n")
