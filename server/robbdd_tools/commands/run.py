@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """Output places: a JSON file, a JUnit XML file, a folder of pictures and videos, the run's own folder."""
+    """Where to write: a JSON file, a JUnit XML file, a folder of pictures and videos, and the run's own folder."""
 
     report: Path | None = None
     junit: Path | None = None

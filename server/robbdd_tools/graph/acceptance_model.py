@@ -1,6 +1,6 @@
-"""Acceptance criteria as plain data, read from a graph; input of Gherkin generation and runs.
+"""Acceptance criteria as plain data. They are read from a graph and used to generate Gherkin and to run scenarios.
 
-Independent of RDF and source text; a model that was never written in RobBDD has the same form.
+The data depends neither on RDF nor on source text, so a model that was never written in RobBDD has the same form.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from robbdd_tools.monitor.time import TimeConstraint
 
 
 class Iri(str):
-    """An IRI, as opposed to a user's string."""
+    """An IRI, as opposed to a string of the user."""
 
     __slots__ = ()
 
@@ -29,9 +29,10 @@ Cell = Value | tuple[Value, ...]
 
 @dataclass(frozen=True, slots=True)
 class Fluent:
-    """A predicate under a time constraint, whose events are IRIs.
+    """A predicate under a time constraint. The events of the time constraint are IRIs.
 
-    ``predicate`` is the catalog name; ``arguments`` maps its slots to a variable (or element) or a bare name.
+    ``predicate`` is the name of the predicate in the catalog. ``arguments`` maps each slot of the predicate to a
+    variable, an element or a bare name.
     """
 
     iri: Iri
@@ -43,7 +44,7 @@ class Fluent:
 
 @dataclass(frozen=True, slots=True)
 class TextFluent:
-    """A fluent whose predicate is a text with ``{name}`` placeholders."""
+    """A fluent whose predicate is a text with placeholders such as ``{name}``."""
 
     iri: Iri
     role: str
@@ -64,7 +65,7 @@ class TextClause:
 
 @dataclass(frozen=True, slots=True)
 class Junction:
-    """``operator`` is ``and``, ``or`` or ``not``."""
+    """Clauses that are joined by ``and`` or ``or``, or negated by ``not``."""
 
     iri: Iri
     role: str
@@ -82,10 +83,12 @@ class EventClause:
 
 @dataclass(frozen=True, slots=True)
 class BehaviourClause:
-    """The behaviour in ``When``: ``behaviour`` is the catalog name, ``start``/``end`` the events of its duration.
+    """The behaviour in a ``When``.
 
-    ``node`` is the behaviour tree node that executes it, if any. ``emits`` maps the behaviour's own events
-    (``pick-end``) to events of the model, in written order.
+    - ``behaviour``: the name of the behaviour in the catalog.
+    - ``start`` and ``end``: the events of its duration.
+    - ``node``: the node of a behaviour tree that executes it, if any.
+    - ``emits``: maps the behaviour's own events (``pick-end``) to events of the model, in written order.
     """
 
     iri: Iri
@@ -99,7 +102,7 @@ class BehaviourClause:
 
 @dataclass(frozen=True, slots=True)
 class ForAll:
-    """The body repeated for each element of a set (a set variable or a constant set)."""
+    """A body that is repeated for each element of a set, which is a set variable or a constant set."""
 
     iri: Iri
     variable: Iri
@@ -109,7 +112,7 @@ class ForAll:
 
 @dataclass(frozen=True, slots=True)
 class Exists:
-    """Some element of a set satisfies the clauses."""
+    """Clauses that some element of a set must satisfy."""
 
     iri: Iri
     role: str
@@ -139,7 +142,7 @@ def behaviour_clauses(clauses: Iterable[Clause]) -> Iterator[BehaviourClause]:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """A selection of sets from a set: ``kind`` is ``combinations`` or ``permutations``."""
+    """All sets of some size that can be selected from a set. ``kind`` is ``combinations`` or ``permutations``."""
 
     kind: str
     source: tuple[Value, ...]
@@ -148,13 +151,13 @@ class Selection:
 
     @property
     def rule(self) -> SelectionRule:
-        """The rule that counts and enumerates the sets."""
+        """The rule that counts and enumerates the selected sets."""
         return SelectionRule(self.kind, self.length, self.repeated)
 
 
 @dataclass(frozen=True, slots=True)
 class Product:
-    """Cartesian product: one entry of ``choices`` per variable, the last varying fastest."""
+    """A Cartesian product. ``choices`` has one entry for each variable, and the last variable varies fastest."""
 
     variables: tuple[Iri, ...]
     choices: tuple[tuple[Cell, ...] | Selection, ...]
@@ -162,7 +165,7 @@ class Product:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """One scenario per row; every row is as long as ``variables``."""
+    """A table with one scenario for each row. Every row is as long as ``variables``."""
 
     variables: tuple[Iri, ...]
     rows: tuple[tuple[Cell, ...], ...]
@@ -170,9 +173,10 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class SceneModel:
-    """Members of a variant's scene in written order.
+    """The members of a variant's scene in written order.
 
-    ``carriers`` maps a workspace to the objects that carry it, ``contains`` to the workspaces inside it.
+    ``carriers`` maps a workspace to the objects that carry it. ``contains`` maps a workspace to the workspaces inside
+    it.
     """
 
     objects: tuple[Iri, ...]
@@ -184,7 +188,7 @@ class SceneModel:
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A scenario template: clauses in order; ``start`` and ``end`` delimit every execution."""
+    """A scenario template with its clauses in order. The events ``start`` and ``end`` delimit every execution."""
 
     iri: Iri
     clauses: tuple[Clause, ...]
@@ -194,7 +198,7 @@ class Template:
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """A scenario variant: its template's clauses, then its own."""
+    """A scenario variant. Its scenarios have the clauses of its template, followed by its own clauses."""
 
     iri: Iri
     template: Template
@@ -216,7 +220,7 @@ class Story:
 
 @dataclass(frozen=True, slots=True)
 class TreeNode:
-    """A node of a behaviour tree: ``kind`` is ``sequence``, ``selector`` or ``leaf``."""
+    """A node of a behaviour tree. ``kind`` is ``sequence``, ``selector`` or ``leaf``."""
 
     iri: Iri
     kind: str
@@ -225,7 +229,7 @@ class TreeNode:
 
 @dataclass(frozen=True, slots=True)
 class BehaviourTree:
-    """A behaviour tree: its nodes in written order, and either its root or the Python code that makes it."""
+    """A behaviour tree. It has nodes in written order, and either a root or Python code that creates the tree."""
 
     iri: Iri
     nodes: tuple[Iri, ...]
@@ -237,9 +241,11 @@ class BehaviourTree:
 class Execution:
     """An execution of a scenario variant.
 
-    ``implementation`` executes its behaviours in ``scene``, ``policies`` judge its clauses instead of the predicates.
-    ``repeat`` is the number of repetitions, ``seed`` determines all randomness (``None``: the run's seed), ``timeout``
-    is in seconds of simulated time.
+    - ``implementation``: executes the behaviours of the variant in ``scene``.
+    - ``policies``: judge clauses of the variant instead of the predicates of these clauses.
+    - ``repeat``: the number of repetitions.
+    - ``seed``: determines all randomness; ``None`` takes the seed of the run.
+    - ``timeout``: the limit in s of simulated time.
     """
 
     iri: Iri
@@ -256,8 +262,10 @@ class Execution:
 class AcceptanceModel:
     """All acceptance criteria of a graph.
 
-    ``kinds`` maps each element to its kind (``object``, ``workspace``, ``agent``); ``sets`` holds the constant sets;
-    ``prefixes`` maps prefix to namespace for writing CURIEs; ``executions`` are in written order.
+    - ``kinds``: maps each element to its kind (``object``, ``workspace`` or ``agent``).
+    - ``sets``: the constant sets.
+    - ``prefixes``: maps each prefix to its namespace, for writing CURIEs.
+    - ``executions``: the executions in written order.
     """
 
     stories: tuple[Story, ...]
@@ -268,7 +276,7 @@ class AcceptanceModel:
     trees: tuple[BehaviourTree, ...] = ()
 
     def curie(self, iri: str) -> str:
-        """Shorten an IRI by the longest matching namespace; without a match it is returned unchanged."""
+        """Shorten an IRI by the longest namespace that it starts with. If there is none, return the IRI unchanged."""
         best = max(
             ((namespace, prefix) for prefix, namespace in self.prefixes.items() if iri.startswith(namespace)),
             key=lambda pair: len(pair[0]),

@@ -1,4 +1,4 @@
-"""Acceptance criteria of a file, with the source positions of executed parts."""
+"""Read the acceptance criteria of a file together with the source positions of their executed parts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def placed_model(built: BuiltGraph, snapshot: Snapshot) -> AcceptanceModel:
-    """Return the acceptance criteria of a graph that was built from a snapshot."""
+    """Return the acceptance criteria of a graph, with source positions. The graph was built from the snapshot."""
 
     def place(node: str) -> Origin | None:
         location = built.sources.node(node)

@@ -1,5 +1,7 @@
-"""A project's settings: ``robbdd.toml``, or ``[tool.robbdd]`` in ``pyproject.toml``, in the nearest folder above a
-model."""
+"""Read a project's settings from the nearest folder above a model.
+
+The settings are in ``robbdd.toml``, or under ``[tool.robbdd]`` in ``pyproject.toml``.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,10 @@ _LINE_COLUMN = re.compile(r"\(at line (\d+), column (\d+)\)")
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A list of strings in a file under a key at ``offset``; ``faults`` are why it cannot be used."""
+    """A setting whose value is a list of strings.
+
+    ``offset`` is the position of its key in ``file``. ``faults`` are the reasons why it cannot be used.
+    """
 
     file: Path
     offset: int = 0
@@ -34,7 +39,7 @@ class Setting:
 
 
 def nearest_setting(uri: str, key: str, form: str) -> Setting | None:
-    """Return the setting in the nearest configuration above a model that has the key; ``None`` without any.
+    """Return the setting ``key`` of the nearest configuration above a model that contains it, or ``None``.
 
     ``form`` describes the expected value, for error messages.
     """
@@ -49,7 +54,7 @@ def nearest_setting(uri: str, key: str, form: str) -> Setting | None:
 
 
 def user_setting(key: str, form: str) -> Setting | None:
-    """Return the setting in the user's own configuration; see ``nearest_setting``."""
+    """Return the setting ``key`` of the user's own configuration. For ``form``, see ``nearest_setting``."""
     file = user_file()
     return _setting(file, key, form) if os.path.lexists(file) else None
 

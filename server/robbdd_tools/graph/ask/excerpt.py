@@ -1,4 +1,4 @@
-"""Excerpt of a structure that is small enough to read: all of it, or the story around one node."""
+"""Reduce the structure of a graph to an excerpt that is small enough to read."""
 
 from __future__ import annotations
 
@@ -10,17 +10,21 @@ from robbdd_tools.graph.ask.structure import Node, Structure
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """An excerpt, and the node that all others are reached from (``None``: the excerpt is complete)."""
+    """An excerpt of a structure.
+
+    ``root`` is the node from which all other nodes are reached, or ``None`` if the excerpt is the whole structure.
+    """
 
     structure: Structure
     root: Node | None
 
 
 def limited(structure: Structure, most: int, wanted: Iterable[str]) -> Part:
-    """Return a structure of at most ``most`` nodes.
+    """Return an excerpt of at most ``most`` nodes.
 
-    A larger one is reduced to the story that leads to the first existing node of ``wanted`` (IRIs), or else to the
-    first story; a story that is too large, to its variant, then its template, then the first ``most`` nodes of that.
+    ``wanted`` are IRIs, the most important one first. A larger structure is reduced to the story that leads to the
+    first of them that exists or, if none exists, to the first story. If the story is too large, it is reduced to its
+    variant, and this one to its template. If the template is too large, too, only its first ``most`` nodes remain.
     """
     nodes = {node.iri: node for node in structure.nodes()}
     if len(nodes) <= most:
@@ -41,7 +45,7 @@ def limited(structure: Structure, most: int, wanted: Iterable[str]) -> Part:
 
 
 def _reached(root: str, targets: Mapping[str, list[str]]) -> list[str]:
-    """Return the nodes reachable from a node, itself first, in text order."""
+    """Return the nodes that are reachable from a node: first the node itself, then the others in text order."""
     found: dict[str, None] = {}
     waiting = [root]
     while waiting:

@@ -1,6 +1,7 @@
-"""SPARQL on a graph: all prefixes are declared, nothing is fetched, rows come in a fixed order.
+"""Answer SPARQL queries on a graph. All prefixes are declared, nothing is fetched, and rows have a fixed order.
 
-rdflib parses the query and reports its errors; Oxigraph evaluates it if the extra ``fast-queries`` is installed.
+rdflib parses the query and reports its errors. Oxigraph evaluates the query if the extra ``fast-queries`` is installed,
+otherwise rdflib does.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ FOLDER = "queries"
 
 
 class BadQuery(Exception):
-    """A query cannot be answered; ``offset`` is the position of the error in its text."""
+    """A query cannot be answered. ``offset`` is the position of the error in the text of the query."""
 
     def __init__(self, message: str, offset: int = 0) -> None:
         super().__init__(message)
@@ -34,7 +35,10 @@ class BadQuery(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A node of a graph as plain data: ``kind`` is ``uri``, ``bnode`` or ``literal``; plain text has no datatype."""
+    """A node of a graph as plain data.
+
+    ``kind`` is ``uri``, ``bnode`` or ``literal``. A literal that is plain text has no datatype.
+    """
 
     kind: str
     value: str
@@ -44,10 +48,12 @@ class Term:
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """The answer to SELECT: one term or ``None`` per column; to ASK: one cell of the column ``answer``.
+    """The answer to a query.
 
-    CONSTRUCT and DESCRIBE return the triples of ``graph``: subject, predicate, object. ``prefixes`` maps prefixes to
-    namespaces, for display. ``remarks`` say why a query may have fewer rows than expected.
+    A row of a SELECT has one term or ``None`` for each column. The answer to an ASK is a single cell in the column
+    ``answer``. The rows of CONSTRUCT and DESCRIBE are the triples of ``graph``: subject, predicate and object.
+    ``prefixes`` maps prefixes to namespaces, for display. ``remarks`` say why the query may have fewer rows than
+    expected.
     """
 
     columns: tuple[str, ...]
@@ -58,7 +64,7 @@ class Rows:
 
 
 def run_query(graph: Graph, text: str) -> Rows:
-    """Answer a query; raises ``BadQuery``. Rows are sorted unless the query orders them itself."""
+    """Answer a query. Rows are sorted, unless the query orders them itself. Raises ``BadQuery``."""
     known, remarks = query_prefixes(graph, text)
     query = _prepared(text, known)
     asked = list(patterns(query.algebra))
@@ -83,7 +89,7 @@ def run_query(graph: Graph, text: str) -> Rows:
 
 
 def _made(triples: Any, prefixes: dict[str, str]) -> Graph:
-    """Return the result of CONSTRUCT or DESCRIBE as a graph with the prefixes of the query."""
+    """Return the triples that CONSTRUCT or DESCRIBE made, as a graph with the prefixes of the query."""
     from rdflib import Graph
 
     found = Graph(bind_namespaces="none")
@@ -100,14 +106,14 @@ def ready_queries() -> dict[str, str]:
 
 
 def ready_query(name: str) -> str | None:
-    """Return the text of a built-in query, ``None`` if there is none of this name."""
+    """Return the text of the built-in query ``name``, or ``None`` if there is none of this name."""
     if name not in ready_queries():
         return None
     return load_text(data_file("metamodels", f"{FOLDER}/{name}.rq"))
 
 
 def _fast_copy(graph: Graph) -> Graph:
-    """Return a copy in Oxigraph; the graph itself if that is not installed."""
+    """Return a copy of a graph in Oxigraph, or the graph itself if Oxigraph is not installed."""
     from rdflib import Graph
 
     if find_spec("oxrdflib") is None:
@@ -150,7 +156,10 @@ def _term(node: Node | None) -> Term | None:
 
 
 def _lexical(value: object, text: str) -> str:
-    """Return the canonical form of a number, whichever engine computed it: 1.50 as 1.5; other text unchanged."""
+    """Return the canonical form of a number, so that it does not depend on the engine; for example, 1.5 for 1.50.
+
+    Text other than a number is returned unchanged.
+    """
     if isinstance(value, Decimal) and value.is_finite():
         return format(value.normalize() if value else Decimal(0), "f")
     return repr(value) if isinstance(value, float) else text

@@ -1,4 +1,7 @@
-"""Meaning of a query's prefixes if a model's own prefix has a name of the vocabulary (``bdd``, ``env``)."""
+"""Determine the meaning of a query's prefixes.
+
+This is necessary because a model's own prefix may have the name of a prefix of the vocabulary (``bdd``, ``env``).
+"""
 
 from __future__ import annotations
 
@@ -19,9 +22,10 @@ _MORE_PREFIXES = {
 
 
 def query_prefixes(graph: Graph, text: str) -> tuple[dict[str, str], list[str]]:
-    """Return the prefixes of a query, and a remark on each that may have an unexpected meaning.
+    """Return the prefixes of a query, and a remark on each prefix that may have an unexpected meaning.
 
-    A model's own prefix wins, unless all terms that the query writes with it belong to the vocabulary.
+    If a prefix of the model has the name of a prefix of the vocabulary, the model's namespace is used, unless all terms
+    that the query writes with it belong to the vocabulary.
     """
     own = user_prefixes(graph)
     taken: dict[str, str] = {}
@@ -48,7 +52,7 @@ def query_prefixes(graph: Graph, text: str) -> tuple[dict[str, str], list[str]]:
 
 
 def _uses(graph: Graph, text: str, prefix: str, namespace: str) -> bool:
-    """Return whether a query uses a term of a namespace with a prefix that it does not declare."""
+    """Return whether a query uses a term of a namespace by a prefix that the query does not declare."""
     from rdflib import URIRef
 
     if re.search(rf"\bPREFIX\s+{re.escape(prefix)}\s*:", text, re.IGNORECASE):

@@ -1,4 +1,7 @@
-"""The structure of a graph for a picture: stories, variants, templates, clauses, events, nodes of behaviour trees."""
+"""The structure of a graph, as needed to draw it.
+
+It consists of stories, variants, templates, clauses, events and nodes of behaviour trees.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +31,11 @@ JOINED = {
 class Node:
     """A node to draw.
 
-    ``concept`` is ``story``, ``variant``, ``template``, ``given``, ``when``, ``then``, ``event`` or ``node`` (of a
-    behaviour tree); ``depth`` counts the groups and quantifiers around a clause, or the composites above a node;
-    ``location`` is its source range.
+    - ``concept``: ``story``, ``variant``, ``template``, ``given``, ``when``, ``then``, ``event``, or ``node`` for a
+      node of a behaviour tree.
+    - ``depth``: the number of groups and quantifiers around a clause, or of composites above a node of a behaviour
+      tree.
+    - ``location``: the source range of the node.
     """
 
     iri: str
@@ -43,7 +48,10 @@ class Node:
 
 @dataclass(slots=True)
 class Structure:
-    """Nodes in drawing order, by layer, and the links between them (from, to, meaning)."""
+    """The nodes to draw, layer by layer, and the links between them.
+
+    Nodes are in drawing order. A link consists of its start, its end and its meaning.
+    """
 
     stories: list[Node] = field(default_factory=list[Node])
     variants: list[Node] = field(default_factory=list[Node])
@@ -54,7 +62,7 @@ class Structure:
     links: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
 
     def nodes(self) -> Iterator[Node]:
-        """Yield all nodes, by layer."""
+        """Yield all nodes, layer by layer."""
         return chain(self.stories, self.variants, self.templates, self.clauses, self.events, self.tree_nodes)
 
 

@@ -1,10 +1,8 @@
-"""Draw the structure of a graph: one column each for stories, variants, templates, clauses and events.
+"""Draw the structure of a graph with one column each for stories, variants, templates, clauses and events.
 
-The nodes of behaviour trees are below the events, each below its parent.
-
-Every link leads from a column to one further right, so layout only chooses heights: clauses are stacked in written
-order, and every other node is centred on the nodes that it links to. A library for layered layout would have nothing
-left to decide.
+Below the events are the nodes of behaviour trees, each one below its parent. Every link leads from a column to one
+further right, so the layout only chooses heights. Clauses are stacked in written order, and every other node is centred
+on the nodes that it links to. A library for layered layout would have nothing left to decide.
 """
 
 from __future__ import annotations
@@ -77,7 +75,7 @@ class _Box:
 
 
 def draw(structure: Structure, source: Callable[[Location], str]) -> str:
-    """Return an SVG; ``source`` formats a location (``model.bdd:3:7``), which each node carries."""
+    """Return a structure as SVG. ``source`` converts the location of a node to a text such as ``model.bdd:3:7``."""
     boxes = _laid_out(structure)
     right = MARGIN * 2 + sum(width for _, width in COLUMNS) + SPACE * (len(COLUMNS) - 1)
     bottom = max((box.bottom for box in boxes.values()), default=MARGIN) + 70
@@ -105,7 +103,10 @@ def draw(structure: Structure, source: Callable[[Location], str]) -> str:
 
 
 def _laid_out(structure: Structure) -> dict[str, _Box]:
-    """Place clauses first, then the nodes that link to them, then events next to the clauses that name them."""
+    """Place all nodes: first clauses, then the nodes that link to them, and last the events.
+
+    Events are placed next to the clauses that name them.
+    """
     boxes: dict[str, _Box] = {}
     lefts = _lefts()
     owners = {end: start for start, end, _ in structure.links}
@@ -135,7 +136,7 @@ def _laid_out(structure: Structure) -> dict[str, _Box]:
 
 
 def _owner(clause: str, owners: Mapping[str, str], clauses: set[str]) -> str:
-    """Return the template or variant of a clause, through the groups around it."""
+    """Return the template or variant of a clause. The clause may be inside groups."""
     owner = owners.get(clause, "")
     while owner in clauses:
         owner = owners[owner]
@@ -148,7 +149,7 @@ def _stack(
     boxes: dict[str, _Box],
     lefts: Mapping[str, tuple[float, float]],
 ) -> None:
-    """Place the nodes of a layer, each centred on its linked nodes, as far as there is room."""
+    """Place the nodes of a layer. Each node is centred on the nodes that it is linked to, as far as there is room."""
     wanted: list[tuple[float, int, _Box]] = []
     for number, node in enumerate(nodes):
         middles = [boxes[other].middle for other in beside.get(node.iri, ()) if other in boxes]
@@ -204,7 +205,10 @@ def _shape(box: _Box, source: Callable[[Location], str]) -> str:
 
 
 def _outline(box: _Box) -> str:
-    """Return the shape of a concept: a page, a pill, a framed box, a box with a bar, a hexagon."""
+    """Return the outline of a box.
+
+    Each concept has its shape: a page, a pill, a framed box, a box with a bar, a hexagon.
+    """
     x, y, width, height = box.x, box.y, box.width, box.height
     stroke = STROKES[box.node.concept]
     paint = f'fill="{COLOURS[box.node.concept]}" stroke="{stroke}" stroke-width="1.5"'
@@ -237,7 +241,10 @@ def _polygon(points: Iterable[tuple[float, float]], paint: str) -> str:
 
 
 def _link(start: _Box, end: _Box, kind: str) -> str:
-    """Draw a curve from one box to the next column, or down along the left side of a group to its members."""
+    """Draw a link as a curve from one box to another.
+
+    It leads to the next column, or from a group down along its left side to its members.
+    """
     style = "link duration" if kind == "duration" else "link"
     if end.x < start.x + start.width:
         x = start.x + 5

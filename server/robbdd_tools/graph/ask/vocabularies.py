@@ -1,4 +1,7 @@
-"""Terms in queries: those of the paper's metamodel that our graphs express differently, and unused ones."""
+"""Handle terms in queries that graphs of RobBDD express differently or do not use.
+
+The first ones are terms of the metamodel in the 2025 paper.
+"""
 
 from __future__ import annotations
 
@@ -42,10 +45,11 @@ def operators(algebra: Any) -> Iterator[Any]:
 
 
 def with_paper_terms(graph: Graph, asked: list[Pattern]) -> Graph:
-    """Return a graph with the triples of the 2025 paper's metamodel, if a query uses its ``bdd:holds-at``.
+    """Return a graph that also has the triples of the 2025 paper's metamodel, if a query uses its ``bdd:holds-at``.
 
-    In the paper, a clause has a time constraint (``bdd:holds-at``) and a template has clauses (``bdd:has-clause``). Our
-    graphs, like the published tools, have the time constraint on the clause itself and the clauses as a list.
+    In the paper, a clause has a time constraint (``bdd:holds-at``), and a template has clauses (``bdd:has-clause``). In
+    our graphs, as in those of the published tools, the time constraint is on the clause itself, and the clauses are a
+    list.
     """
     from rdflib import RDF, URIRef
 
@@ -65,7 +69,7 @@ def with_paper_terms(graph: Graph, asked: list[Pattern]) -> Graph:
 
 
 def _with_operands(graph: Graph, clauses: Node) -> Iterator[Node]:
-    """Yield the clauses of a list and those inside its groups (``not``, ``or`` …)."""
+    """Yield the clauses of a list and those inside its groups (for example, ``not`` and ``or``)."""
     from rdflib import URIRef
 
     for clause in graph.items(clauses):
@@ -75,7 +79,10 @@ def _with_operands(graph: Graph, clauses: Node) -> Iterator[Node]:
 
 
 def unknown_terms(graph: Graph, asked: list[Pattern], prefixes: Mapping[str, str], text: str) -> list[str]:
-    """Return a remark on each term of a query's patterns that no triple contains, with the nearest one that does."""
+    """Return a remark on each term in a query's patterns that no triple contains.
+
+    The remark names the most similar term that some triple contains.
+    """
     predicates = set(graph.predicates())
     others: set[Node] = {*graph.subjects(), *graph.objects()}
     remarks: dict[str, None] = {}
@@ -126,7 +133,7 @@ def _terms(asked: list[Pattern]) -> Iterator[Node]:
 
 
 def _iris(part: Any) -> Iterator[Node]:
-    """Yield the IRIs of a part of a pattern: itself, or those of a property path."""
+    """Yield the IRIs in a part of a pattern: the part itself, or the IRIs of a property path."""
     from rdflib import URIRef
     from rdflib.paths import Path
 

@@ -1,4 +1,4 @@
-"""Canonical form of a graph: ordered triples and deterministic blank-node labels."""
+"""Canonical form of a graph, with ordered triples and deterministic labels of blank nodes."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ if TYPE_CHECKING:
 
 
 def sort_text(node: Node) -> tuple[str, str, str]:
-    """Return the sort key of a node: its kind, its text, and a literal's datatype or language."""
+    """Return the sort key of a node: its kind, its text and, for a literal, its datatype or language."""
     detail = getattr(node, "datatype", None) or getattr(node, "language", None) or ""
     return (type(node).__name__, str(node), str(detail))
 
 
 def canonical(graph: Graph) -> Graph:
-    """Return a copy with triples added in order and blank nodes numbered by their paths.
+    """Return a copy of a graph with ordered triples and with numbered blank nodes.
 
-    Graphs in which each blank node has one incoming property, as in lists, are numbered in linear time; others by
-    rdflib's general algorithm.
+    If each blank node has one incoming property, as in lists, blank nodes are numbered by the paths that lead to them,
+    in linear time. Other graphs need the general algorithm of rdflib.
     """
     from rdflib import BNode, Graph
     from rdflib.compare import to_canonical_graph
@@ -43,7 +43,7 @@ def _triple_order(triple: Triple) -> tuple[tuple[str, str, str], ...]:
 
 
 def _labels(graph: Graph) -> dict[Node, str] | None:
-    """Number the blank nodes in the order of the paths that lead to them; ``None`` if a path is not unique."""
+    """Number the blank nodes in the order of the paths that lead to them. Return ``None`` if a path is not unique."""
     from rdflib import BNode
 
     edges: dict[Node, list[tuple[Node, Node]]] = {}

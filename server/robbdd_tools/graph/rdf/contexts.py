@@ -1,6 +1,8 @@
-"""JSON-LD contexts by name: one next to the model, ours, or a cached one that the user allowed to fetch.
+"""Load JSON-LD contexts by name.
 
-The contexts of the published metamodels are known by their addresses: ours, plus the terms of older versions.
+A context is a file in the folder of the model, a context of RobBDD, or a cached one that the user allowed to fetch. The
+addresses of the published metamodels are known. For them, the context of RobBDD is used, which includes terms of older
+versions.
 """
 
 from __future__ import annotations
@@ -53,26 +55,26 @@ _WANTED = "application/ld+json, application/json;q=0.9"
 
 
 class UnknownContext(Exception):
-    """A JSON-LD document names a context that is not available; the message gives the fix."""
+    """A JSON-LD document names a context that is not available. The message says how to fix it."""
 
 
 @dataclass(frozen=True, slots=True)
 class ContextLoader:
-    """Loads contexts for pyld. Only the user's ``hosts`` are contacted, once per context.
+    """Loads contexts for pyld. Only the user's ``hosts`` are contacted, once for each context.
 
-    A file in ``folder``, that of the model, replaces a web address that ends with its path.
+    ``folder`` is the folder of the model. A file in it replaces a web address that ends with the path of the file.
     """
 
     hosts: frozenset[str] = frozenset()
     folder: Path | None = None
 
     def beside(self, document: str) -> ContextLoader:
-        """Return a loader that searches the folder of a document, given by its URI."""
+        """Return a loader that also searches the folder of a document, which is given by its URI."""
         path = uri_to_path(document) if document else None
         return self if path is None else replace(self, folder=path.parent)
 
     def __call__(self, url: str, _options: Mapping[str, Any]) -> Json:
-        """Return a document in the form that pyld requires of a loader; raises ``UnknownContext``."""
+        """Return the context at a URL in the form that pyld requires of a loader. Raises ``UnknownContext``."""
         return {
             "contentType": "application/ld+json",
             "contextUrl": None,
@@ -128,7 +130,7 @@ class ContextLoader:
 
 
 class _Redirects(urllib.request.HTTPRedirectHandler):
-    """Follows redirections only to allowed hosts."""
+    """Follows redirections to allowed hosts only."""
 
     def __init__(self, check: Callable[[str], None]) -> None:
         self._check_host = check
@@ -139,7 +141,10 @@ class _Redirects(urllib.request.HTTPRedirectHandler):
 
 
 def _read(answer: Any, url: str) -> bytes:
-    """Read a server's answer, up to one byte more than the limit; raises ``UnknownContext`` for a slow server."""
+    """Read the answer of a server, up to one byte more than the limit.
+
+    Raises ``UnknownContext`` if the server is too slow.
+    """
     most, data, deadline = MODEL_SIZE.value() + 1, bytearray(), monotonic() + TIMEOUT
     while len(data) < most and (part := answer.read1(min(65536, most - len(data)))):
         data += part
@@ -156,7 +161,7 @@ def bundled_context() -> Json:
 
 
 def is_published(url: str) -> bool:
-    """Return whether an address is that of a context of the published metamodels, in any of their layouts."""
+    """Return whether an address is the address of a context of the published metamodels, in any of their layouts."""
     if not url.startswith(METAMODELS):
         return False
     path = PurePosixPath(urlsplit(url).path)
@@ -165,7 +170,7 @@ def is_published(url: str) -> bool:
 
 @cache
 def published_context() -> Json:
-    """Return the context that replaces all published ones: values are named by strings, as published."""
+    """Return the context that replaces all published ones. As in these, values are named by strings."""
     named = {"@type": "@id", "@container": "@list"}
     values = {"elements": {"@id": "bdd:elements", "@type": "@id"}}
     values |= {term: {"@id": f"bdd:{term}", **named} for term in ("of-sets", "rows")}
@@ -174,14 +179,14 @@ def published_context() -> Json:
 
 
 def file_for(url: str, folder: Path) -> Path | None:
-    """Return the file in a folder that matches the end of a web address by the longest path."""
+    """Return the file in a folder whose path matches the end of a web address; the longest match is used."""
     parts = PurePosixPath(urlsplit(url).path).parts[1:]
     candidates = (folder.joinpath(*parts[start:]) for start in range(len(parts)) if ".." not in parts)
     return next((path for path in candidates if path.is_file()), None)
 
 
 def cache_folder() -> Path:
-    """Return the folder of fetched contexts: ``ROBBDD_CACHE``, else the user's cache folder."""
+    """Return the folder of fetched contexts: ``ROBBDD_CACHE``, or the user's cache folder if that is not set."""
     own = os.environ.get("ROBBDD_CACHE")
     if own:
         return Path(own) / "contexts"

@@ -1,4 +1,4 @@
-"""A graph as expanded JSON-LD, and the context that makes it readable."""
+"""Convert a graph to expanded JSON-LD, and make the context that makes it readable."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def context_for(prefixes: Mapping[str, str]) -> Json:
-    """Return our context with all prefixes of a graph; a prefix replaces a term with the same name."""
+    """Return the context of RobBDD with all prefixes of a graph. A prefix replaces a term of the same name."""
     names = {namespace: prefix for prefix, namespace in prefixes.items()}
     renamed = {name: names[namespace] for name, namespace in PREFIXES.items()}
     terms = {
@@ -30,7 +30,7 @@ def context_for(prefixes: Mapping[str, str]) -> Json:
 
 
 def expanded(graph: Graph) -> list[Json]:
-    """Return the nodes of a graph as expanded JSON-LD, in order, RDF lists as lists."""
+    """Return the nodes of a graph as expanded JSON-LD in order. RDF lists are written as lists."""
     from rdflib.namespace import RDF
 
     lists = Lists(graph)

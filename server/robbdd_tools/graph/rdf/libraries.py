@@ -13,14 +13,20 @@ if TYPE_CHECKING:
 
 
 def compact(expanded: list[Json], context: Json) -> Json:
-    """Compact expanded JSON-LD with a context; raises ``UnknownContext`` if the context refers to another by URL."""
+    """Compact expanded JSON-LD with a context.
+
+    Raises ``UnknownContext`` if the context refers to another one by URL.
+    """
     jsonld = _jsonld()
     options = {"documentLoader": ContextLoader(), "graph": True, "compactArrays": True}
     return cast(Json, jsonld.compact(expanded, {"@context": context}, options))
 
 
 def frame(expanded: list[Json], context: Json, kind: str) -> list[Json]:
-    """Return the nodes of a class (a CURIE of the context), each with all nodes reachable from it embedded once."""
+    """Return the nodes of a class as JSON-LD trees. All nodes that are reachable from a node are embedded in it once.
+
+    ``kind`` is the CURIE of the class in the context.
+    """
     jsonld = _jsonld()
     options = {"documentLoader": ContextLoader(), "omitGraph": False, "omitDefault": True}
     framed = jsonld.frame(expanded, {"@context": context, "@type": kind, "@embed": "@once"}, options)
@@ -28,7 +34,7 @@ def frame(expanded: list[Json], context: Json, kind: str) -> list[Json]:
 
 
 def triples(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[Json, Json, Json]]:
-    """Yield the triples of a JSON-LD document, of all its graphs, as ``{type, value, datatype, language}`` objects.
+    """Yield the triples of all graphs in a JSON-LD document as objects ``{type, value, datatype, language}``.
 
     Relative names are resolved against ``base``. Raises ``UnknownContext`` or ``ValueError``.
     """
@@ -46,13 +52,13 @@ def triples(document: Any, base: str, loader: ContextLoader) -> Iterator[tuple[J
 
 
 class UnusableShapes(Exception):
-    """pyshacl rejects some shapes; ``message`` is its reason."""
+    """The shapes cannot be used because pyshacl rejects them. ``message`` is its reason."""
 
 
 def shacl_report(graph: Graph, shapes: Graph) -> Graph:
-    """Return the SHACL validation report of a graph, without inference; the graph stays unchanged.
+    """Return the SHACL validation report of a graph. Raises ``UnusableShapes``.
 
-    Raises ``UnusableShapes``.
+    Nothing is inferred, and the graph stays unchanged.
     """
     import pyshacl
 
@@ -69,7 +75,7 @@ def shacl_report(graph: Graph, shapes: Graph) -> Graph:
 
 
 def _keep_sparql_off_the_network() -> None:
-    """Prevent SPARQL in shapes from contacting a server, however it writes ``SERVICE`` or ``FROM``."""
+    """Prevent SPARQL in shapes from contacting a server by ``SERVICE`` or ``FROM``, whatever their spelling."""
     from rdflib.plugins import sparql
 
     def refuse_service(_context: object, part: Any) -> Any:

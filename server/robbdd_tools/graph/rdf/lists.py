@@ -1,4 +1,4 @@
-"""RDF lists of a graph as Python lists, read once, without recursion."""
+"""Read the RDF lists of a graph as Python lists. Each list is read once and without recursion."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ if TYPE_CHECKING:
 
 
 class Lists:
-    """The well-formed lists of a graph: blank cells with exactly one first and one rest, and no other property."""
+    """The well-formed lists of a graph.
+
+    A cell of such a list is a blank node with exactly one first, one rest and no other property.
+    """
 
     def __init__(self, graph: Graph) -> None:
         from rdflib import BNode
@@ -33,11 +36,11 @@ class Lists:
                 self._read(head)
 
     def items(self, head: Node) -> tuple[Node, ...] | None:
-        """Return the items of a list by its head; ``None`` for other nodes."""
+        """Return the items of the list that begins with the cell ``head``, or ``None`` if no list does."""
         return () if head == self._nil else self._lists.get(head)
 
     def is_cell(self, node: Node) -> bool:
-        """Return whether a node is only a cell of a well-formed list."""
+        """Return whether a node is a cell of a well-formed list and nothing else."""
         return node in self._cells
 
     def _is_used_once(self, graph: Graph, head: Node) -> bool:

@@ -1,4 +1,4 @@
-"""Prefixes of a graph: the user's names first, then the vocabulary's unless taken."""
+"""Prefixes of a graph: first the names of the user, then those of the vocabulary that are not yet taken."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 
 def prefix_for(name: str, taken: Collection[str]) -> str:
-    """Return a prefix valid in every format: ``name`` itself if possible, with a number if it is taken."""
+    """Return a prefix that is valid in every format: ``name`` itself if possible, otherwise with a number."""
     legal = name if name[:1].isalpha() and all(_is_legal(sign) for sign in name) else "ns"
     candidates = (legal if number == 1 else f"{legal}-{number}" for number in range(1, len(taken) + 2))
     return next(candidate for candidate in candidates if candidate not in taken)
 
 
 def bind_prefixes(graph: Graph, user: Mapping[str, str]) -> dict[str, str]:
-    """Bind the user's prefixes and the vocabulary's to a graph and return them all."""
+    """Bind the prefixes of the user and of the vocabulary to a graph. Return all of them."""
     taken: dict[str, str] = {}
     for name, namespace in [*user.items(), *PREFIXES.items()]:
         if namespace not in taken.values():
@@ -30,7 +30,7 @@ def bind_prefixes(graph: Graph, user: Mapping[str, str]) -> dict[str, str]:
 
 
 def user_prefixes(graph: Graph) -> dict[str, str]:
-    """Return the prefixes stated in a graph or, if there are none, those it was read with."""
+    """Return the prefixes that a graph states. If it states none, return the prefixes with which it was read."""
     from rdflib import URIRef
 
     stated = {str(name): str(namespace) for namespace, name in graph.subject_objects(URIRef(expand("rbw:prefix")))}
@@ -41,9 +41,9 @@ def user_prefixes(graph: Graph) -> dict[str, str]:
 
 
 def reading_prefixes(graph: Graph) -> dict[str, str]:
-    """Return the graph's prefixes, with generated ones for other namespaces, so that all names are short.
+    """Return the prefixes of a graph, and generated prefixes for its other namespaces, so that all names are short.
 
-    The local names of elements determine which catalog models simulate them.
+    The local names of elements determine which models of the catalog simulate them.
     """
     from rdflib import URIRef
 

@@ -1,4 +1,4 @@
-"""Values in published JSON-LD: strings that name a node become IRIs, all others stay strings."""
+"""Convert values in published JSON-LD. Strings that name a node become IRIs, and all others stay strings."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ VALUE_TERMS = ("elements", "of-sets", "rows")
 
 
 def with_literals(document: Any, base: str, loader: ContextLoader, prefixes: Collection[str]) -> Any:
-    """Return a JSON-LD document that states which strings among its values are literals.
+    """Return a JSON-LD document that states which of its string values are literals.
 
-    A string names a node if it is an absolute IRI, begins with one of ``prefixes``, or is the ``@id`` of a node of the
-    document. In a document with ``@base`` every string does, as the node may be described in another file. Documents
-    without a published context are returned unchanged.
+    A string names a node if it is an absolute IRI, begins with one of ``prefixes``, or is the ``@id`` of a node in the
+    document. If the document has an ``@base``, every string names a node, because the node may be described in another
+    file. A document without a published context is returned unchanged.
     """
     contexts = list(contexts_of(document, base, loader))
     if published_context() not in contexts or any("@base" in context for context in contexts):
@@ -46,7 +46,7 @@ def with_literals(document: Any, base: str, loader: ContextLoader, prefixes: Col
 
 
 def contexts_of(document: Any, base: str, loader: ContextLoader) -> Iterator[Json]:
-    """Yield the contexts that a JSON-LD document states or names; raises ``UnknownContext``."""
+    """Yield the contexts that a JSON-LD document contains or names. Raises ``UnknownContext``."""
     waiting: list[Any] = [json_object(document).get("@context")]
     seen: set[str] = set()
     while waiting:

@@ -1,4 +1,4 @@
-"""Records for reading a graph in plain Python: properties by CURIE, lists as tuples, literals as values."""
+"""Read a graph with plain Python types: properties by CURIE, lists as tuples, and literals as values."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 class Incomplete(Exception):
-    """A part of the graph lacks something essential and is left out."""
+    """A part of a graph lacks something that is necessary, so it is left out."""
 
 
 class Records:
-    """Read access to a graph. Several values of a property come in alphabetical order."""
+    """Read access to a graph. If a property has several values, they are in alphabetical order."""
 
     def __init__(self, graph: Graph) -> None:
         from rdflib import Literal
@@ -41,15 +41,15 @@ class Records:
         return tuple(self._values.get(node, {}).get(expand(term), ()))
 
     def types(self, node: str) -> frozenset[str]:
-        """Return the classes of a node, as IRIs."""
+        """Return the IRIs of a node's classes."""
         return frozenset(str(kind) for kind in self._values.get(node, {}).get(self._type, ()))
 
     def is_a(self, node: str, term: str) -> bool:
-        """Return whether a node has a class."""
+        """Return whether a node is an instance of a class."""
         return expand(term) in self.types(node)
 
     def instances(self, term: str) -> tuple[Iri, ...]:
-        """Return the nodes of a class in alphabetical order."""
+        """Return the instances of a class in alphabetical order."""
         return tuple(self._instances.get(expand(term), ()))
 
     def subjects(self, term: str) -> tuple[Iri, ...]:
@@ -57,29 +57,29 @@ class Records:
         return tuple(Iri(node) for node in self._values if self.all(node, term))
 
     def is_blank(self, node: Node) -> bool:
-        """Return whether the graph says nothing of a node, and it is not an empty list."""
+        """Return whether a node has no properties in the graph and is not an empty list."""
         return str(node) not in self._values and str(node) != self._nil
 
     def one(self, node: str, term: str) -> Iri:
-        """Return the only IRI of a property; raises ``Incomplete`` unless there is exactly one."""
+        """Return the value of a property that must be exactly one IRI. Raises ``Incomplete`` otherwise."""
         values = self.all(node, term)
         if len(values) != 1 or isinstance(values[0], self._literal):
             raise Incomplete(f"{node} has {len(values)} values of {term}")
         return Iri(values[0])
 
     def literal(self, node: str, term: str) -> str | int | float | None:
-        """Return the first literal of a property, if any."""
+        """Return the first literal value of a property, if any."""
         found = (value for value in self.all(node, term) if isinstance(value, self._literal))
         first = next(found, None)
         return None if first is None else self.value(first)
 
     def text(self, node: str, term: str) -> str:
-        """Return a property as text, empty if it is missing."""
+        """Return the value of a property as text, or ``""`` if it is missing."""
         value = self.literal(node, term)
         return "" if value is None else str(value)
 
     def list_of(self, node: str, term: str) -> tuple[Node, ...]:
-        """Return a property's list; raises ``Incomplete`` if it is missing or not a list."""
+        """Return the items of a property's list. Raises ``Incomplete`` if the property is missing or not a list."""
         values = self.all(node, term)
         items = self.items(values[0]) if len(values) == 1 else None
         if items is None:
@@ -87,7 +87,7 @@ class Records:
         return items
 
     def items(self, head: Node) -> tuple[Node, ...] | None:
-        """Return the items of an RDF list by its head, ``None`` for other nodes."""
+        """Return the items of the RDF list that begins with the cell ``head``, or ``None`` if no list does."""
         items: list[Node] = []
         seen: set[str] = set()
         cell = str(head)
@@ -112,11 +112,11 @@ class Records:
         return first + tuple(value for value in values if value in known)
 
     def iris(self, nodes: Iterable[Node]) -> tuple[Iri, ...]:
-        """Return the nodes that are IRIs."""
+        """Return those of some nodes that are IRIs."""
         return tuple(Iri(node) for node in nodes if not isinstance(node, self._literal))
 
     def value(self, node: Node) -> Value:
-        """Return a node as a plain value; a literal with a datatype other than a number's is text."""
+        """Return a node as a plain value. A literal is returned as text if its datatype is not numeric."""
         if not isinstance(node, self._literal):
             return Iri(node)
         value: object = node.value
@@ -127,7 +127,7 @@ class Records:
 
 
 def items_of(records: Records, node: str, term: str) -> tuple[Node, ...]:
-    """Return the items of a list property, empty if there is no list."""
+    """Return the items of a list property; empty if there is no list."""
     heads = records.all(node, term)
     return (records.items(heads[0]) if len(heads) == 1 else None) or ()
 

@@ -29,7 +29,7 @@ _NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 class UnreadableGraph(Exception):
-    """A text is not a graph in the given format; ``offset`` is the position of the error, 0 if unknown."""
+    """A text is not a graph in the given format. ``offset`` is the position of the error; 0 if unknown."""
 
     def __init__(self, message: str, offset: int = 0) -> None:
         super().__init__(message)
@@ -37,14 +37,18 @@ class UnreadableGraph(Exception):
 
 
 class UnwritableGraph(Exception):
-    """A format cannot represent a text of the graph; the message names the character and the formats that can."""
+    """A format cannot represent a text of the graph.
+
+    The message names the character, and the formats that can represent it.
+    """
 
 
 def serialize(graph: Graph, format: str) -> str:
-    """Return a graph as text in a format (a key of ``FORMATS``, else ``ValueError``) with all its prefixes.
+    """Return a graph with all its prefixes as text in a format.
 
-    Equal graphs give equal texts: blank nodes are renumbered and everything is sorted. Raises ``UnwritableGraph`` for
-    characters that the format cannot represent.
+    Equal graphs give equal texts, because blank nodes are renumbered and everything is sorted. Raises
+    ``UnwritableGraph`` for a character that the format cannot represent, and ``ValueError`` if the format is not a key
+    of ``FORMATS``.
     """
     _check_format(format)
     if not format.startswith("json"):
@@ -82,8 +86,8 @@ def _check_characters(graph: Graph, refused: re.Pattern[str], format: str) -> No
 def _turtle(graph: Graph) -> str:
     """Return a graph as Turtle.
 
-    Numbers keep all their digits, of which rdflib writes six; cyclic lists, which rdflib would follow for ever, are
-    written cell by cell.
+    Numbers keep all their digits, while rdflib would write only six. Cyclic lists are written cell by cell, because
+    rdflib would follow them for ever.
     """
     from io import BytesIO
 
@@ -110,7 +114,7 @@ def _turtle(graph: Graph) -> str:
 
 
 def _by_story(nodes: list[Json], context: Json) -> list[Json]:
-    """Return each story with all nodes that belong to it embedded, then the other nodes.
+    """Return each story with all nodes that belong to it embedded, and then all other nodes.
 
     A graph with blank nodes outside of lists stays flat, because embedding would separate nodes with the same label.
     """
@@ -124,7 +128,7 @@ def _by_story(nodes: list[Json], context: Json) -> list[Json]:
 
 
 def _once(value: Any, described: set[str]) -> Any:
-    """Replace repeated descriptions by references: a list written twice would become two lists."""
+    """Replace repeated descriptions by references, because a list that is written twice would become two lists."""
     if isinstance(value, list):
         return [_once(item, described) for item in cast("list[Any]", value)]
     fields = json_object(value)
@@ -136,10 +140,10 @@ def _once(value: Any, described: set[str]) -> Any:
 
 
 def parse(text: str, format: str, base: str = "", loader: ContextLoader | None = None) -> Graph:
-    """Parse a text as a graph; raises ``UnreadableGraph``, and ``ValueError`` for an unknown format.
+    """Parse a text as a graph. Raises ``UnreadableGraph``, and ``ValueError`` for an unknown format.
 
     Relative names are resolved against ``base``. ``loader`` provides the contexts that JSON-LD names by URL; the
-    default fetches nothing.
+    default loader fetches nothing.
     """
     from rdflib import Graph
 
@@ -175,7 +179,7 @@ def context_prefixes(document: Any, base: str, loader: ContextLoader) -> Iterato
 
 
 def _fault(error: Exception) -> tuple[str, int]:
-    """Return reason and position of a parser's error; each parser reports them differently."""
+    """Return the reason and the position of a parser's error, which each parser reports differently."""
     if isinstance(error, json.JSONDecodeError):
         return error.msg, error.pos
     why, offset = getattr(error, "_why", None), getattr(error, "_i", None)

@@ -1,6 +1,7 @@
-"""The vocabulary of the graph: published namespaces and our own.
+"""The vocabulary of the graph, with published namespaces and those of RobBDD.
 
-Code writes terms as CURIEs (``bdd:has-clause``) with the prefixes of ``PREFIXES``, whatever prefixes a user's file has.
+Code writes terms as CURIEs (``bdd:has-clause``) with the prefixes of ``PREFIXES``, whatever prefixes the user's file
+has.
 """
 
 from __future__ import annotations
@@ -53,6 +54,6 @@ SELECTIONS = {"combinations": "bdd:Combination", "permutations": "bdd:Permutatio
 
 @cache
 def expand(term: str) -> str:
-    """Return the IRI of a CURIE; a full IRI is returned unchanged. Raises ``KeyError`` for an unknown prefix."""
+    """Return the IRI of a CURIE. A full IRI is returned unchanged. Raises ``KeyError`` for an unknown prefix."""
     prefix, _, local = term.partition(":")
     return term if local.startswith("//") else PREFIXES[prefix] + local

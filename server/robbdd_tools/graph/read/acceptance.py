@@ -1,4 +1,4 @@
-"""Read acceptance criteria from any graph into plain data. Incomplete parts are left out."""
+"""Read acceptance criteria from any graph into plain data. Incomplete parts of the graph are left out."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ def _nowhere(_: str) -> None:
 
 
 def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
-    """Return the acceptance criteria of a graph, in written order if the graph records it.
+    """Return the acceptance criteria of a graph, in written order if the graph records this order.
 
-    ``places`` returns the source positions of nodes. A variant that lacks something (a template, a value of a variable,
-    a known predicate …) is left out.
+    ``places`` returns the source positions of nodes. A variant is left out if something is missing, for example its
+    template, the value of a variable or a known predicate.
     """
     records = Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
@@ -51,7 +51,7 @@ def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
 
 
 def incomplete_variants(graph: Graph) -> dict[Iri, str]:
-    """Return the variants that ``read_model`` leaves out, each with the missing part."""
+    """Return each variant that ``read_model`` leaves out, with the part that it lacks."""
     records = Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
     reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
@@ -75,7 +75,7 @@ def read_set(records: Records, node: str) -> tuple[Value, ...]:
 
 
 def story_order(records: Records) -> list[Iri]:
-    """Return the stories of a graph, in written order if it records that."""
+    """Return the stories of a graph, in written order if the graph records this order."""
     return sorted(records.instances("bdd:UserStory"), key=lambda node: (_position(records, node), node))
 
 

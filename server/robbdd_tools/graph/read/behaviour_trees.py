@@ -1,4 +1,4 @@
-"""Read behaviour trees into plain data. Incomplete ones are left out."""
+"""Read behaviour trees into plain data. Incomplete trees are left out."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ def read_trees(records: Records, places: Places) -> tuple[BehaviourTree, ...]:
 
 
 def read_tree(records: Records, node: Iri, places: Places) -> BehaviourTree:
-    """Return one behaviour tree; raises ``Incomplete`` if it has neither one root nor code, or contains itself."""
+    """Return one behaviour tree.
+
+    Raises ``Incomplete`` if the tree has neither exactly one root nor code, or if it contains itself.
+    """
     listed = records.iris(items_of(records, node, "rbw:node-list"))
     if records.is_a(node, "py:ModuleAttribute"):
         source = Implementation(node, "python", python_name(records, node), places(node))

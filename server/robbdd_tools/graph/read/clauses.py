@@ -34,16 +34,16 @@ ROLES = {"bdd:Given": "given", "bdd:When": "when", "bdd:Then": "then"}
 
 @dataclass(frozen=True, slots=True)
 class ClauseReader:
-    """Reads clauses; raises ``Incomplete`` for one that lacks something or contains itself."""
+    """Reads clauses. Raises ``Incomplete`` for a clause that lacks something or contains itself."""
 
     records: Records
 
     def clauses(self, owner: str, term: str = "bdd:has-clause", inside: tuple[str, ...] = ()) -> tuple[Clause, ...]:
-        """Return the clauses of an owner in order."""
+        """Return the clauses in the list ``term`` of a node ``owner``, in order."""
         return tuple(self.clause(node, (*inside, owner)) for node in self.records.list_of(owner, term))
 
     def clause(self, node: Node, inside: tuple[str, ...] = ()) -> Clause:
-        """Return one clause; ``inside`` are the nodes that contain it, outermost first."""
+        """Return one clause. ``inside`` are the nodes that contain the clause, outermost first."""
         iri = Iri(node)
         if iri in inside:
             raise Incomplete(f"{iri} contains itself")
@@ -119,7 +119,7 @@ class ClauseReader:
         }
 
     def time(self, iri: Iri) -> TimeConstraint:
-        """Return the time constraint of a node."""
+        """Return the time constraint that a node describes."""
         before, after = (self.records.all(iri, f"time:{side}-event") for side in ("before", "after"))
         horizon = self.records.literal(iri, "time:horizon-seconds")
         seconds = float(horizon) if isinstance(horizon, int | float) else None
@@ -131,7 +131,7 @@ class ClauseReader:
 
 
 def used_names(clauses: Iterable[Clause]) -> Iterator[Iri]:
-    """Yield the references in the arguments of clauses, except quantified variables."""
+    """Yield the references in the arguments of clauses, but not the variables of quantifiers."""
     for clause in clauses:
         match clause:
             case Fluent() | TextFluent() | BehaviourClause():

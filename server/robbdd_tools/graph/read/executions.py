@@ -1,4 +1,4 @@
-"""Read executions into plain data. Incomplete ones are left out."""
+"""Read executions into plain data. Incomplete executions are left out."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PROVIDERS = {
 
 
 def read_executions(records: Records, instances: InstanceReader, places: Places) -> tuple[Execution, ...]:
-    """Return the executions of a graph, in written order if it records that."""
+    """Return the executions of a graph, in written order if the graph records this order."""
     nodes = records.instances("bdd:ScenarioExecution")
     found = [execution for node in nodes for execution in _complete(records, node, instances, places)]
     return tuple(sorted(found, key=lambda one: (_position(records, one.iri), one.iri)))

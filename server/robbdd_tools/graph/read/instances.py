@@ -1,4 +1,4 @@
-"""Read executable scenes into plain data. Incomplete ones are left out."""
+"""Read executable scenes into plain data. Incomplete scenes are left out."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _JOINTS = {"rbw:FixedJoint": "fixed", "rbw:RevoluteJoint": "revolute"}
 
 
 def python_name(records: Records, node: str) -> str:
-    """Return ``module:attribute`` of a node for Python code; raises ``Incomplete``."""
+    """Return the name ``module:attribute`` of the Python code that a node describes. Raises ``Incomplete``."""
     module, attribute = records.text(node, "py:module-name"), records.text(node, "py:attribute-name")
     if not (module and attribute):
         raise Incomplete(f"{node} names no Python code")
@@ -44,13 +44,13 @@ def python_name(records: Records, node: str) -> str:
 
 
 def number(records: Records, node: str, term: str) -> float | None:
-    """Return a property as a number, ``None`` if it is missing or not a number."""
+    """Return the value of a property as a number, or ``None`` if it is missing or not a number."""
     value = records.literal(node, term)
     return value if isinstance(value, int | float) else None
 
 
 class InstanceReader:
-    """Reads scene instances; ``sets`` are the constant sets of the graph."""
+    """Reads scene instances. ``sets`` are the constant sets of the graph."""
 
     def __init__(self, records: Records, sets: Mapping[Iri, tuple[Value, ...]], places: Places) -> None:
         self._records = records
@@ -58,7 +58,7 @@ class InstanceReader:
         self._places = places
 
     def instance(self, node: Iri) -> SceneInstance:
-        """Return a scene instance with the contents of its graphs."""
+        """Return a scene instance with the contents of its kinematic graphs."""
         records = self._records
         parts = list(self._parts(self._list(node, "rbw:graphs"), set()))
         bodies = [part for part in parts if records.is_a(part, "rbw:Body")]
@@ -98,7 +98,7 @@ class InstanceReader:
         return tuple(float(value) for value in values if isinstance(value, int | float))
 
     def _parts(self, owners: tuple[Iri, ...], seen: set[str]) -> Iterator[Iri]:
-        """Yield bodies and joints of graphs and of the trees in them, in written order."""
+        """Yield the bodies and joints of some kinematic graphs and of the trees in them, in written order."""
         for owner in owners:
             if owner in seen:
                 continue
@@ -147,7 +147,7 @@ class InstanceReader:
             yield Law(node, kind, low, high, mean, covariance, self._places(node))
 
     def _elements(self, node: Iri) -> Iterator[Realisation]:
-        """Yield elements with their models; entries of an element override those of its set."""
+        """Yield elements with their models. The entry of an element takes precedence over the entry of its set."""
         found: dict[Iri, Realisation] = {}
         for part in self._list(node, "rbw:realisations"):
             models, origin = tuple(self._models(part)), self._places(part)

@@ -24,18 +24,18 @@ ELEMENT_OF_KIND = {
 
 @dataclass(slots=True)
 class Roles:
-    """Variable or set → its element kinds; quantifiers in nesting order."""
+    """The element kinds of each variable and set, and the quantifiers in nesting order."""
 
     kinds: dict[str, dict[str, None]] = field(default_factory=dict[str, dict[str, None]])
     quantifiers: list[Iri] = field(default_factory=list[Iri])
 
     def add(self, variable: str, kinds: Iterable[str]) -> None:
-        """Record that a variable has some kinds."""
+        """Add kinds to the kinds of a variable."""
         self.kinds.setdefault(variable, {}).update(dict.fromkeys(kinds))
 
 
 def clauses_below(records: Records, owners: Iterable[str]) -> Iterator[Iri]:
-    """Yield all clauses of some owners, including those inside groups and quantifiers, outer ones first, each once."""
+    """Yield all clauses of some owners once, including those inside groups and quantifiers. Outer clauses are first."""
     seen: set[str] = set()
     waiting = list(owners)
     while waiting:
@@ -62,7 +62,7 @@ def words_of(records: Records, clause: str) -> tuple[Predicate | Behaviour, ...]
 
 
 def roles_in(records: Records, clauses: Iterable[Iri]) -> Roles:
-    """Return the kinds of variables; the kinds of a quantified variable also apply to its set's elements."""
+    """Return the kinds of variables. The kinds of a quantified variable also apply to the elements of its set."""
     roles = Roles()
     for clause in clauses:
         for word in words_of(records, clause):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class VariationReader:
-    """Reads variations, given the elements of every constant set; raises ``Incomplete``."""
+    """Reads variations, given the elements of every constant set. Raises ``Incomplete``."""
 
     records: Records
     sets: Mapping[Iri, tuple[Value, ...]]
@@ -34,7 +34,10 @@ class VariationReader:
         return Product(variables, tuple(self._fitting(variable, choices) for variable, choices in pairs))
 
     def _fitting(self, variable: Iri, choices: tuple[Cell, ...] | Selection) -> tuple[Cell, ...] | Selection:
-        """Return single elements instead of sets of one if a published graph selects one element for a variable."""
+        """Return the choices for a variable. Sets of one element become single elements if the variable is no set.
+
+        This is needed for published graphs, which select one element for a variable.
+        """
         single = isinstance(choices, Selection) and choices.length == 1 and not self.records.is_a(variable, "bdd:Set")
         return choices.source if isinstance(choices, Selection) and single else choices
 

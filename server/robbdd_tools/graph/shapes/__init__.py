@@ -1,1 +1,1 @@
-"""SHACL: the shapes, the statements derived for them, and their findings mapped to text."""
+"""SHACL: the shapes, the statements that are derived for them, and the mapping of their findings to text."""

@@ -1,4 +1,4 @@
-"""One derived node per variant and variable: its values, their number, and its kinds."""
+"""Derive one node for each variant and variable, with the variable's values, their number and its kinds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Choice:
-    """One value that a variable may get: the written node, whether it is a set, and the values in it."""
+    """One value that a variable may get: the node as written, whether it is a set, and the elements in it."""
 
     written: Node
     is_set: bool
@@ -52,7 +52,7 @@ def add_assignments(derived: Derived, variant: Iri) -> None:
 
 
 def add_quantified(derived: Derived, quantifier: Iri, roles: Roles) -> None:
-    """Derive the values of a quantified variable from a literal set."""
+    """Derive the values of a quantified variable whose set is written as a list."""
     records = derived.records
     for set_ in records.iris(records.all(quantifier, "bdd:in-set")):
         if not records.is_a(set_, "bdd:ConstantSet"):
@@ -70,7 +70,10 @@ def _kind_class(kind: str) -> str:
 
 
 def _declared(records: Records, template: Iri, roles: Roles) -> tuple[Iri, ...]:
-    """Return the variables of a template; if the graph does not list them, the unbound ones of its clauses."""
+    """Return the variables of a template.
+
+    If the graph does not list them, return the unbound variables of its clauses.
+    """
     if records.all(template, "rbw:variables"):
         return records.iris(items_of(records, template, "rbw:variables"))
     bound = {
@@ -125,7 +128,7 @@ def _choices(records: Records, product: Iri, assigned: Iterable[Iri], variable: 
 
 
 def _choice(records: Records, node: Node) -> _Choice:
-    """Return the value of one cell: a list or a named set is a set."""
+    """Return the value of one cell. A list is a set, and so is the name of a set."""
     items = records.items(node)
     if items is None and records.is_a(str(node), "bdd:ConstantSet"):
         items = elements_of(records, str(node))

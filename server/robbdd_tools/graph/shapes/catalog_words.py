@@ -1,4 +1,4 @@
-"""Shapes of the catalog's words, generated from their slots."""
+"""Generate the shapes of the catalog's words from the slots of these words."""
 
 from __future__ import annotations
 

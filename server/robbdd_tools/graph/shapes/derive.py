@@ -1,7 +1,7 @@
-"""Add to a copy of a graph what the shapes refer to: lengths, rows, words, assignments.
+"""Derive the statements that the shapes need, such as lengths, rows, words and assignments.
 
-Derived statements use our own vocabulary and are never written out. Derived nodes are anchored: each has the source-map
-keys of the statements that it was derived from.
+They are added to a copy of the graph. Derived statements use the vocabulary of RobBDD and are never written to a file.
+Each derived node has the source-map keys of the statements from which it was derived.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def derive(graph: Graph) -> Derived:
-    """Return a copy of a graph with all derived statements that shapes refer to."""
+    """Return a copy of a graph with all derived statements that the shapes need."""
     from rdflib import Graph
 
     copy = Graph(bind_namespaces="none")
@@ -47,7 +47,7 @@ def derive(graph: Graph) -> Derived:
 
 @cache
 def load_vocabulary() -> Graph:
-    """Return the vocabulary with the class hierarchy that the shapes rely on."""
+    """Return the vocabulary with the hierarchy of classes on which the shapes rely."""
     from rdflib import Graph
 
     vocabulary = Graph(bind_namespaces="none")

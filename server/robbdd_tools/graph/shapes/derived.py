@@ -24,7 +24,10 @@ def use_of(word: str) -> str:
 
 @dataclass(slots=True)
 class Derived:
-    """The graph to validate. ``anchors`` maps a node and a derived value of it (or ``""``) to source-map keys."""
+    """A graph to validate, with derived statements.
+
+    ``anchors`` maps a node and one of its derived values (``""`` for the node itself) to source-map keys.
+    """
 
     graph: Graph
     records: Records
@@ -42,7 +45,7 @@ class Derived:
         return node
 
     def add(self, node: Node | str, term: str, value: Node | str | int | bool) -> None:
-        """Add a derived statement; a string is an IRI."""
+        """Add a derived statement. A value that is a string is the IRI or CURIE of a node."""
         from rdflib import Literal, URIRef
         from rdflib.term import Identifier
 

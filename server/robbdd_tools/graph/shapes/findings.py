@@ -67,9 +67,9 @@ class FindingWriter:
     derived: Derived
 
     def diagnostics(self, result: Result, files: Iterable[ShapeFile] = ()) -> Iterator[Diagnostic]:
-        """Yield one diagnostic for each source place of a result's cause.
+        """Yield a diagnostic for each place in the source text that causes a result.
 
-        ``files`` are searched for the shape if it is not one of ours.
+        ``files`` are the shape files of the project. They are searched for the shape if it is not a built-in one.
         """
         if str(result.focus) in self.built.doubtful_nodes or str(result.value) in self.built.doubtful_nodes:
             return
@@ -88,7 +88,7 @@ class FindingWriter:
                 yield Diagnostic(location.uri, location.span, severity, code, message, related)
 
     def authors(self, focus: Node) -> Iterable[Key]:
-        """Return the declarations that describe a focus node, or the nodes that it was derived from."""
+        """Return the declarations that describe a focus node, or the nodes from which it was derived."""
         anchors = self.derived.anchors.get((str(focus), ""), [])
         nodes = (str(focus), *(key[0] for key in anchors))
         return next((self.built.authors[node] for node in nodes if node in self.built.authors), ())
@@ -121,7 +121,10 @@ class FindingWriter:
         )
 
     def _related(self, result: Result, location: Location) -> Iterator[Related]:
-        """Yield links from a wrong value to its declaration, and from an assignment to its variable's."""
+        """Yield links to related declarations.
+
+        A wrong value is linked to its declaration, and an assignment to the declaration of its variable.
+        """
         variable = next(iter(self._derived(result.focus, "variable")), None)
         for node in (result.value, variable):
             declared = None if node is None else self.built.sources.node(str(node))
@@ -142,7 +145,7 @@ class FindingWriter:
         return f"'{self._subject(result.focus)}': {message}{self._found(result)}" if self.built.is_read else message
 
     def _found(self, result: Result) -> str:
-        """Describe a value of a foreign graph that should be the IRI of a node."""
+        """Describe a value in a foreign graph that is not the IRI of a node although it should be."""
         from rdflib import Literal, URIRef
 
         if not result.message.startswith(("'{value}' cannot stand for", "'{value}' is no ")):
@@ -154,7 +157,10 @@ class FindingWriter:
         return ""
 
     def _subject(self, focus: Node) -> str:
-        """Return the name of a finding's subject; a derived node is named after its source."""
+        """Return the name of the subject of a finding.
+
+        A derived node has the name of the node from which it was derived.
+        """
         names = self.built.names
         anchors = self.derived.anchors.get((str(focus), ""), [])
         roots = (str(focus), *(key[0] for key in anchors))
@@ -174,7 +180,7 @@ class FindingWriter:
 
 
 def clash_finding(built: BuiltGraph, clash: Clash) -> Diagnostic:
-    """Return the diagnostic for two names that denote the same node."""
+    """Return the diagnostic for two declarations with the same IRI."""
     name = built.names.get(clash.iri, clash.iri).rpartition(".")[2]
     message = (
         f"'{name}' is already the name of something else in this namespace (both are <{clash.iri}>): "
@@ -185,7 +191,7 @@ def clash_finding(built: BuiltGraph, clash: Clash) -> Diagnostic:
 
 
 def merged(found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return findings in text order, merging those with the same message and place."""
+    """Return findings in text order. Findings with the same message and place are merged."""
     kept: dict[tuple[str, Span, str], Diagnostic] = {}
     for diagnostic in sorted(found, key=sort_key):
         kept.setdefault((diagnostic.uri, diagnostic.span, diagnostic.message), diagnostic)

@@ -1,10 +1,11 @@
-"""Incremental SHACL: validate only what an edit can have affected.
+"""Validate by SHACL only the part of a graph that an edit may have affected.
 
-The findings in a declaration are a function of its *neighbourhood*: the declaration, everything that it uses directly
-or indirectly, other declarations of the same nodes, and for a composition those of the workspaces in it. The shapes
-follow properties only forwards (``locality``), and every node reachable from a declaration is described by one that it
-uses. So findings are cached while the neighbourhood is unchanged; for the other declarations, the graph of their
-neighbourhoods is built and validated together. Differential tests compare this with whole-graph validation.
+The findings in a declaration depend only on its *neighbourhood*. This consists of the declaration, everything that it
+uses directly or indirectly, other declarations of the same nodes and, for a composition, the compositions of the
+workspaces in it. The shapes follow properties only forwards (see ``locality``), and every node that is reachable from a
+declaration is described by a declaration that it uses. So findings are cached while the neighbourhood is unchanged. For
+all other declarations, the graph of their neighbourhoods is built and validated. Differential tests compare the result
+with the validation of the whole graph.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ AT_ONCE = 60
 
 
 class Superseded(Exception):
-    """A newer revision is waiting; findings so far are cached for it."""
+    """The validation ends because a newer revision is waiting. The findings so far are cached for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +65,10 @@ class Validation:
         project: ProjectShapes = NO_SHAPES,
         is_superseded: Callable[[], bool] = lambda: False,
     ) -> list[Diagnostic]:
-        """Return the diagnostics of ``validate`` for the graph of a file; raises ``Superseded`` if a newer revision
-        waits."""
+        """Return the diagnostics of the graph of a file, as ``validate`` does.
+
+        Raises ``Superseded`` if a newer revision is waiting.
+        """
         self.looked_at = 0
         if graph_format(uri):
             return validate(build_graph(snapshot, uri), project=project)
@@ -86,7 +89,10 @@ class Validation:
         return merged([*found, *project.remarks])
 
     def _local_files(self, project: ProjectShapes) -> tuple[ShapeFile, ...]:
-        """Return the project's shape files that do not need the whole graph; if they changed, clear the cache."""
+        """Return the shape files of the project that do not need the whole graph.
+
+        If these files have changed, all cached findings are dropped.
+        """
         files = tuple(file for file in project.files if not file.faults and is_local(file.graph))
         if files != self._files:
             self._files = files
@@ -95,7 +101,7 @@ class Validation:
         return tuple(file for file in files if file.uri not in self._unusable)
 
     def _forget(self, around: Neighbourhoods) -> None:
-        """Drop the cached findings of declarations whose neighbourhood changed."""
+        """Drop the cached findings of declarations whose neighbourhood has changed."""
         now = {around.identity(entry): entry for entry in around.reached}
         changed = [entry for identity, entry in now.items() if not self._holds(around, identity, entry)]
         outdated = {around.identity(entry) for entry in around.dependents_of(changed)}

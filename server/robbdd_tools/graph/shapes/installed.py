@@ -1,4 +1,4 @@
-"""The built-in shapes: the written ones and those of the catalog's words."""
+"""The built-in shapes: those in files, and those generated from the words of the catalog."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def load_shapes() -> Graph:
 
 
 def assign_targets(shapes: Graph) -> None:
-    """Give each property shape the targets of its node shapes and detach it from them, which is equivalent.
+    """Give each property shape the targets of its node shapes, and detach it from these. The result is equivalent.
 
-    pyshacl evaluates a nested shape separately for each focus node, but a shape with targets once for all of them; this
-    makes validation several times as fast.
+    pyshacl evaluates a nested shape separately for each focus node, but a shape with targets once for all its targets.
+    So the change makes validation several times as fast.
     """
     from rdflib.namespace import SH
 

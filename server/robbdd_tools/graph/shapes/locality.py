@@ -1,8 +1,8 @@
-"""Shapes that can be checked on one declaration's neighbourhood, without the whole graph.
+"""Determine the shapes that can be checked on the neighbourhood of one declaration, without the whole graph.
 
-Such a shape starts at the nodes of a class and follows properties forwards, so it only reaches nodes that the
-declaration uses. A shape with an inverse path, SPARQL or explicit target nodes needs the whole graph, as does a shape
-on nodes that several declarations share.
+Such a shape starts at the instances of a class and follows properties forwards, so it reaches only nodes that the
+declaration uses. The whole graph is needed by a shape with an inverse path, SPARQL or explicit target nodes, and by a
+shape on nodes that several declarations share.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _CLASSES = ("http://www.w3.org/2000/01/rdf-schema#Class", "http://www.w3.org/200
 
 
 def is_local(shapes: Graph) -> bool:
-    """Return whether the findings of some shapes in a declaration depend only on what the declaration uses."""
+    """Return whether the findings of some shapes in a declaration depend only on the elements that it uses."""
     from rdflib import URIRef
     from rdflib.namespace import RDF, SH
 
@@ -41,5 +41,5 @@ def is_local(shapes: Graph) -> bool:
 
 
 def _is_common(name: str) -> bool:
-    """Return whether instances of a class may be described by several declarations, or by none of the user's."""
+    """Return whether several declarations, or none of the user's, may describe the instances of a class."""
     return name in _COMMON or not name.startswith(METAMODELS)

@@ -1,4 +1,4 @@
-"""The dependencies of each declaration of a graph, comparable between revisions."""
+"""Determine the dependencies of each declaration of a graph. They can be compared between revisions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Fingerprint = tuple[object, ...]
 
 
 class Neighbourhoods:
-    """The declarations of a file's graph with their dependencies and dependents, in one revision."""
+    """The declarations in the graph of one revision of a file, with their dependencies and dependents."""
 
     def __init__(self, snapshot: Snapshot, uri: str) -> None:
         self.uses = Uses(snapshot.closure(uri))
@@ -37,11 +37,11 @@ class Neighbourhoods:
         self._add_compositions()
 
     def identity(self, entry: Reached) -> Identity:
-        """Return the identity of a declaration across revisions."""
+        """Return a key that identifies a declaration in all revisions of the file."""
         return self._identities[entry.key]
 
     def fingerprint(self, entry: Reached) -> Fingerprint:
-        """Return the context of a declaration in its graph, besides its text, that affects its findings."""
+        """Return the data outside a declaration's own text that affects its findings."""
         return (
             tuple(self._identities[used.key] for used in self._leads_to(entry)),
             self.uses.has_error(entry),
@@ -50,7 +50,7 @@ class Neighbourhoods:
         )
 
     def complete(self, entries: Iterable[Reached]) -> tuple[Reached, ...]:
-        """Return some declarations with all their dependencies, in graph order."""
+        """Return some declarations and all their dependencies, in the order of the graph."""
         found = {entry.key for entry in entries}
         waiting = [self._by_key[key] for key in found]
         while waiting:
@@ -61,7 +61,7 @@ class Neighbourhoods:
         return tuple(entry for entry in self.reached if entry.key in found)
 
     def dependents_of(self, changed: Iterable[Reached]) -> list[Reached]:
-        """Return some declarations with all their dependents."""
+        """Return some declarations and all declarations that depend on them."""
         waiting = list(changed)
         if not waiting:
             return []
@@ -90,7 +90,11 @@ class Neighbourhoods:
             seen[which] += 1
 
     def _add_declarers(self) -> None:
-        """Record declarers of a contested node as each other's dependencies, and the first name of a shared node."""
+        """Record which declarations name the same node.
+
+        If only one of them can have it, each becomes a dependency of the others. If they share it, its first name is
+        recorded.
+        """
         for declarers in self.known.contested.values():
             others = [self._by_key[declarer.key] for declarer in declarers]
             for declarer in declarers:
@@ -101,7 +105,7 @@ class Neighbourhoods:
                 self._seen_as.setdefault(declarer.key, []).append((iri, first.symbol.path))
 
     def holds(self, anchor: Anchor) -> bool:
-        """Return whether the declaration that a place is relative to still exists."""
+        """Return whether the declaration that contains an anchor still exists."""
         return anchor.declaration is None or (anchor.uri, anchor.declaration, 0) in self._present
 
     def _add_compositions(self) -> None:

@@ -1,4 +1,4 @@
-"""A project's own SHACL shapes: named in its configuration, cached until changed, reported like ours."""
+"""The SHACL shapes of a project. Its configuration names their files, which are cached until they change."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _SERVICE = re.compile(r"\bSERVICE\b", re.IGNORECASE)
 
 @dataclass(frozen=True, slots=True)
 class ShapeFile:
-    """A file of shapes with the places of its nodes; ``faults`` are why it cannot be used."""
+    """A file of shapes with the source positions of its nodes. ``faults`` are the reasons why it cannot be used."""
 
     uri: str
     name: str
@@ -41,9 +41,10 @@ class ShapeFile:
 
 @dataclass(frozen=True, slots=True)
 class ProjectShapes:
-    """The shapes of a model's project, and the faults of its configuration.
+    """The shapes of a model's project.
 
-    ``faults`` are in the configuration, ``remarks`` on the model if no configuration file exists.
+    ``faults`` are errors in the configuration, at their places there. ``remarks`` are diagnostics at the model, for
+    shapes that no configuration file names.
     """
 
     files: tuple[ShapeFile, ...] = ()
@@ -53,17 +54,17 @@ class ProjectShapes:
 
 @dataclass(frozen=True, slots=True)
 class EditorShapes:
-    """File patterns of an editor's setting ``robbdd.shapes``, relative to its folder."""
+    """The file patterns in an editor's setting ``robbdd.shapes``. They are relative to ``folder``."""
 
     folder: str = ""
     patterns: tuple[str, ...] = ()
 
 
 def project_shapes(uri: str, editor: EditorShapes | None = None) -> ProjectShapes:
-    """Return the shapes named in the nearest configuration above a model, and those added by an editor.
+    """Return the shapes that the nearest configuration above a model names, and those that an editor adds.
 
-    The setting is ``shapes = ["shapes/*.ttl"]`` in ``robbdd.toml``, or under ``[tool.robbdd]`` in ``pyproject.toml``;
-    patterns are relative to its folder.
+    The setting is ``shapes = ["shapes/*.ttl"]`` in ``robbdd.toml``, or under ``[tool.robbdd]`` in ``pyproject.toml``.
+    Patterns are relative to the folder of the configuration.
     """
     configured = _nearest(uri)
     if editor is None or not editor.patterns:
@@ -88,7 +89,7 @@ def _nearest(uri: str) -> ProjectShapes:
 
 
 def _matches(folder: Path, patterns: Sequence[str]) -> tuple[list[Path], list[str]]:
-    """Return the files that match some patterns, each once, and the faults of the patterns."""
+    """Return the files that match some patterns, each file once, and diagnostics for patterns that cannot be used."""
     paths: dict[Path, None] = {}
     problems: list[str] = []
     for pattern in patterns:
@@ -134,7 +135,10 @@ def _read(path: Path, _time: int, _size: int) -> ShapeFile:
 
 
 def _followed_services(path: Path, document: Document, graph: Graph) -> Iterator[Diagnostic]:
-    """Yield faults for SPARQL in shapes that would contact a server: opening a project must not use the network."""
+    """Yield a diagnostic for each SPARQL query in shapes that would contact a server.
+
+    Such queries are rejected because opening a project must not use the network.
+    """
     from rdflib.namespace import SH
 
     for term in (SH.select, SH.ask, SH.construct):
@@ -145,7 +149,7 @@ def _followed_services(path: Path, document: Document, graph: Graph) -> Iterator
 
 
 def unchecked(uri: str, faults: tuple[Diagnostic, ...]) -> Iterator[Diagnostic]:
-    """Yield faults of shapes at their place, and on the model a remark about the skipped shapes."""
+    """Yield the faults of shape files, and for each of them a warning at the model that shapes are not checked."""
     yield from faults
     for fault in faults:
         name = fault.uri.rpartition("/")[2]
@@ -155,7 +159,10 @@ def unchecked(uri: str, faults: tuple[Diagnostic, ...]) -> Iterator[Diagnostic]:
 
 
 def broken(file: ShapeFile, error: Exception) -> Diagnostic:
-    """Return pyshacl's error on a file of shapes, at the shape that it names, if any."""
+    """Return a diagnostic for pyshacl's error on a file of shapes.
+
+    Its place is the shape that pyshacl names, if any.
+    """
     message = str(getattr(error, "message", "") or error).partition("\n")[0]
     names = sorted((key[0] for key in file.places.places if len(key) == 1 and key[0] in message), key=len)
     place = file.place(names[-1]) if names else None

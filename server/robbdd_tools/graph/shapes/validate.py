@@ -20,10 +20,10 @@ NO_SHAPES = ProjectShapes()
 
 
 def validate(built: BuiltGraph, shapes: Graph | None = None, project: ProjectShapes = NO_SHAPES) -> list[Diagnostic]:
-    """Return the SHACL diagnostics of a graph, at the tokens that cause them, in text order.
+    """Return the SHACL diagnostics of a graph in text order. Each one is placed at the tokens that cause it.
 
-    Declarations in doubt (see ``BuiltGraph``) are skipped: their error is already reported. ``shapes`` replaces the
-    bundled shapes; those of a ``project`` are added.
+    Unreliable declarations (see ``BuiltGraph``) are skipped, because their error is already reported. ``shapes``
+    replaces the built-in shapes, and the shapes of a ``project`` are added.
     """
     derived = derive(built.graph)
     report = shacl_report(derived.graph, load_shapes() if shapes is None else shapes)
@@ -36,7 +36,10 @@ def validate(built: BuiltGraph, shapes: Graph | None = None, project: ProjectSha
 
 
 def project_findings(writer: FindingWriter, project: ProjectShapes) -> Iterator[Diagnostic]:
-    """Yield the findings of a project's shapes, all usable files together, and the faults of the others."""
+    """Validate all usable shape files of a project together, and yield the findings.
+
+    For each unusable file, its faults are yielded instead.
+    """
     faults = [*project.faults, *(fault for file in project.files for fault in file.faults)]
     usable = [file for file in project.files if not file.faults]
     while usable:
@@ -75,6 +78,9 @@ def _culprits(writer: FindingWriter, files: list[ShapeFile]) -> list[Diagnostic]
 
 
 def _faults(built: BuiltGraph, found: list[Diagnostic]) -> Iterator[Diagnostic]:
-    """Yield the faults of a graph file; the error of an omitted variant is not reported in addition to its cause."""
+    """Yield the faults of a graph file.
+
+    If an omitted variant has another finding, its omission is not reported, too.
+    """
     has_error = any(diagnostic.severity is Severity.ERROR for diagnostic in found)
     return (fault for fault in built.faults if not (has_error and fault.code == "incomplete-variant"))

@@ -29,10 +29,10 @@ _SLOT = re.compile(r"<(\w+)>|\$(\w+)")
 
 @dataclass(slots=True)
 class ClauseText:
-    """Writes the clauses of one owner, a template or a variant, whose qualified name is ``owner``.
+    """Writes the clauses of one owner, which is a template or a variant. ``owner`` is its qualified name.
 
-    ``variables`` maps the available variables to their references. Nodes without a name in the text get the IRI of
-    their path, as in a graph built from the text.
+    ``variables`` maps the available variables to their references. A node without a name in the text gets an IRI made
+    of its path, as in a graph that is built from the text.
     """
 
     names: Names
@@ -41,7 +41,7 @@ class ClauseText:
     variables: dict[str, str] = field(default_factory=dict[str, str])
 
     def body(self, clauses: Sequence[Clause], path: str = "") -> str:
-        """Return Given, When or for all, and Then; raises ``Incomplete`` if When is empty."""
+        """Return the text of Given, of When or for all, and of Then. Raises ``Incomplete`` if there is no When."""
         loops = [clause for clause in clauses if isinstance(clause, ForAll)]
         behaviours = [clause for clause in clauses if isinstance(clause, BehaviourClause)]
         events = [clause for clause in clauses if isinstance(clause, EventClause)]
@@ -56,7 +56,7 @@ class ClauseText:
         return "".join(f"{part}\n" for part in (given, middle, self.conditions(clauses, "then", path)) if part)
 
     def conditions(self, clauses: Iterable[Clause], role: str, path: str = "") -> str:
-        """Return ``Given: …`` or ``Then: …``, empty if the role has no clause."""
+        """Return ``Given: …`` or ``Then: …``, or an empty text if the role has no clause."""
         silent = (ForAll, BehaviourClause, EventClause)
         chosen = [clause for clause in clauses if not isinstance(clause, silent) and clause.role == role]
         while len(chosen) == 1 and isinstance(chosen[0], Junction) and chosen[0].operator == "and":
@@ -66,7 +66,7 @@ class ClauseText:
         return f"{role.capitalize()}:\n{indented(self._joined('and', self._each(chosen, f'{path}.{role}')))}"
 
     def events(self, events: Iterable[EventClause], path: str = "") -> list[str]:
-        """Return ``event <e> occurs`` for each event in When."""
+        """Return the text ``event <e> occurs`` for each event in a When."""
         lines: list[str] = []
         for index, clause in enumerate(events):
             self._named(clause.iri, "when-evt", f"{path}.when.{index}")
@@ -140,7 +140,7 @@ class ClauseText:
         return self.variables.get(node) or self.names.reference(node)
 
     def _bind(self, variable: Iri) -> str:
-        """Declare the variable of a quantifier."""
+        """Declare the variable of a quantifier, so that clauses inside the quantifier can refer to it."""
         name = self.names.declare(variable, "each", owner=self.owner, namespace=self.namespace, before="var-")
         self.variables[variable] = f"<{name}>"
         return name
@@ -173,7 +173,7 @@ class ClauseText:
 
 
 def template_text(names: Names, reader: ClauseReader, template: Iri, variables: Sequence[Iri]) -> str:
-    """Return a template with its declared variables; raises ``Incomplete``."""
+    """Return the text of a template, including the declarations of its variables. Raises ``Incomplete``."""
     records = names.records
     namespace = names.split(template)[0]
     name = names.paths[template]

@@ -1,4 +1,4 @@
-"""Compare a graph with the one made from its text, triple by triple, independent of blank node labels."""
+"""Compare a graph with the graph of the text made from it, triple by triple. Labels of blank nodes do not matter."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _PARTS = ("bdd:of-scenario", "bdd:has-scene", "bdd:given", "bdd:when", "bdd:then
 
 @dataclass(frozen=True, slots=True)
 class Losses:
-    """Differences as lines of text: ``lost`` triples are only in the first graph, ``added`` triples on its nodes only
-    in the second.
+    """The differences between two graphs as lines of text.
 
-    ``renamed`` are changed written names, old and new.
+    ``lost`` are triples that only the first graph contains. ``added`` are triples on nodes of the first graph that only
+    the second graph contains. ``renamed`` are pairs of an old and a new name.
     """
 
     lost: tuple[str, ...]
@@ -31,7 +31,10 @@ class Losses:
 
 
 def compare(before: Graph, after: Graph, renamed: Mapping[str, str]) -> Losses:
-    """Compare a graph with the one made from its text; ``renamed`` maps nodes to their different names in the text."""
+    """Compare a graph with the graph of its text.
+
+    ``renamed`` maps each node whose name differs in the text to this name.
+    """
     from rdflib.namespace import RDF
 
     first, second = _Side(before, node_names(before)), _Side(after, node_names(after))
@@ -57,7 +60,7 @@ def compare(before: Graph, after: Graph, renamed: Mapping[str, str]) -> Losses:
 
 
 def _is_made(iri: str) -> bool:
-    """Return whether a name is generated: such names contain a dot."""
+    """Return whether a name is generated. Only generated names contain a dot."""
     return "." in iri.replace("#", "/").rpartition("/")[2]
 
 
@@ -106,7 +109,7 @@ class _Side:
         return "a" if node == RDF.type else self.names.get(str(node), str(node))
 
     def _is_empty(self, node: Node) -> bool:
-        """Return whether nothing is said of a blank node, which published graphs use as an empty list."""
+        """Return whether a blank node has no properties. Published graphs use such a node as an empty list."""
         from rdflib import BNode
 
         return isinstance(node, BNode) and (node, None, None) not in self.graph

@@ -33,10 +33,10 @@ _LARGER = (
 
 @dataclass(frozen=True, slots=True)
 class ModelText:
-    """A model as text. ``scene`` is the content of its scene file, empty if it needs none.
+    """The text of a model.
 
-    ``renamed`` maps nodes to their new IRIs in the text; ``left_out`` maps nodes to the reason why they cannot be
-    written.
+    ``scene`` is the content of its scene file, or empty if the model needs none. ``renamed`` maps nodes to their new
+    IRIs in the text. ``left_out`` maps each node that cannot be written to the reason.
     """
 
     criteria: str
@@ -46,7 +46,7 @@ class ModelText:
 
 
 def write_model(graph: Graph, scene_name: str) -> ModelText:
-    """Return a graph as text; ``scene_name`` is the import path of the scene file.
+    """Return a graph as text. ``scene_name`` is the path by which the text imports the scene file.
 
     Raises ``Incomplete`` for a scene or a name that cannot be written.
     """
@@ -121,7 +121,10 @@ def _criteria(names: Names, scenes: SceneText) -> _Criteria:
 
 
 def _variables(records: Records, reader: ClauseReader, template: Iri) -> list[Iri]:
-    """Return the variables of a template; if the graph does not list them, the unbound ones of its clauses."""
+    """Return the variables of a template.
+
+    If the graph does not list them, return the unbound variables of its clauses.
+    """
     if records.all(template, "rbw:variables"):
         return list(records.iris(items_of(records, template, "rbw:variables")))
     clauses = reader.clauses(template)

@@ -1,4 +1,4 @@
-"""Names of a graph's nodes in RobBDD text: namespaces, unused names, references."""
+"""Names for the nodes of a graph in RobBDD text: namespaces, unused names and references."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ NO_NAMESPACE = "https://robbdd.org/imported/"
 
 @dataclass(slots=True)
 class Names:
-    """Assigns each node a name once. ``renamed`` maps nodes to their new IRIs in the text.
+    """Assigns a name to each node once.
 
-    ``stated`` maps namespaces to the prefixes of the graph; ``used`` to those that the text needs.
+    ``renamed`` maps nodes to their new IRIs in the text. ``stated`` maps namespaces to the prefixes of the graph, and
+    ``used`` maps them to the prefixes that the text needs.
     """
 
     records: Records
@@ -42,7 +43,10 @@ class Names:
     _kinds: dict[str, str] = field(default_factory=dict[str, str])
 
     def split(self, node: str) -> tuple[str, str]:
-        """Return namespace and name of a node; the name is ``""`` if the node has none that can be written."""
+        """Return the namespace and the name of a node.
+
+        The name is ``""`` if the node has no name that can be written.
+        """
         fitting = [ns for ns in self.stated if node.startswith(ns) and NAME.fullmatch(node[len(ns) :])]
         if fitting:
             longest = max(fitting, key=len)
@@ -52,11 +56,14 @@ class Names:
         return (node[: match.start()], match[0]) if match else (NO_NAMESPACE, "")
 
     def declare(self, node: str, kind: str, *, owner: str = "", namespace: str | None = None, before: str = "") -> str:
-        """Return the name of a node at its declaration and record its reference.
+        """Return the name of a node for its declaration, and record the reference to it.
 
-        ``owner`` is the qualified name of its parent; ``namespace`` the one that the text imposes; ``before`` the
-        language's prefix of the name in the IRI. ``kind`` is the name of a nameless node. Raises ``Incomplete`` for a
-        node that is already declared as something else.
+        - ``kind``: the name to use if the node has none.
+        - ``owner``: the qualified name of the node's parent.
+        - ``namespace``: the namespace that the text imposes on the node.
+        - ``before``: the text that the language puts before the name in the IRI.
+
+        Raises ``Incomplete`` if the node is already declared as something else.
         """
         first = self._kinds.setdefault(node, kind)
         if first != kind and not {first, kind} <= _VARIABLES:
@@ -76,11 +83,11 @@ class Names:
         return name
 
     def fresh(self, name: str) -> str:
-        """Return an unused file-level name."""
+        """Return a name that no declaration at the top level of the file uses yet."""
         return self._free(name, "", "", "")
 
     def prefix(self, namespace: str) -> str:
-        """Return the prefix of a namespace, and declare it in the text."""
+        """Return the prefix of a namespace, and declare the prefix in the text."""
         if namespace not in self.used:
             wanted = self.stated.get(namespace) or re.split(r"[/#:]", namespace.rstrip("/#:"))[-1]
             others = {prefix for ns, prefix in self.stated.items() if ns != namespace}
@@ -88,24 +95,24 @@ class Names:
         return self.used[namespace]
 
     def scope_of(self, node: str) -> str:
-        """Return ``(ns=prefix)`` for a node."""
+        """Return ``(ns=prefix)`` with the prefix of the node's namespace."""
         return f"(ns={self.prefix(self.split(node)[0])})"
 
     def reference(self, node: str) -> str:
-        """Return ``<name>``; raises ``Incomplete`` for a node that the text does not declare."""
+        """Return the reference ``<name>``. Raises ``Incomplete`` if the text does not declare the node."""
         if node not in self.paths:
             raise Incomplete(f"{node} is not declared")
         return f"<{self.paths[node]}>"
 
     def lazily(self, node: str, kind: str) -> str:
-        """Return ``<name>`` of an event or task, and declare it."""
+        """Return the reference ``<name>`` to an event or a task, and declare it if necessary."""
         if node not in self.paths:
             self.declared.setdefault(kind, {})[node] = None
             self.declare(node, kind)
         return f"<{self.paths[node]}>"
 
     def value(self, node: Node) -> str:
-        """Return an element or a literal as a value; raises ``Incomplete`` for anything else."""
+        """Return an element or a literal as a value. Raises ``Incomplete`` for any other node."""
         literal = self.records.value(node)
         if not self.records.iris([node]):
             text, kind = str(node), str(getattr(node, "datatype", None) or "")
@@ -139,5 +146,5 @@ def braces(parts: Iterable[str]) -> str:
 
 
 def indented(text: str) -> str:
-    """Return text indented by one level; strings contain no line breaks."""
+    """Return text that is indented by one level. Strings in it contain no line breaks."""
     return "\n".join(f"    {line}" if line else line for line in text.split("\n"))

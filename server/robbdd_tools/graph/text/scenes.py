@@ -20,7 +20,7 @@ _MEMBERSHIP = re.compile(r"-scene-has-(?:obj|ws|agn)(?:-\d+)?\Z")
 
 @dataclass(slots=True)
 class SceneText:
-    """Writes the contents of scenes. ``kinds`` maps each set that declares elements to its kind."""
+    """Writes the contents of scenes. ``kinds`` maps each set that declares elements to the kind of these elements."""
 
     names: Names
     kinds: dict[str, str] = field(default_factory=dict[str, str])
@@ -32,7 +32,7 @@ class SceneText:
     _inferred: dict[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
 
     def text(self) -> list[str]:
-        """Declare everything and return the declarations of a scene file."""
+        """Return all declarations of a scene file."""
         records = self.names.records
         for kind, type_ in ELEMENT_TYPES.items():
             for node in records.instances(type_):
@@ -49,7 +49,7 @@ class SceneText:
         return blocks
 
     def link(self, node: str) -> str:
-        """Return a reference to a set in a variation or scene: ``obj set <…>``, ``set <…>``."""
+        """Return a reference to a set in a variation or a scene, for example ``obj set <…>`` or ``set <…>``."""
         kind = self.kinds.get(node)
         return f"{WORDS[kind]} set {self.names.reference(node)}" if kind else f"set {self.names.reference(node)}"
 
@@ -64,7 +64,10 @@ class SceneText:
         return f"const set {self.names.scope_of(node)} {self.names.paths[node]} {braces(values)}"
 
     def _choose_sets(self) -> None:
-        """Choose the sets that declare elements: those that scenes name, then the larger ones; each element once."""
+        """Choose the sets that declare elements, so that each element is declared once.
+
+        Sets that scenes name are chosen first, then larger sets.
+        """
         records = self.names.records
         in_scenes = {
             str(item) for node in records.subjects("rbw:entries") for item in items_of(records, node, "rbw:entries")
@@ -100,7 +103,7 @@ class SceneText:
             self.names.declare(member, kind, owner=name, namespace=self.names.split(node)[0])
 
     def _declare_rest(self, elements: list[str]) -> None:
-        """Put elements without a declaring set into generated sets, one for each kind and namespace."""
+        """Put the elements that no set declares into generated sets, one for each kind and namespace."""
         groups: dict[tuple[str, str], list[str]] = {}
         for element in sorted(elements):
             groups.setdefault((self._elements[element], self.names.split(element)[0]), []).append(element)
@@ -143,7 +146,7 @@ class SceneText:
         return f"scene {self.names.scope_of(node)} {self.names.paths[node]} {{{body}}}"
 
     def _of(self, variant: Iri) -> Iterator[str]:
-        """Yield a scene for a variant whose scene the graph does not name."""
+        """Yield a generated scene for a variant whose scene the graph does not name."""
         records = self.names.records
         stated = records.all(variant, "rbw:scene")
         if stated:
@@ -162,7 +165,10 @@ class SceneText:
         self.scenes[variant] = self.scenes[node]
 
     def _parts(self, members: frozenset[str]) -> Iterator[str]:
-        """Yield sets and compositions with the members of a scene, a whole set even if only a part is needed."""
+        """Yield the sets and compositions that contain the members of a scene.
+
+        A set is included as a whole even if the scene needs only some of its elements.
+        """
         missing = set(members)
         for node in self._compositions:
             workspaces = set(map(str, self.names.records.all(node, "env:of-workspace")))

@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class StoryText:
-    """Writes stories. ``variables`` maps each template to its variables' references from outside of it.
+    """Writes user stories.
 
-    ``left_out`` records nodes that cannot be written, with the reason.
+    ``variables`` maps each template to the references by which a story names the template's variables. ``left_out``
+    maps each node that cannot be written to the reason.
     """
 
     names: Names
@@ -32,7 +33,7 @@ class StoryText:
     left_out: dict[str, str]
 
     def text(self, story: Iri) -> str:
-        """Return a user story; raises ``Incomplete`` if none of its variants can be written."""
+        """Return the text of a user story. Raises ``Incomplete`` if none of its variants can be written."""
         records, names = self.names.records, self.names
         namespace = names.split(story)[0]
         name = names.paths[story]

@@ -1,1 +1,1 @@
-"""Write declarations as RDF with source positions; read foreign graphs; add results of runs."""
+"""Write declarations as RDF with source positions, read foreign graphs, and add results of runs."""

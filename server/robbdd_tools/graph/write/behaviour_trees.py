@@ -1,6 +1,6 @@
-"""Behaviour trees in the graph: their nodes, the semantics of composites, the linked behaviours.
+"""Write behaviour trees as triples: their nodes, the semantics of composites, and the linked behaviours.
 
-Uses the terms of the published metamodel of behaviour trees where they exist.
+Terms of the published metamodel of behaviour trees are used where they exist.
 """
 
 from __future__ import annotations
@@ -65,6 +65,6 @@ def _nodes(parts: Iterable[tree.TreeNode], named: dict[tree.TreeComposite | tree
 
 
 def link_behaviour(frame: Frame, behaviour: URIRef, use: tree.BehaviourUse) -> None:
-    """Add the link of a behaviour to a node of a behaviour tree, if any."""
+    """Link a behaviour to the node of a behaviour tree that it names, if any."""
     if use.node is not None:
         frame.sink.add(behaviour, "rbw:coordination-node", frame.target(use.node), frame.at(use.node))

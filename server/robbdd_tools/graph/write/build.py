@@ -1,7 +1,7 @@
-"""Build one graph from a file and the parts of its imports that it uses.
+"""Build one graph from a file and from the parts of its imports that it uses.
 
-The file's own declarations are all included; those of imported files if they are reachable. User input never raises: a
-broken declaration, an unresolved name or an invalid IRI adds no triples.
+All declarations of the file itself are included, and those declarations of imported files that are reachable from them.
+User input never raises an error. A broken declaration, an unresolved name or an invalid IRI adds no triples.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ SCENARIO_PARTS = {"given": "bdd:Given", "when": "bdd:When", "then": "bdd:Then"}
 
 
 def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
-    """Return the graph of a file in a snapshot (empty if the file cannot be read).
+    """Return the graph of a file in a snapshot. It is empty if the file cannot be read.
 
-    A file with a graph format's extension is parsed as a graph.
+    If the file has the extension of a graph format, it is parsed as a graph.
     """
     file = snapshot.file(uri) if graph_format(uri) else None
     if file is not None:
@@ -60,10 +60,11 @@ def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
 
 
 def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: Identities) -> BuiltGraph:
-    """Return the graph of some declarations: a file's with everything reachable, or a complete part of them.
+    """Return the graph of some declarations of a file.
 
-    A part is complete if it contains everything that its declarations use and all declarations that contest their
-    nodes. ``known`` are the nodes of all of the file's declarations.
+    ``reached`` are all reachable declarations, or a complete part of them. A part is complete if it contains everything
+    that its declarations use and all declarations that name the same nodes. ``known`` are the nodes that all
+    declarations of the file name.
     """
     sink = Sink()
     for node, declarers in known.shared.items():
@@ -87,7 +88,8 @@ def build_declarations(uri: str, uses: Uses, reached: Sequence[Reached], known: 
 def _nodes_of(entry: Reached) -> Iterator[str]:
     """Yield the nodes that only this declaration describes, including the parts of a template.
 
-    Templates of one namespace share variables and behaviours, so an error in one says nothing about another.
+    Variables and behaviours are left out, because the templates of a namespace share them. An error in one template
+    does not concern them in another one.
     """
     for definition in entry.file.definitions.values():
         if definition.iri is not None and definition.kind not in SHARED and entry.holds(definition):
@@ -97,7 +99,7 @@ def _nodes_of(entry: Reached) -> Iterator[str]:
 
 
 def _add_foundations(sink: Sink, reached: Sequence[Reached]) -> None:
-    """Add all declarations: first independent ones, then compositions, which nest, then stories."""
+    """Write all declarations: first independent ones, then compositions, which may be nested, and then stories."""
     scenes = Scenes()
     tasks: dict[URIRef, URIRef] = {}
     placed = [(entry.tree, Frame(sink, entry.file, entry.placed)) for entry in reached]
@@ -204,9 +206,9 @@ def _add_variables(frame: Frame, node: URIRef, template: tree.Template) -> None:
 
 
 def _add_prefixes(sink: Sink, reached: Iterable[Reached]) -> dict[str, str]:
-    """Add the prefix of each namespace, so that names can be shortened in every graph format.
+    """Add a prefix for each namespace, so that names can be shortened in every graph format.
 
-    The file's own prefixes come first; a prefix that is already used for another namespace gets a number.
+    The prefixes of the file itself are added first. If a prefix already denotes another namespace, it gets a number.
     """
     prefixes: dict[str, str] = {}
     for root in _namespaces(reached):

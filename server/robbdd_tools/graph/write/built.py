@@ -1,4 +1,4 @@
-"""Metadata of a graph: source positions, and declarations in doubt."""
+"""A graph with its metadata: source positions, and the declarations that are unreliable because of errors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Clash:
-    """Two declarations with the same IRI: the later one, which the graph leaves out, and the first."""
+    """Two declarations with the same IRI: the later one, which the graph leaves out, and the first one."""
 
     iri: str
     location: Location
@@ -27,10 +27,13 @@ class Clash:
 class BuiltGraph:
     """A graph with its metadata.
 
-    ``names`` maps an IRI to its qualified name in the text (a CURIE for a parsed graph). ``unreliable_declarations``
-    are the extents of declarations that have an error or use one that has; ``doubtful_nodes`` are their nodes.
-    ``faults`` are why a graph file could not be read; ``is_read`` marks a graph file, whose findings have to name their
-    node. ``authors`` are the declarations (document and offset) that describe a node.
+    - ``names``: maps an IRI to its qualified name in the text, or to a CURIE if the graph was parsed.
+    - ``clashes``: pairs of declarations with the same IRI.
+    - ``unreliable_declarations``: the extents of declarations that have an error or use a declaration that has one.
+    - ``doubtful_nodes``: the nodes of these declarations.
+    - ``faults``: the reasons why a graph file could not be read.
+    - ``is_read``: true for a graph file. Its findings have to name their node.
+    - ``authors``: the declarations (document and offset) that describe each node.
     """
 
     uri: str

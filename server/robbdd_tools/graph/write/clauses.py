@@ -25,11 +25,11 @@ MAX_NESTED = 100
 
 @dataclass(frozen=True, slots=True)
 class ClauseWriter:
-    """Writes the clauses of one owner, a template or a variant.
+    """Writes the clauses of one owner, which is a template or a variant.
 
-    ``namespace`` is that of the owner, ``owner`` its qualified name (``story.variant``), ``scenario`` the node of the
-    template's scenario. Unnamed nodes are named after their path: kind, owner, then the steps, joined by dots, which no
-    name contains.
+    ``namespace`` is the namespace of the owner, and ``owner`` is its qualified name (``story.variant``). ``scenario``
+    is the node of the template's scenario. A node without a name is named after its path, which consists of the kind,
+    the owner and the steps to the node. They are joined by dots, because no written name contains a dot.
     """
 
     frame: Frame
@@ -42,7 +42,7 @@ class ClauseWriter:
         return self.frame.sink
 
     def body(self, body: tree.Body, path: str = "") -> list[Node]:
-        """Write Given, When or for all, Then and return their clauses in order."""
+        """Write Given, When or for all, and Then. Return their clauses in order."""
         nodes = self.top(body.given, "given", path)
         if body.when is not None:
             nodes += self.occurrences(body.when.events, path)
@@ -52,7 +52,7 @@ class ClauseWriter:
         return nodes + self.top(body.then, "then", path)
 
     def top(self, expression: tree.Expression | None, role: str, path: str = "") -> list[Node]:
-        """Write the clauses of one role; an enclosing *and* becomes the list itself."""
+        """Write the clauses of one role. The operands of an outermost *and* become separate entries of the list."""
         if expression is None:
             return []
         path = f"{path}.{role}"
@@ -62,7 +62,7 @@ class ClauseWriter:
         return self._each([expression], role, path)
 
     def occurrences(self, events: Sequence[tree.Occurrence], path: str = "") -> list[Node]:
-        """Write ``event <e> occurs``."""
+        """Write the clauses ``event <e> occurs``."""
         nodes: list[Node] = []
         for index, occurrence in enumerate(events):
             node = self._generated("when-evt", f"{path}.when.{index}")
@@ -187,7 +187,7 @@ class ClauseWriter:
         return [node]
 
     def _emissions(self, node: URIRef, use: tree.BehaviourUse, path: str) -> None:
-        """Add the mapping of the behaviour's own events to events of the model."""
+        """Write the mapping of a behaviour's own events to events of the model."""
         sink, at = self._sink, self.frame.at
         found: list[Node] = []
         for index, emission in enumerate(use.emissions):

@@ -1,4 +1,4 @@
-"""The declarations of a file's graph, and which of them are in doubt because of errors."""
+"""The declarations in the graph of a file. Some of them are unreliable because of errors."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Key = tuple[str, int]
 
 @dataclass(frozen=True, slots=True)
 class Reached:
-    """A declaration in a graph; ``own`` if it is in the graph's main file.
+    """A declaration in a graph. ``own`` is true if the declaration is in the main file of the graph.
 
     ``key`` identifies it among all declarations of the revision.
     """
@@ -36,26 +36,29 @@ class Reached:
 
     @property
     def uri(self) -> str:
-        """Its document."""
+        """The URI of its document."""
         return self.key[0]
 
     @property
     def tree(self) -> tree.ChunkTree | None:
-        """Its tree, ``None`` if it is broken."""
+        """Its syntax tree, or ``None`` if it is broken."""
         return self.placed.declaration.tree
 
     def holds(self, definition: Definition) -> bool:
-        """Return whether a definition is part of it."""
+        """Return whether a definition is a part of the declaration."""
         return self.covers(Location(definition.uri, definition.span))
 
     def covers(self, location: Location) -> bool:
-        """Return whether it contains a place."""
+        """Return whether the declaration contains a place."""
         span = self.placed.span
         return location.uri == self.uri and span.start <= location.span.start < span.end
 
 
 class Uses:
-    """References between the declarations of a file and its imports (``closure``, the file first)."""
+    """References between the declarations of a file and its imports.
+
+    ``closure`` are these files, the file itself first.
+    """
 
     def __init__(self, closure: Sequence[FileAnalysis]) -> None:
         self._files = {
@@ -69,13 +72,13 @@ class Uses:
         self._errors: dict[str, list[int]] = {}
 
     def __iter__(self) -> Iterator[Reached]:
-        """Yield all declarations, imports before their importers, each file's in text order."""
+        """Yield all declarations, imported files before the files that import them, each file in text order."""
         return (entry for entries in self._files.values() for entry in entries)
 
     def of(self, entry: Reached) -> list[Reached]:
-        """Return the declarations that one refers to, in the order of its references.
+        """Return the declarations to which a declaration refers, in the order of its references.
 
-        A declaration without an explicit namespace also refers to that of its file.
+        A declaration without an explicit namespace also refers to the namespace declaration of its file.
         """
         key = entry.key
         if key not in self._found:
@@ -99,7 +102,10 @@ class Uses:
 
 
 def reachable_declarations(uses: Uses) -> tuple[Reached, ...]:
-    """Return all declarations of the first file and those reachable from them, imports before their importers."""
+    """Return all declarations of the first file and all declarations that are reachable from them.
+
+    Imported files are before the files that import them.
+    """
     every = tuple(uses)
     waiting = [entry for entry in every if entry.own]
     found = {entry.key for entry in waiting}
@@ -114,10 +120,11 @@ def reachable_declarations(uses: Uses) -> tuple[Reached, ...]:
 def unreliable_declarations(
     uses: Uses, reached: Sequence[Reached], left_out: Iterable[Location]
 ) -> tuple[Reached, ...]:
-    """Return the declarations whose further findings are not reliable.
+    """Return the declarations about which further findings are not reliable.
 
-    These are the ones with an error or an omitted part, and users of an incomplete declaration: a broken one, or a set,
-    composition or scene with an error. An error inside a template or story says nothing about its users.
+    A declaration is unreliable if it has an error or an omitted part, or if it uses an incomplete declaration. A broken
+    declaration is incomplete, and so is a set, composition or scene with an error. An error inside a template or a
+    story does not make its users unreliable.
     """
     places = tuple(left_out)
     suspect = [entry for entry in reached if uses.has_error(entry) or any(map(entry.covers, places))]

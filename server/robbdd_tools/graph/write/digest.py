@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def graph_digest(built: BuiltGraph) -> str:
-    """Return the SHA-256 of a graph as N-Triples, in hexadecimal digits."""
+    """Return the SHA-256 of a graph, written as N-Triples, in hexadecimal digits."""
     return hashlib.sha256(serialize(built.graph, "nt").encode()).hexdigest()
 
 

@@ -1,4 +1,4 @@
-"""Write executions as triples: behaviour implementations, observations, policies, and executed variants."""
+"""Write executions as triples: implementations of behaviours, observations, policies and executed variants."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ _FORMS: dict[type[tree.Node], str] = {
 
 
 def add_execution(frame: Frame, root: tree.ChunkTree | None, position: int) -> None:
-    """Add a declaration of a ``.bddx``, if it is one; ``position`` is its index among all."""
+    """Write a declaration of a ``.bddx``; ignore any other declaration.
+
+    ``position`` is its index among all declarations.
+    """
     match root:
         case tree.Implementation():
             _add_implementation(frame, root)

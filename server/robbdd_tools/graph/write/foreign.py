@@ -1,4 +1,4 @@
-"""Read models that are graphs, in Turtle or JSON-LD from any author, with the position of each node."""
+"""Read models that are graphs in Turtle or JSON-LD, from any author, with the source position of each node."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def read_graph_file(document: Document, others: Sequence[Document] = ()) -> BuiltGraph:
-    """Return the graph of a document; an empty one with a fault if it cannot be parsed."""
+    """Return the graph of a document. If it cannot be parsed, return an empty graph with a fault."""
     from rdflib import Graph
 
     uri = document.uri
@@ -43,7 +43,10 @@ def read_graph_file(document: Document, others: Sequence[Document] = ()) -> Buil
 
 
 def node_names(graph: Graph) -> dict[str, str]:
-    """Return the names of nodes in findings: CURIEs; a blank node has the name of the node that it belongs to."""
+    """Return the names of nodes for findings, which are CURIEs.
+
+    A blank node has the name of the node to which it belongs.
+    """
     from rdflib import BNode, Graph, URIRef
 
     short = Graph(bind_namespaces="none")
@@ -82,9 +85,10 @@ def _blank_owners(graph: Graph) -> list[tuple[Node, Node]]:
 
 
 def graph_places(documents: Iterable[Document], graph: Graph) -> SourceMap:
-    """Return the positions of the nodes of a graph in its texts; a blank node has that of the node that it belongs to.
+    """Return the positions of the nodes of a graph in its texts.
 
-    A node in several texts has its position in the last of them: earlier texts import the one that describes it.
+    A blank node has the position of the node to which it belongs. A node in several texts has its position in the last
+    of them, because earlier texts import the one that describes the node.
     """
     namespaces = {prefix: str(namespace) for prefix, namespace in graph.namespaces()}
     places: dict[str, Location] = {}

@@ -1,4 +1,4 @@
-"""Merge the graphs that a foreign graph imports (``owl:imports``) from local files."""
+"""Merge a foreign graph with the graphs that it imports (``owl:imports``) from local files."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ def graph_format(uri: str) -> str:
 
 @dataclass(slots=True)
 class Merged:
-    """A graph with those that it imports, their documents, and the faults of the imports."""
+    """A graph merged with the graphs that it imports, the documents of these graphs, and the faults of the imports."""
 
     graph: Graph
     documents: list[Document]
     faults: list[Diagnostic] = field(default_factory=list[Diagnostic])
 
     def add(self, document: Document, graph: Graph) -> list[tuple[Document, str]]:
-        """Add the graph of a document; returns the document with each of its imports.
+        """Add the graph of a document. Return the document together with each of its imports.
 
-        Blank nodes are renamed per document, because several documents may use the same labels.
+        Blank nodes get new labels for each document, because several documents may use the same labels.
         """
         from rdflib import BNode, URIRef
 
@@ -58,9 +58,9 @@ class Merged:
 
 
 def merge_imports(document: Document, others: Iterable[Document] = ()) -> Merged:
-    """Return the graph of a document and of all its imports, direct or indirect; raises ``UnreadableGraph``.
+    """Return the graph of a document merged with all its imports, direct or indirect. Raises ``UnreadableGraph``.
 
-    An import is a file by its relative path, or a web address that ends with the path of a file in the folder of the
+    An import is the relative path of a file, or a web address that ends with the path of a file in the folder of the
     importing document. Nothing is fetched. The graphs of ``others`` are added as if ``document`` imported them.
     """
     from rdflib import URIRef
@@ -101,7 +101,7 @@ def _file(importer: str, name: str) -> Path | None:
 
 
 def _read(path: Path | None, name: str) -> tuple[Document, Graph] | str:
-    """Return the document and graph of an imported file, or the fault of the import."""
+    """Return the document and the graph of an imported file, or the fault of the import."""
     if path is None:
         return f"'{name}' is not fetched: put the file next to this one, under the name that its address ends with"
     uri = path_to_uri(path)

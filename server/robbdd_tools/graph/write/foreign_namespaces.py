@@ -1,4 +1,4 @@
-"""Foreign namespaces that resemble those of the vocabulary: ``unknown-namespace``, and ``no-criteria``."""
+"""Report foreign namespaces that resemble those of the vocabulary (``unknown-namespace``, ``no-criteria``)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ MAX_NAMED = 3
 
 
 def foreign_namespaces(document: Document, graph: Graph) -> Iterator[Diagnostic]:
-    """Yield each unknown namespace with terms of the vocabulary, or one diagnostic if no term is known."""
+    """Yield a diagnostic for each unknown namespace that contains terms of the vocabulary.
+
+    If the graph uses no known term at all, yield a single diagnostic that says so.
+    """
     from rdflib.namespace import RDF
 
     found = sorted(_lookalikes(graph).items())
@@ -79,7 +82,7 @@ def _unknown(document: Document, namespace: str, own: str, terms: list[str]) -> 
 
 
 def _places(text: str, namespace: str) -> Iterator[Span]:
-    """Yield the spans of a namespace itself, not as the start of a longer IRI."""
+    """Yield the spans where a namespace is written as a whole, not as the start of a longer IRI."""
     start = text.find(namespace)
     while start >= 0:
         end = start + len(namespace)

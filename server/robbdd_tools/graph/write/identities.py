@@ -1,4 +1,4 @@
-"""Declarations of the same node, and the name of each node in the text."""
+"""Find declarations of the same node, and the name of each node in the text."""
 
 from __future__ import annotations
 
@@ -25,7 +25,11 @@ SHARED = VARIABLES | {SymbolKind.BEHAVIOUR}
 
 @dataclass(frozen=True, slots=True)
 class _Named:
-    """A name of a node: ``local`` ends its IRI, ``says`` is the content of a shared one."""
+    """A name of a node.
+
+    ``local`` is the end of the node's IRI. ``says`` is the content of a declaration that may share its node with
+    others.
+    """
 
     symbol: Symbol
     local: str
@@ -34,7 +38,7 @@ class _Named:
 
 @dataclass(frozen=True, slots=True)
 class Declarer:
-    """A declaration that names a node, by its key, and the name."""
+    """A declaration that names a node. ``key`` identifies the declaration, and ``symbol`` is the name."""
 
     key: Key
     symbol: Symbol
@@ -42,7 +46,7 @@ class Declarer:
 
     @property
     def location(self) -> Location:
-        """The name's place."""
+        """The place of the name."""
         uri, offset = self.key
         return Location(uri, self.symbol.span.shifted(offset))
 
@@ -51,9 +55,12 @@ class Declarer:
 class Identities:
     """The nodes that some declarations name.
 
-    ``starts`` maps a declaration to the namespaces (IRIs, ``None``: unknown) in which it names nodes. ``names`` maps an
-    IRI to its first qualified name. ``shared`` are nodes that several declarations define equally; ``contested`` are
-    those where only one can have the IRI, or where they differ. Both list the declarers in graph order.
+    - ``names``: maps the IRI of a node to its first qualified name.
+    - ``starts``: maps a declaration to the IRIs of the namespaces in which it names nodes; ``None`` is an unknown one.
+    - ``shared``: the nodes that several declarations define equally.
+    - ``contested``: the nodes that declarations define differently, or that only one of them can have.
+
+    ``shared`` and ``contested`` list the declarations that name the node in the order of the graph.
     """
 
     names: Mapping[str, str]
@@ -63,7 +70,7 @@ class Identities:
 
 
 def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
-    """Return the nodes that some declarations name, and the shared and contested ones."""
+    """Return the nodes that some declarations name, and which of these are shared or contested."""
     names: dict[str, str] = {}
     first: dict[str, tuple[Reached, _Named]] = {}
     repeated: dict[str, list[Declarer]] = {}
@@ -93,7 +100,10 @@ def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
 
 
 def _resolved(found: Identities, repeated: Mapping[str, list[Declarer]]) -> Identities:
-    """Separate shared from contested nodes; a declaration that loses its name to another may be left out entirely."""
+    """Separate shared nodes from contested ones.
+
+    If a declaration names any contested node, it may be left out entirely. So its shared nodes are contested, too.
+    """
     for iri, declarers in repeated.items():
         agreed = {declarer.says for declarer in declarers}
         (found.contested if None in agreed or len(agreed) > 1 else found.shared)[iri] = declarers

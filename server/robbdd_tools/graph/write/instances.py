@@ -1,4 +1,4 @@
-"""Write executable scenes as triples: distributions, placements of bodies, and the models of a scene's elements."""
+"""Write executable scenes as triples: distributions, placements of bodies, and models of the elements of a scene."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Placed = list[tuple["tree.ChunkTree | None", "Frame"]]
 
 
 def add_instances(placed: Placed) -> None:
-    """Add all declarations of executable scenes: trees first, since names are resolved through them."""
+    """Write all declarations of executable scenes. Trees are written first, because names are resolved in them."""
     trees = Trees()
     templates = {root.name.text: root for root, _ in placed if isinstance(root, tree.KinematicTree)}
     for root, frame in placed:
@@ -121,7 +121,10 @@ class _InstanceWriter:
         return node
 
     def _element(self, instance: URIRef, modelled: tree.Modelled) -> None:
-        """Add the models of an element, or of each element of a set; sets inside a set follow it and override it."""
+        """Write the models of an element or of each element of a set.
+
+        Sets inside a set are written after it, so that their models replace those of the set.
+        """
         sink, place = self._sink, self._frame.at(modelled.reference)
         target = self._frame.target(modelled.reference)
         node = sink.iri(f"{instance}.{len(self._elements)}")

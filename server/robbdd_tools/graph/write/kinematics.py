@@ -1,7 +1,7 @@
 """Write kinematic trees and graphs as triples: bodies, their frames, and the placement of frames.
 
-A frame's name is that of its tree or graph followed by the path (``…/arm.base.origin``); an instance of a tree has the
-template's parts under its own name.
+The name of a frame is the name of its tree or graph followed by the path of the frame (``…/arm.base.origin``). An
+instance of a tree has copies of the template's parts under its own name.
 """
 
 from __future__ import annotations
@@ -27,12 +27,18 @@ MAX_STEPS = 50
 
 @dataclass(slots=True)
 class Trees:
-    """All trees and graphs by qualified name: their node, ``None`` for a template, and their declaration."""
+    """All trees and graphs by qualified name, each with its node and its declaration.
+
+    The node of a template is ``None``.
+    """
 
     owners: dict[str, tuple[URIRef | None, Owner]] = field(default_factory=dict[str, tuple["URIRef | None", Owner]])
 
     def node(self, path: str, scopes: tuple[str, ...] = ()) -> str | None:
-        """Return the IRI of a qualified name, looked up in the scopes first; ``None`` if there is none."""
+        """Return the IRI of a qualified name, or ``None`` if there is none.
+
+        The name is looked up in the scopes first.
+        """
         for candidate in (*(f"{scope}.{path}" for scope in scopes), path):
             found = self._found(candidate)
             if found is not None:
@@ -72,7 +78,7 @@ def _uses(owner: Owner) -> Iterator[tree.TreeUse]:
 
 
 def _has(owner: Owner, path: str) -> bool:
-    """Return whether a tree has a body, or a frame in a body, with a name."""
+    """Return whether a tree has a body, or a body has a frame, with this name."""
     body, _, frame = path.partition(".")
     for entry in owner.entries:
         if isinstance(entry, tree.RigidBody) and entry.name.text == body:
@@ -82,10 +88,13 @@ def _has(owner: Owner, path: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class TreeWriter:
-    """Writes the parts of a tree or graph: those of ``owner``, named ``path``, as parts of ``node``.
+    """Writes the parts of a tree or graph.
 
-    ``scopes`` are the paths that its names may be relative to, innermost last; ``template`` is the name by which the
-    parts of an instance may refer to their own tree.
+    - ``owner``: the tree or graph that declares the parts.
+    - ``path``: its qualified name, under which the parts are written.
+    - ``node``: its node.
+    - ``scopes``: the paths to which names may be relative, innermost last.
+    - ``template``: the name by which the parts of an instance may refer to their own tree.
     """
 
     frame: Frame
@@ -97,7 +106,7 @@ class TreeWriter:
     template: str = ""
 
     def write(self) -> None:
-        """Add all triples."""
+        """Write all triples of the tree or graph."""
         sink, owner = self.frame.sink, self.owner
         parts: list[Node | None] = []
         for entry in owner.entries:

@@ -1,4 +1,4 @@
-"""Positions of a graph's nodes in its text, found from tokens because neither parser keeps positions."""
+"""Find the positions of a graph's nodes in its text. Tokens are searched, because neither parser keeps positions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ID_KEYS = {"@id", "id"}
 
 
 def turtle_occurrences(text: str, namespaces: Mapping[str, str], base: str) -> dict[str, Span]:
-    """Return for each IRI its first position as the subject of a statement, or else its first occurrence."""
+    """Return a position for each IRI: the first one as the subject of a statement, or else its first occurrence."""
     subjects: dict[str, Span] = {}
     others: dict[str, Span] = {}
     before = "."
@@ -41,7 +41,7 @@ def turtle_occurrences(text: str, namespaces: Mapping[str, str], base: str) -> d
 
 
 def json_occurrences(text: str, namespaces: Mapping[str, str], base: str) -> dict[str, Span]:
-    """Return for each IRI the position of the ``@id`` of its description, or else its first occurrence."""
+    """Return a position for each IRI: the ``@id`` of its description, or else its first occurrence."""
     described: dict[str, Span] = {}
     others: dict[str, Span] = {}
     tokens = list(_JSON.finditer(text))

@@ -14,9 +14,9 @@ _SAME = 1e-4
 
 
 def rotation_of(value: tree.Vector | tree.EulerAngles | tree.Axes) -> Quaternion | None:
-    """Return the written rotation; ``None`` for numbers that are not a rotation.
+    """Return the rotation that a value describes, or ``None`` for numbers that are not a rotation.
 
-    Quaternions are normalised. Euler angles are intrinsic by default, in rad without a unit.
+    Quaternions are normalised. Euler angles are intrinsic unless stated otherwise; angles without a unit are in rad.
     """
     match value:
         case tree.Vector():
@@ -70,7 +70,7 @@ def product(first: Quaternion, second: Quaternion) -> Quaternion:
 
 
 def _from_axes(axes: list[tuple[float, ...]]) -> Quaternion | None:
-    """Convert the columns of a rotation matrix to a quaternion, starting from its largest component."""
+    """Return the rotation matrix with these columns as a quaternion. Its largest component is computed first."""
     if any(len(axis) != 3 for axis in axes):
         return None
     x, y, z = axes

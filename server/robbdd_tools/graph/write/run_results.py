@@ -1,7 +1,7 @@
-"""Add results of runs to the graph: the verdicts, their executions and the values used, next to the model itself.
+"""Add results of runs to the graph of a model: the verdicts, their executions and the values used.
 
-Clauses' verdicts are EARL assertions, executions are PROV activities. Nodes are named after the content of the results,
-so equal results give equal graphs.
+Verdicts on clauses are EARL assertions, and executions are PROV activities. Nodes are named after the content of the
+results, so equal results give equal graphs.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Json = Mapping[str, Any]
 
 
 class BadResults(Exception):
-    """A document does not follow ``docs/schemas/run.schema.json``; the message says where."""
+    """A document does not follow ``docs/schemas/run.schema.json``. The message names the place of the error."""
 
 
 def read_results(text: str) -> Json:
@@ -137,7 +137,7 @@ class _Writer:
                 self.say(result, term, _field(clause, field, str, where))
 
     def _named(self, curie: str) -> Any:
-        """Return the node of a CURIE with one of the model's prefixes; any other text is an IRI."""
+        """Return the node of a CURIE whose prefix the model declares. Any other text is the IRI of a node."""
         from rdflib import URIRef
 
         prefix, colon, local = curie.partition(":")

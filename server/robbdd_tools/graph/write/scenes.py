@@ -28,7 +28,10 @@ class _Composition:
 
 @dataclass(slots=True)
 class Scenes:
-    """Data of written sets, compositions and scenes, by node; memberships of variants are computed from it."""
+    """Data of the sets, compositions and scenes written so far, by node.
+
+    The members of variants are computed from it.
+    """
 
     sets: dict[URIRef, tuple[str, tuple[URIRef, ...]]] = field(
         default_factory=dict["URIRef", tuple[str, tuple["URIRef", ...]]]
@@ -37,7 +40,7 @@ class Scenes:
     scenes: dict[URIRef, tuple[URIRef, ...]] = field(default_factory=dict["URIRef", tuple["URIRef", ...]])
 
     def members(self, scene: URIRef) -> Members:
-        """Return the members of a scene; a nested composition counts as its workspace."""
+        """Return the members of a scene. A nested composition counts as its workspace."""
         found = [member for entry in self.scenes.get(scene, ()) for member in self._of_entry(entry)]
         return {kind: _unique(node for its, node in found if its == kind) for kind in ELEMENT_TYPES}
 
@@ -58,7 +61,7 @@ class Scenes:
                 yield "workspace", nested.workspace
 
     def named_set_members(self, frame: Frame, variation: tree.Table | tree.Product) -> Members:
-        """Return the members of the element sets that a variation names (``obj set <…>``)."""
+        """Return the members of the element sets that a variation names, for example by ``obj set <…>``."""
         links = (frame.target(link.reference) for link in _links(variation))
         found = [self.sets[link] for link in links if link is not None and link in self.sets]
         return {
@@ -69,7 +72,10 @@ class Scenes:
 
 @dataclass(slots=True)
 class Memberships:
-    """Assigns membership nodes: the published IRI, or another one if that is already used for other members."""
+    """Assigns nodes for the membership of elements in a scene.
+
+    Such a node has its published IRI, or another one if that already has other members.
+    """
 
     sink: Sink
     _known: dict[tuple[URIRef, str], list[tuple[URIRef, tuple[URIRef, ...]]]] = field(
@@ -77,7 +83,7 @@ class Memberships:
     )
 
     def node(self, scene: URIRef, kind: str, template_scene: URIRef, members: tuple[URIRef, ...]) -> URIRef:
-        """Return the node that makes ``members`` members of a template's scene; adds it if it is new."""
+        """Return the node that makes ``members`` members of a template's scene. Add the node if it is new."""
         from rdflib import URIRef
 
         known = self._known.setdefault((scene, kind), [])
@@ -135,7 +141,7 @@ def add_similar_set(frame: Frame, scenes: Scenes, declared: tree.SimilarSet) -> 
 
 
 def add_set(frame: Frame, node: URIRef, name: tree.Name, elements: Iterable[Node]) -> None:
-    """Add a set with its elements, both unordered and in written order."""
+    """Add a set with its elements, as unordered elements and as a list in written order."""
     ordered = list(elements)
     frame.sink.add_types(node, SET_TYPES, frame.at(name))
     for element in ordered:
@@ -163,7 +169,7 @@ def add_composition(frame: Frame, scenes: Scenes, declared: tree.Composition) ->
 
 
 def add_composition_contents(frame: Frame, scenes: Scenes, declared: tree.Composition) -> None:
-    """Add the members of a composition; those of nested compositions must be known."""
+    """Add the members of a composition. The members of nested compositions must already be known."""
     node = frame.node(declared.name.text)
     composition = scenes.compositions.get(node) if node is not None else None
     if node is None or composition is None:

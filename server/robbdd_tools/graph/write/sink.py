@@ -1,4 +1,4 @@
-"""Collect triples with their source positions; the only maker of nodes while a graph is built."""
+"""Collect triples with their source positions. Only this module makes nodes while a graph is built."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*:[^\x00-\x20<>\"{}|\\^`\ud800-\
 
 
 class Sink:
-    """A graph under construction. Invalid nodes (an IRI with a space, for example) are silently left out."""
+    """A graph under construction. Invalid nodes are silently left out, for example an IRI that contains a space."""
 
     def __init__(self) -> None:
         from rdflib import Graph
@@ -39,13 +39,13 @@ class Sink:
         self._blank_nodes = 0
 
     def iri(self, text: str | None) -> URIRef | None:
-        """Return the node of an absolute IRI, ``None`` for anything else."""
+        """Return the node of an absolute IRI, or ``None`` for any other text."""
         from rdflib import URIRef
 
         return URIRef(text) if text is not None and _ABSOLUTE.fullmatch(text) else None
 
     def literal(self, value: str | int | float | bool, datatype: str | None = None) -> Node:
-        """Return a literal: xsd:string, xsd:integer, xsd:double or xsd:boolean unless a datatype is named."""
+        """Return a literal. Without a ``datatype``, it is an xsd:string, xsd:integer, xsd:double or xsd:boolean."""
         from rdflib import Literal, URIRef
 
         if isinstance(value, str):
@@ -55,14 +55,14 @@ class Sink:
         return Literal(lexical, datatype=URIRef(expand(datatype or kinds[type(value)])))
 
     def claim(self, node: URIRef, location: Location) -> bool:
-        """Reserve a node for one declaration; return whether no other declaration has it."""
+        """Reserve a node for one declaration. Return true if no other declaration has reserved it."""
         first = self.claims.setdefault(node, location)
         if first != location:
             self.clashes.append((node, location, first))
         return first == location
 
     def claim_behaviour(self, node: URIRef, word: str, location: Location) -> bool:
-        """Reserve a node for a behaviour; templates may share it if the word is the same."""
+        """Reserve a node for a behaviour. Templates may share the node if their behaviour has the same catalog word."""
         first = self.claims.setdefault(node, location)
         if self._behaviours.setdefault(node, word) == word and (first == location or node in self._behaviours):
             return True
@@ -79,12 +79,12 @@ class Sink:
             self.mark_node(node, location)
 
     def mark_node(self, node: Node, location: Location) -> None:
-        """Record the declaration of a node."""
+        """Record the place where a node is declared."""
         self.sources.mark([(str(node),)], location)
         self._credit(node)
 
     def begin(self, author: Key) -> None:
-        """Set the declaration that adds the following triples."""
+        """Set the declaration that is the author of the triples added from now on."""
         self._author = author
 
     def _credit(self, node: Node) -> None:
@@ -92,7 +92,7 @@ class Sink:
             self.authors.setdefault(str(node), {})[self._author] = None
 
     def add(self, node: Node, term: str, value: Node | None, location: Location | None = None) -> None:
-        """Add a property of a node; ``None`` adds nothing."""
+        """Add a property of a node. If the value is ``None``, nothing is added."""
         from rdflib import URIRef
 
         if value is None:
@@ -103,16 +103,16 @@ class Sink:
             self.mark(node, term, value, location)
 
     def mark(self, node: Node, term: str, value: Node, location: Location) -> None:
-        """Record the position of a property's value."""
+        """Record the position of a value of a property."""
         key = (str(node), expand(term))
         self.sources.mark([key, (*key, str(value))], location)
 
     def mark_choice(self, variation: URIRef, variable: URIRef, value: Node, location: Location) -> None:
-        """Record where a variation gives a variable a value."""
+        """Record the place where a variation assigns a value to a variable."""
         self.sources.mark([(str(variation), str(variable), str(value))], location)
 
     def make_list(self, items: Iterable[Node | None]) -> Node:
-        """Add an RDF list of the items that are not ``None`` and return its head."""
+        """Add an RDF list and return its head. Items that are ``None`` are left out."""
         from rdflib import BNode
         from rdflib.namespace import RDF
 
@@ -128,7 +128,7 @@ class Sink:
 
 
 class Frame:
-    """One declaration while its triples are written: its sink, its place and the targets of its references."""
+    """A declaration while its triples are written: the sink, its place, and the targets of its references."""
 
     def __init__(self, sink: Sink, file: FileAnalysis, placed: PlacedDeclaration) -> None:
         self.sink = sink
@@ -137,25 +137,25 @@ class Frame:
         self._placed = placed
 
     def begin(self) -> None:
-        """Make this declaration the author of the following triples."""
+        """Make this declaration the author of the triples added from now on."""
         self.sink.begin((self._uri, self._placed.offset))
 
     def at(self, node: TreeNode) -> Location:
-        """Return the absolute place of a node of the declaration's tree."""
+        """Return the absolute place of a node in the syntax tree of the declaration."""
         return Location(self._uri, node.span.shifted(self._placed.offset))
 
     def target(self, ref: Ref) -> URIRef | None:
-        """Return the node of a reference, ``None`` if it is unresolved."""
+        """Return the graph node to which a reference leads, or ``None`` if the reference is unresolved."""
         definition = self._placed.targets.get(ref)
         return None if definition is None else self.sink.iri(definition.iri)
 
     def node(self, path: str) -> URIRef | None:
-        """Return the node of a name that this file declares."""
+        """Return the graph node of a name that this file declares."""
         definition = self._definitions.get(path)
         return None if definition is None else self.sink.iri(definition.iri)
 
     def claimed(self, path: str, name: Name) -> URIRef | None:
-        """Return the node of a name that must be unique; ``None`` if another declaration has it."""
+        """Return the graph node of a name that must be unique, or ``None`` if another declaration has reserved it."""
         definition = self._definitions.get(path)
         location = self.at(name)
         if definition is None or definition.span != location.span:

@@ -19,23 +19,24 @@ class Location:
 
 @dataclass(frozen=True, slots=True)
 class SourceMap:
-    """Positions of nodes (IRIs, or the labels of blank nodes), properties (CURIEs or IRIs) and values.
+    """Positions of nodes, properties and values of a graph.
 
-    A statement that was written several times, such as a value in several rows, has several positions.
+    Nodes are given by their IRI or by the label of a blank node, properties by CURIE or IRI. A statement that was
+    written several times has several positions, for example a value in several rows.
     """
 
     places: Mapping[tuple[str, ...], tuple[Location, ...]]
 
     def node(self, node: str) -> Location | None:
-        """Return the position of a node's declaration: its name, or its first token if it has none."""
+        """Return the position of a node's declaration, which is its name or, without a name, its first token."""
         return next(iter(self.places.get((node,), ())), None)
 
     def property(self, node: str, term: str) -> Location | None:
-        """Return the first position of a node's property."""
+        """Return the first position of a property of a node."""
         return next(iter(self.places.get((node, expand(term)), ())), None)
 
     def value(self, node: str, term: str, value: str) -> tuple[Location, ...]:
-        """Return every position of a value of a node's property."""
+        """Return every position of a value of a property of a node."""
         return self.places.get((node, expand(term), value), ())
 
 
@@ -48,7 +49,7 @@ class SourceMapBuilder:
     )
 
     def mark(self, keys: Iterable[tuple[str, ...]], location: Location) -> None:
-        """Record one position for several keys."""
+        """Record a position for all given keys."""
         for key in keys:
             self._places.setdefault(key, {})[location] = None
 

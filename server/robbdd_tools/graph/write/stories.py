@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Data that stories need: the scenes, their memberships, and the task of each template."""
+    """Data that stories need: the scenes, the memberships in scenes, and the task of each template."""
 
     scenes: Scenes
     memberships: Memberships
@@ -28,7 +28,7 @@ class Known:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Identity of a variant: its story's namespace, its qualified name, its own name and its node."""
+    """The identity of a variant: its story's namespace, its qualified name, its own name and its node."""
 
     namespace: str
     owner: str
@@ -36,7 +36,7 @@ class _Place:
 
 
 def add_story(frame: Frame, known: Known, story: tree.Story, position: int) -> None:
-    """Add a user story; ``position`` is its index among all stories of the graph."""
+    """Add a user story. ``position`` is its index among all stories of the graph."""
     node = frame.claimed(story.name.text, story.name)
     if node is None:
         return
@@ -91,7 +91,10 @@ def _add_membership(frame: Frame, known: Known, variant: tree.Variant, node: URI
 
 
 def _add_loose_members(sink: Sink, scene: URIRef, kind: str, members: tuple[URIRef, ...]) -> None:
-    """Add, in the published form, the elements of a variation whose kind its scene lacks entirely."""
+    """Add the elements in a variation as members of a scene that has no members of their kind.
+
+    The published form is used.
+    """
     _, term, ending = MEMBERSHIPS[kind]
     node = sink.iri(scene + ending)
     if node is not None:
@@ -183,7 +186,7 @@ class _VariationWriter:
         return self.frame.sink.literal(value.value)
 
     def _mark(self, variable: URIRef | None, written: tree.Node, node: Node | None) -> None:
-        """Record the positions of a variable's value and of each value in a list."""
+        """Record the positions of a variable's value and, if it is a list, of each value in the list."""
         if variable is None or node is None:
             return
         sink = self.frame.sink

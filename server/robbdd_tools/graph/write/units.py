@@ -1,4 +1,4 @@
-"""Conversion of the language's units to SI units; the graph contains only SI units."""
+"""Convert the units of the language to SI units. The graph contains only SI units."""
 
 from math import pi
 
