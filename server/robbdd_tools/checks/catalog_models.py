@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.names.elements import Element, Site, scene_members
 from robbdd_tools.names.index import FileIndex, language_of
@@ -31,12 +32,16 @@ def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
 
 
 def _is_executable(snapshot: Snapshot, scene: str) -> bool:
-    for uri, source in snapshot.sources.items():
-        if language_of(uri) == "scenex" and isinstance(source, FileIndex):
-            roots = (placed.declaration.tree for placed in source.declarations)
-            if any(isinstance(root, tree.SceneInstance) and root.scene.path == scene for root in roots):
-                return True
-    return False
+    return scene in _executable_scenes(snapshot)
+
+
+@kept_with_key
+def _executable_scenes(snapshot: Snapshot) -> frozenset[str]:
+    """Return how the executable scenes of all files name theirs."""
+    files = (source for uri, source in snapshot.sources.items() if language_of(uri) == "scenex")
+    placed = (entry for file in files if isinstance(file, FileIndex) for entry in file.declarations)
+    roots = (entry.declaration.tree for entry in placed)
+    return frozenset(root.scene.path for root in roots if isinstance(root, tree.SceneInstance))
 
 
 def _chosen(members: frozenset[Element]) -> dict[str, list[str]]:

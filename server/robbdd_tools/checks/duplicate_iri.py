@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
-from functools import lru_cache
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
@@ -20,26 +19,32 @@ if TYPE_CHECKING:
     from robbdd_tools.names.definition import Definition
     from robbdd_tools.names.project import Snapshot
 
-Taken = Mapping[str, Mapping[str, int]]
-"""IRI of a namespace → name → number of declarations."""
+Node = tuple[str | None, str]
+"""IRI of a namespace, ``None`` where it is declared in another file, and a name in it."""
 
 
 def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each declaration of the file whose IRI is already used, here or in an imported file."""
     uri = file.document.uri
-    files = snapshot.scope(uri).files
-    if not _may_repeat(snapshot, files[0]):
-        return
-    own, imported = _taken_by(files[:1], files), _taken(files[1:])
+    scope, declaring = snapshot.scope(uri), _declaring(snapshot)
     names: set[str] = set()
-    for namespace, counted in own.items():
-        names |= counted.keys() & imported.get(namespace, {}).keys()
-        names.update(name for name, count in counted.items() if count > 1)
+    others: set[str] = set()
+    own: Counter[Node] = Counter()
+    for iri, namespace, name in _own_names(scope.own):
+        known = iri or scope.namespace_iri(scope.own, namespace)
+        if known is not None:
+            own[known, name] += 1
+            files = (other for key in (known, None) for other in declaring.get((key, name), ()))
+            found = [other for other in files if other != uri and scope.reaches(other)]
+            names.update([name] if found else [])
+            others.update(found)
+    names.update(name for (_, name), count in own.items() if count > 1)
     if not names:
         return
     first: dict[str, Definition] = {}
-    for other in snapshot.closure(uri)[:0:-1]:
-        for definition in _definitions(other, names):
+    ordered = [other for other in scope.uris if other in others] if len(others) > 1 else others
+    for other in map(snapshot.file, reversed(list(ordered))):
+        for definition in _definitions(other, names) if other is not None else ():
             first.setdefault(str(definition.iri), definition)
     for definition in _definitions(file, names):
         other = first.setdefault(str(definition.iri), definition)
@@ -66,52 +71,29 @@ def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
                 yield definition
 
 
-def _may_repeat(snapshot: Snapshot, file: FileIndex) -> bool:
-    """Return whether any name of a file is declared twice in the project, in any namespace: a quick test."""
-    counted = _declared(snapshot)
-    return any(counted[name] > 1 for name in _own_names(file))
-
-
 @kept_with_key
-def _declared(snapshot: Snapshot) -> Counter[str]:
-    files = (source for source in snapshot.sources.values() if isinstance(source, FileIndex))
-    return Counter(name for file in files for name in _own_names(file))
-
-
-@kept_with_key
-def _own_names(file: FileIndex) -> tuple[str, ...]:
-    owned = (facts_of(placed.declaration).own_names for placed in file.declarations)
-    return tuple(name for names in owned for several in names.values() for name in several)
-
-
-@lru_cache(maxsize=4)
-def _taken(files: tuple[FileIndex, ...]) -> Taken:
-    return _taken_by(files, files)
-
-
-def _taken_by(files: Iterable[FileIndex], scope: tuple[FileIndex, ...]) -> Taken:
-    """Count the names in some files, whose namespaces are declared in the files themselves or else in a scope."""
-    outer = _namespaces(scope)
-    found: dict[str, dict[str, int]] = {}
-    for file in files:
-        namespaces = {**outer, **_namespaces((file,))}
-        for placed in file.declarations:
-            for namespace, names in facts_of(placed.declaration).own_names.items():
-                if namespace == FILE_NAMESPACE:
-                    namespace = namespace_of(file, placed.declaration.symbols[0]) or FILE_NAMESPACE
-                counted = found.setdefault(namespaces.get(namespace, ""), {})
-                for name in names:
-                    counted[name] = counted.get(name, 0) + 1
-    found.pop("", None)
+def _declaring(snapshot: Snapshot) -> Mapping[Node, list[str]]:
+    """Return the files that declare each node, those of unknown namespaces by name."""
+    found: dict[Node, list[str]] = {}
+    for uri, source in snapshot.sources.items():
+        for iri, _, name in _own_names(source) if isinstance(source, FileIndex) else ():
+            found.setdefault((iri, name), []).append(uri)
     return found
 
 
-def _namespaces(files: Iterable[FileIndex]) -> dict[str, str]:
-    """Return the namespaces of some files by name; the nearest file wins."""
-    found: dict[str, str] = {}
-    for file in files:
-        for placed in file.declarations:
-            root = placed.declaration.tree
-            if isinstance(root, tree.Namespace):
-                found.setdefault(root.name.text, root.iri.value)
-    return found
+@kept_with_key
+def _own_names(file: FileIndex) -> tuple[tuple[str | None, str, str], ...]:
+    """Return the names that must be unique: the IRI of the namespace, ``None`` if imported, its name, and the name."""
+    iris: dict[str, str] = {}
+    for placed in file.declarations:
+        root = placed.declaration.tree
+        if isinstance(root, tree.Namespace):
+            iris.setdefault(root.name.text, root.iri.value)
+    found: list[tuple[str | None, str, str]] = []
+    for placed in file.declarations:
+        for written, names in facts_of(placed.declaration).own_names.items():
+            namespace = written
+            if namespace == FILE_NAMESPACE:
+                namespace = namespace_of(file, placed.declaration.symbols[0]) or FILE_NAMESPACE
+            found += ((iris.get(namespace), namespace, name) for name in names)
+    return tuple(found)

@@ -18,7 +18,6 @@ from robbdd_tools.syntax.declaration import SymbolKind
 if TYPE_CHECKING:
     from robbdd_tools.base.diagnostic import Diagnostic
     from robbdd_tools.names.analysis import FileAnalysis
-    from robbdd_tools.names.index import FileIndex
     from robbdd_tools.names.name_table import NameTable
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.scope import Scope
@@ -41,7 +40,9 @@ _RULED = (
 )
 """Declarations that rules check."""
 _TRANSPARENT = (tree.Scene, tree.Composition, tree.ConstantSet)
-"""Declarations whose own references matter to declarations that refer to them."""
+"""Declarations whose own references matter to those that refer to them."""
+_FOLLOWED = (SymbolKind.SCENE, SymbolKind.COMPOSITION, SymbolKind.CONSTANT_SET)
+"""The kinds of their names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +102,7 @@ def _still_valid(run: _Run | None, scope: Scope) -> Mapping[Declaration, _Entry]
     """Return the cached entries that no change can have affected."""
     if run is None or run.scope.files[1:] != scope.files[1:]:
         return {}
-    before, after = run.scope.files[0], scope.files[0]
+    before, after = run.scope.own, scope.own
     if before is after:
         return run.entries
     old = {placed.declaration for placed in before.declarations}
@@ -143,7 +144,7 @@ def _around(scope: Scope, declaration: Declaration) -> tuple[frozenset[str], fro
     for current in waiting:
         heads = facts_of(current).heads
         names |= heads
-        for other in (other for head in heads for file in scope.files for other in _declared(file, head)):
+        for other in (other for head in heads for other in _declared_as(scope, head)):
             if other not in found:
                 found[other] = None
                 if isinstance(other.tree, _TRANSPARENT):
@@ -151,9 +152,23 @@ def _around(scope: Scope, declaration: Declaration) -> tuple[frozenset[str], fro
     return frozenset(names), frozenset(found)
 
 
-def _declared(file: FileIndex, name: str) -> Iterator[Declaration]:
-    for entry in file.names.entries.get(name, ()):
-        yield file.declarations[entry.declaration].declaration
+def _declared_as(scope: Scope, name: str) -> Iterator[Declaration]:
+    """Yield what has a name in the scope's own file, and in others the declarations that are followed.
+
+    Others matter for what they refer to only: findings are not kept when another file changes. In a large scope the
+    own file's declaration of a kind hides those of the same name and kind.
+    """
+    for entry in scope.own.names.entries.get(name, ()):
+        yield scope.own.declarations[entry.declaration].declaration
+    for kind in _FOLLOWED:
+        for file in scope.declaring(name, kind):
+            if file is scope.own:
+                if scope.is_small:
+                    continue
+                break
+            for entry in file.names.entries[name]:
+                if entry.kind is kind:
+                    yield file.declarations[entry.declaration].declaration
 
 
 @contextmanager

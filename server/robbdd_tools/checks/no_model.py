@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Related, Severity
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.catalog.registry import load_catalog
 from robbdd_tools.checks.finding import listed
 from robbdd_tools.checks.scene_use import used_elements
@@ -72,14 +73,19 @@ def scene_instances(scene: Site) -> Iterator[Site]:
     """Yield the loaded executable scenes of a scene."""
     root, snapshot = scene.tree, scene.snapshot
     assert isinstance(root, tree.Scene)
-    for uri in sorted(snapshot.sources):
-        file = snapshot.file(uri) if language_of(uri) == "scenex" else None
+    for uri in _scenex_files(snapshot):
+        file = snapshot.file(uri)
         for placed in file.declarations if file is not None else ():
             instance = placed.declaration.tree
             if file is not None and isinstance(instance, tree.SceneInstance):
                 target = placed.targets.get(instance.scene)
                 if target is not None and (target.uri, target.symbol.path) == (scene.uri, root.name.text):
                     yield Site(snapshot, file, placed)
+
+
+@kept_with_key
+def _scenex_files(snapshot: Snapshot) -> tuple[str, ...]:
+    return tuple(sorted(uri for uri in snapshot.sources if language_of(uri) == "scenex"))
 
 
 def _fits(element: Element) -> bool:

@@ -33,9 +33,9 @@ def no_room(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
         scene = Site(snapshot, file, placed)
         if isinstance(scene.tree, tree.Scene) and used_elements(scene) and not any(scene_instances(scene)):
             yield from _containers(scene)
-    # Only a file with access to this many agents can have such a scenario.
-    known = (len(table.of_kind.get(SymbolKind.AGENT, ())) for table in snapshot.scope(file.document.uri).tables)
-    if sum(known) > SIDES:
+    # Only a file that knows this many agents can have such a scenario; a large scope is not searched for them.
+    scope = snapshot.scope(file.document.uri)
+    if not scope.is_small or sum(len(one.names.of_kind.get(SymbolKind.AGENT, ())) for one in scope.nearest) > SIDES:
         for site in story_sites(snapshot, file):
             yield from _too_many_agents(site)
 

@@ -71,9 +71,9 @@ def _extended(site: Site | None, element: Element) -> Iterator[Fix]:
         return
     source, words = element.key[0], f"{SET_WORDS[element.kind]} <{element.name.rpartition('.')[0]}>"
     edits: list[Edit] = []
-    if all(index.document.uri != source for index in site.snapshot.scope(site.uri).files):
+    if not site.snapshot.reachability.reaches(site.uri, source):
         path = import_path(site.uri, source)
-        if path is None or site.uri in site.snapshot.scope(source).uris:
+        if path is None or site.snapshot.reachability.reaches(source, site.uri):
             return
         edits.append(import_edit(site.file, path))
     document = site.file.document

@@ -38,7 +38,7 @@ Change = tuple[Span, str]
 def published_form(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
     """Report each declaration that has a part in the published form."""
     uri = file.document.uri
-    index = snapshot.scope(uri).files[0]
+    index = snapshot.scope(uri).own
     for placed in file.declarations:
         root = placed.declaration.tree
         if not isinstance(root, _NAMED) or placed.declaration.faults:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.document import Span
+from robbdd_tools.base.memory import kept_with_key
 from robbdd_tools.checks.template_variants import Scenario, scenarios
 from robbdd_tools.names.elements import Site, elements_of, site_of, story_sites
+from robbdd_tools.names.index import language_of
+from robbdd_tools.names.uses import clauses_of
 from robbdd_tools.syntax import tree
 from robbdd_tools.syntax.declaration import SymbolKind
 
 if TYPE_CHECKING:
     from robbdd_tools.names.definition import Definition
+    from robbdd_tools.names.project import Snapshot
 
 Key = tuple[str, str]
 _ELEMENTS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
@@ -33,13 +38,28 @@ def used_elements(scene: Site) -> frozenset[Key] | None:
 def _scenarios(scene: Site) -> Iterator[Scenario]:
     root, snapshot = scene.tree, scene.snapshot
     path = root.name.text if isinstance(root, tree.Scene) else ""
-    for uri in (scene.uri, *snapshot.importers(scene.uri)):
+    for uri, offset in _stories_by_scene(snapshot).get((scene.uri, path), ()):
         file = snapshot.file(uri)
-        for site in story_sites(snapshot, file) if file is not None else ():
-            for scenario in scenarios(site):
+        at = Span(offset, offset)
+        for site in story_sites(snapshot, file, at) if file is not None else ():
+            for scenario in scenarios(site) if site.placed.offset == offset else ():
                 target = site.target(scenario.variant.scene)
                 if target is not None and (target.uri, target.symbol.path) == (scene.uri, path):
                     yield scenario
+
+
+@kept_with_key
+def _stories_by_scene(snapshot: Snapshot) -> Mapping[Key, list[tuple[str, int]]]:
+    """Return the places of the stories, or parts of stories, that take place in each scene."""
+    found: dict[Key, dict[tuple[str, int], None]] = {}
+    for uri in sorted(snapshot.sources):
+        file = snapshot.file(uri) if language_of(uri) == "bdd" else None
+        for site in story_sites(snapshot, file) if file is not None else ():
+            for clauses in clauses_of(site.placed.declaration):
+                target = site.target(clauses.node.scene) if isinstance(clauses.node, tree.Variant) else None
+                if target is not None:
+                    found.setdefault((target.uri, target.symbol.path), {})[uri, site.placed.offset] = None
+    return {scene: list(places) for scene, places in found.items()}
 
 
 def _named(scenario: Scenario) -> Iterator[Key]:

@@ -20,7 +20,7 @@ def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
         return
     used = used_names(file)
     found = [link for link in file.imports if link.problem is None and _is_unused(snapshot, file, link, used)]
-    if not found or snapshot.importers(file.document.uri):
+    if not found or snapshot.is_imported(file.document.uri):
         return
     for link in found:
         name = link.uri.rsplit("/", 1)[-1]
@@ -34,7 +34,7 @@ def _is_unused(snapshot: Snapshot, file: FileAnalysis, link: ImportLink, used: f
     scope = snapshot.scope(link.uri)
     if scope.unread:
         return False
-    for index in scope.files:
+    for index in scope.walk():
         if index.document.uri == file.document.uri:
             continue
         if not used.isdisjoint(index.names.entries) or any(placed.declaration.faults for placed in index.declarations):

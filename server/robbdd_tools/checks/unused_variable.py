@@ -36,7 +36,7 @@ def unused_variable(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnost
         return
     spoken_of, assigned = _used_by_stories(file)
     candidates = [entry for entry in candidates if _path(*entry[:2]) not in spoken_of]
-    if candidates and not snapshot.importers(uri):
+    if candidates and not snapshot.is_imported(uri):
         for template, variable, span, extent in candidates:
             has_values = _path(template, variable) in assigned
             message = f"no clause uses '{variable.name.text}': use it in a clause, or remove it"

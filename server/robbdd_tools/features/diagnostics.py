@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity, sort_key
@@ -41,12 +41,13 @@ def shape_diagnostics(
     shapes: EditorShapes | None = None,
     validation: Validation | None = None,
     is_superseded: Callable[[], bool] = lambda: False,
+    together: Collection[str] = (),
 ) -> list[Diagnostic]:
     """Return the SHACL diagnostics of the graph of a file and its imports. Each diagnostic names its own file.
 
-    A diagnostic is left out if a fast rule already reports it at the same place. ``shapes`` are added to the shapes of
-    the project. If a ``validation`` of an earlier revision is given, only the changes since then are checked. It raises
-    ``Superseded`` when ``is_superseded`` returns true.
+    Those that a fast rule reports at the same place are left out. ``shapes`` are added to the project's. A
+    ``validation`` that knows an earlier revision checks only the changes since, and raises ``Superseded`` when it is
+    outdated. All declarations of the imported files ``together`` are validated as well.
     """
     from robbdd_tools.graph.shapes.project_shapes import project_shapes
     from robbdd_tools.graph.shapes.validate import validate
@@ -56,7 +57,7 @@ def shape_diagnostics(
         return []
     project = project_shapes(uri, shapes)
     if validation is None:
-        found = validate(build_graph(snapshot, uri), project=project)
+        found = validate(build_graph(snapshot, uri, together), project=project)
     else:
         found = validation.run(snapshot, uri, project, is_superseded)
     files = dict.fromkeys(diagnostic.uri for diagnostic in found)
@@ -64,13 +65,16 @@ def shape_diagnostics(
     return without_superseded(found, reported)
 
 
-def all_diagnostics(snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-    """Return every diagnostic of a file and of its imports, sorted by file and place."""
+def all_diagnostics(snapshot: Snapshot, uri: str, together: Collection[str] = ()) -> list[Diagnostic]:
+    """Return every diagnostic of a file and its imports, sorted by file and place.
+
+    ``together``: files that import each other, among them this one, which are validated together.
+    """
     found = dict.fromkeys(fast_diagnostics(snapshot, uri))
     if snapshot.file(uri) is not None:
         for analysis in snapshot.closure(uri)[1:]:
             found |= dict.fromkeys(fast_diagnostics(snapshot, analysis.document.uri))
         for part in snapshot.joined.get(uri, ()):
             found |= dict.fromkeys(fast_diagnostics(snapshot, part))
-        found |= dict.fromkeys(shape_diagnostics(snapshot, uri))
+        found |= dict.fromkeys(shape_diagnostics(snapshot, uri, together=together))
     return sorted(found, key=lambda diagnostic: (diagnostic.uri != uri, sort_key(diagnostic)))

@@ -212,7 +212,7 @@ class RobbddServer(LanguageServer):
 
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
         """Return the request to validate a file, with the texts that its answer will refer to."""
-        texts = {index.document.uri: index.document.text for index in snapshot.scope(uri).files}
+        texts = {name: snapshot.document(name).text for name in snapshot.reachability.walk(uri)}
         return Request(next(self._orders), uri, self.project.texts(), self.settings.shapes(uri)), texts
 
     def show_results(self, uris: Sequence[str]) -> None:

@@ -105,10 +105,9 @@ class Worker:
             found += shape_diagnostics(snapshot, request.uri, request.shapes)
         except Exception as error:  # As above.
             return Answer(request.revision, request.uri, (), f"{type(error).__name__}: {error}")
-        scope = snapshot.scope(request.uri)
         named = {entry.uri for entry in found} | {place.uri for entry in found for place in entry.related}
         documents = {uri: _document(snapshot, uri) for uri in named}
-        reached = frozenset((*scope.uris, *scope.unread, *snapshot.importers(request.uri)))
+        reached = frozenset((*snapshot.reachability.walk(request.uri), *snapshot.importers(request.uri)))
         return Answer(request.revision, request.uri, tuple(dict.fromkeys(found)), "", reached, documents)
 
 

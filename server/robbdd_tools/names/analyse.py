@@ -24,10 +24,10 @@ class Definitions(Mapping[str, Definition]):
 
     def __init__(self, scope: Scope) -> None:
         self._scope = scope
-        self._names = scope.files[0].names.entries
+        self._names = scope.own.names.entries
 
     def __getitem__(self, path: str) -> Definition:
-        file = self._scope.files[0]
+        file = self._scope.own
         return self._scope.define(file, file.at(self._names[path][0]))
 
     def __contains__(self, path: object) -> bool:
@@ -54,7 +54,7 @@ def analyse(
     scope: Scope, imports: tuple[ImportLink, ...], broken: list[Diagnostic], before: Resolved | None
 ) -> Resolved:
     """Analyse a scope's own file; ``broken`` are the findings on its import lines."""
-    index = scope.files[0]
+    index = scope.own
     known = () if before is None else before.resolutions
     resolutions = resolve_file(scope, before and before.scope, known)
     made: dict[Target, Definition] = {}

@@ -8,7 +8,7 @@ finds.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.memory import kept_with_key
@@ -27,12 +27,15 @@ MAX_PATHS = 50
 _PARTS = frozenset({SymbolKind.BODY, SymbolKind.FRAME, SymbolKind.POSE, SymbolKind.JOINT})
 
 
-def paths_through(files: Sequence[FileIndex], paths: Iterable[str]) -> list[str]:
-    """Return the paths under which the targets of some qualified names may be declared, nearest first."""
+def paths_through(standing_for: Callable[[str], Iterable[str]], paths: Iterable[str]) -> list[str]:
+    """Return the paths under which the targets of some qualified names may be declared, nearest first.
+
+    ``standing_for`` returns the targets of an alias.
+    """
     waiting = list(paths)
     found: dict[str, None] = {}
     for path in waiting:
-        for other in _rewritten(files, path):
+        for other in _rewritten(standing_for, path):
             if other not in found and len(found) < MAX_PATHS:
                 found[other] = None
                 waiting.append(other)
@@ -64,18 +67,17 @@ def instances(files: Sequence[FileIndex]) -> Iterator[tuple[str, str]]:
                     yield symbol.path, symbol.target
 
 
-def _rewritten(files: Sequence[FileIndex], path: str) -> Iterator[str]:
+def _rewritten(standing_for: Callable[[str], Iterable[str]], path: str) -> Iterator[str]:
     """Replace an alias at the beginning of a path by its targets."""
     parts = path.split(".")
     for length in range(1, len(parts) + 1):
         head, rest = ".".join(parts[:length]), path[len(".".join(parts[:length])) :]
-        for file in files:
-            for target in _targets(file).get(head, ()):
-                yield target + rest
+        for target in standing_for(head):
+            yield target + rest
 
 
 @kept_with_key
-def _targets(file: FileIndex) -> Mapping[str, tuple[str, ...]]:
+def targets_in(file: FileIndex) -> Mapping[str, tuple[str, ...]]:
     """Map each alias in a file to its targets."""
     found: dict[str, tuple[str, ...]] = {}
     for placed in file.declarations:

@@ -34,8 +34,8 @@ def parts_of(snapshot: Snapshot, uri: str, placed: PlacedDeclaration, reference:
 
 
 def find_path(scope: Scope, paths: tuple[str, ...]) -> Definition | None:
-    """Return the definition of the first of ``paths`` that resolves, directly or through another name, or ``None``."""
-    for path in (*paths, *paths_through(scope.files, paths)):
+    """Return what the first of some qualified names means, by itself or through another name; ``None`` if nothing."""
+    for path in (*paths, *paths_through(scope.standing_for, paths)):
         for file, declared in scope.find(path):
             return scope.define(file, declared)
     return None
@@ -53,7 +53,7 @@ def _owners_through(scope: Scope, reference: Reference, target: Definition) -> l
     """Return the definitions of the parts before the last one if one of them resolves through another name."""
     written = reference.ref.path.split(".")
     for full in candidates(reference):
-        if target.symbol.path in paths_through(scope.files, (full,)):
+        if target.symbol.path in paths_through(scope.standing_for, (full,)):
             path = full.split(".")
             ends = range(len(path) - len(written) + 1, len(path))
             return [find_path(scope, (".".join(path[:end]),)) for end in ends]

@@ -13,13 +13,18 @@ if TYPE_CHECKING:
 
 
 def nearest(scope: Scope, reference: Reference, kinds: tuple[SymbolKind, ...]) -> tuple[tuple[str, ...], bool]:
-    """Return the names nearest to a reference, and whether there is any: as ``closest``, but also through instances."""
+    """Return the names nearest to a reference, and whether there is any: as ``closest``, but also through instances.
+
+    Of a large scope only the nearest files are searched.
+    """
     path = reference.ref.path
+    tables = tuple(file.names for file in scope.nearest)
     if reference.ref.role in ROLES:
-        for name, target in instances(scope.files):
+        for name, target in instances(scope.nearest):
             if path.startswith(f"{name}."):
-                close, _ = closest(scope.tables, kinds, (), target + path[len(name) :])
+                close, _ = closest(tables, kinds, (), target + path[len(name) :])
                 parts = tuple(name + other[len(target) :] for other in close if other.startswith(f"{target}."))
                 if parts:
                     return parts, True
-    return closest(scope.tables, kinds, reference.scopes, path)
+    close, any_known = closest(tables, kinds, reference.scopes, path)
+    return close, any_known or not scope.is_small

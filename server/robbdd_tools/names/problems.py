@@ -34,7 +34,7 @@ def unresolved(scope: Scope, resolution: Resolution, offset: int) -> Iterator[Di
 
 def repeated(scope: Scope) -> Iterator[Diagnostic]:
     """Yield a diagnostic for each repeated declaration in the scope's own file."""
-    file = scope.files[0]
+    file = scope.own
     uri = file.document.uri
     for path in file.names.repeated:
         first, *others = file.declared(path)
@@ -80,7 +80,7 @@ def _wrong_kind(scope: Scope, problem: Unresolved, offset: int) -> Diagnostic:
     found = define(scope, problem.other)
     ref = problem.reference.ref
     return Diagnostic(
-        scope.files[0].document.uri,
+        scope.own.document.uri,
         ref.span.shifted(offset),
         Severity.ERROR,
         "wrong-kind",
@@ -92,7 +92,7 @@ def _wrong_kind(scope: Scope, problem: Unresolved, offset: int) -> Diagnostic:
 
 def _unknown(scope: Scope, reference: Reference, offset: int) -> Diagnostic:
     ref = reference.ref
-    uri = scope.files[0].document.uri
+    uri = scope.own.document.uri
     span = ref.span.shifted(offset)
     close, any_known = nearest(scope, reference, ROLE_KINDS[ref.role])
     message = f"there is no {_wanted(ref.role, article=False)} '{ref.path}'"
@@ -105,7 +105,7 @@ def _unknown(scope: Scope, reference: Reference, offset: int) -> Diagnostic:
 
 
 def _renamings(scope: Scope, span: Span, names: Iterable[str]) -> tuple[Fix, ...]:
-    uri = scope.files[0].document.uri
+    uri = scope.own.document.uri
     return tuple(Fix(f"Change to '{name}'", (Edit(uri, span, name),)) for name in names)
 
 

@@ -11,11 +11,10 @@ from robbdd_tools.base.document import Document
 from robbdd_tools.base.files import Unreadable, read_text, too_large, uri_to_path
 from robbdd_tools.names.analyse import Resolved, analyse, syntax_errors
 from robbdd_tools.names.analysis import FileAnalysis, ImportLink
-from robbdd_tools.names.imports import components, missing_package, not_a_path, not_importable, reached, reached_from
+from robbdd_tools.names.imports import missing_package, not_a_path, not_importable, reached, reached_from
 from robbdd_tools.names.index import FileIndex, index_file, language_of
+from robbdd_tools.names.reachability import Reachability, Source
 from robbdd_tools.names.scope import Scope
-
-Source = FileIndex | Unreadable
 
 
 @dataclass
@@ -126,8 +125,8 @@ class Snapshot:
         scope = self.scope(uri)
         kept = self._analyses.get(uri)
         if kept is None or kept.scope != scope:
-            imports = self._imports(scope.files[0])
-            kept = analyse(scope, imports, self._on_import_lines(scope.files[0], imports), kept)
+            imports = self._imports(scope.own)
+            kept = analyse(scope, imports, self._on_import_lines(scope.own, imports), kept)
             self._analyses[uri] = kept
         self._files[uri] = kept.analysis
         return kept.analysis
@@ -145,17 +144,23 @@ class Snapshot:
     def scope(self, uri: str) -> Scope:
         """Return the files whose names a readable file can use, breadth first along its imports."""
         if uri not in self._scopes:
-            self._scopes[uri] = self._reach(uri)
+            source = self.sources[uri]
+            assert isinstance(source, FileIndex)
+            self._scopes[uri] = Scope(source, self.reachability)
         return self._scopes[uri]
 
     def closure(self, uri: str) -> tuple[FileAnalysis, ...]:
         """Return the analyses of a file and of all its imports, itself first, nearest imports first."""
-        found = (self.file(index.document.uri) for index in self.scope(uri).files)
+        found = map(self.file, self.reachability.walk(uri))
         return tuple(analysis for analysis in found if analysis is not None)
 
     def importers(self, uri: str) -> tuple[str, ...]:
         """Return the files that import a file, directly or indirectly, in alphabetical order."""
         return tuple(sorted(reached(self._users, uri)))
+
+    def is_imported(self, uri: str) -> bool:
+        """Return whether another file imports a file."""
+        return any(user != uri for user in self._users.get(uri, ()))
 
     @cached_property
     def _users(self) -> dict[str, list[str]]:
@@ -178,29 +183,14 @@ class Snapshot:
         return reached_from(self._users, self._faults)
 
     @cached_property
-    def _cycles(self) -> dict[str, int]:
-        """A component number for each file, equal for files that import each other, directly or indirectly."""
-        files = self.sources.items()
-        return components({uri: [i.uri for i in f.imports] for uri, f in files if isinstance(f, FileIndex)})
+    def reachability(self) -> Reachability:
+        """The import graph of all files."""
+        return Reachability(self.sources)
 
     def import_each_other(self, one: str, other: str) -> bool:
         """Return whether two files import each other, directly or indirectly."""
-        return one in self._cycles and self._cycles[one] == self._cycles.get(other)
-
-    def _reach(self, uri: str) -> Scope:
-        order: list[FileIndex] = []
-        unread: list[str] = []
-        waiting, seen = [uri], {uri}
-        for current in waiting:
-            source = self.sources.get(current)
-            if isinstance(source, FileIndex):
-                order.append(source)
-                fresh = [link.uri for link in source.imports if link.uri not in seen]
-                waiting += dict.fromkeys(fresh)
-                seen.update(fresh)
-            else:
-                unread.append(current)
-        return Scope(tuple(order), tuple(unread))
+        cycles = self.reachability.cycles
+        return one in cycles and cycles[one] == cycles.get(other)
 
     def _imports(self, index: FileIndex) -> tuple[ImportLink, ...]:
         return tuple(ImportLink(link.span, link.uri, self._import_problem(index, link.uri)) for link in index.imports)
@@ -244,7 +234,9 @@ class Snapshot:
         """Return the faults of a file and all its imports."""
         if uri not in self._leading_to_faults:
             return []
-        return [fault for name in self.scope(uri).uris for fault in self._faults.get(name, ())]
+        scope = self.scope(uri)
+        files = scope.uris if scope.is_small else filter(scope.reaches, self._faults)
+        return [fault for name in files for fault in self._faults.get(name, ())]
 
     def _faults_of(self, index: FileIndex) -> list[Related]:
         faults = [Related(error.uri, error.span, error.message) for error in syntax_errors(index)]

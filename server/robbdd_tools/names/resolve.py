@@ -27,9 +27,9 @@ CACHED_TABLES = 4
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A declaration: the index of its file in the scope, its path, and its index among that path's declarations."""
+    """A declaration: the URI of its file, its path, and its index among that path's declarations."""
 
-    file: int
+    file: str
     path: str
     number: int
 
@@ -120,19 +120,19 @@ class Targets(Mapping["Ref", Definition]):
     def declarations(self) -> Iterator[tuple[str, int]]:
         """Yield for each reference the document of its target's declaration and its position there."""
         for target in self._targets.values():
-            file = self._scope.files[target.file]
+            file = self._scope.file(target.file)
             yield file.document.uri, file.names.entries[target.path][target.number].declaration
 
 
 def define(scope: Scope, target: Target) -> Definition:
     """Return the definition of a target."""
-    file = scope.files[target.file]
+    file = scope.file(target.file)
     return scope.define(file, file.at(file.names.entries[target.path][target.number]))
 
 
 def resolve_file(scope: Scope, before: Scope | None, known: tuple[Resolution, ...]) -> tuple[Resolution, ...]:
     """Resolve all declarations of a scope's own file, given the resolutions in the scope ``before``."""
-    declarations = [placed.declaration for placed in scope.files[0].declarations]
+    declarations = [placed.declaration for placed in scope.own.declarations]
     kept = _still_valid(scope, before, known)
     whole = {entry.declaration: entry for entry in known if entry.parts}
     return tuple(
@@ -159,7 +159,7 @@ def _put_together(
 
 
 def _still_valid(scope: Scope, before: Scope | None, known: tuple[Resolution, ...]) -> dict[Declaration, Resolution]:
-    if before is None or before.uris != scope.uris:
+    if before is None or not known or before.uris != scope.uris:
         return {}
     changed: set[str] = set()
     for old, new in zip(before.tables, scope.tables, strict=True):
@@ -175,26 +175,25 @@ def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
     unresolved: list[Unresolved] = []
     looked_up: set[str] = set()
     through_others = False
-    tables = scope.tables
-    known = _known_lookups(tables)
+    known: _Lookups = _known_lookups(scope.tables) if scope.is_small else {}
     for reference in declaration.references:
         checkpoint()
         ref = reference.ref
         key = (ref.role, ref.path, reference.scopes)
         if key not in known:
             paths = candidates(reference)
-            known[key] = (paths, *_lookup(tables, ref.role, paths))
+            known[key] = (paths, *_lookup(scope, ref.role, paths))
         paths, found, other = known[key]
         looked_up.update(paths)
         if found is None and ref.role in ELEMENT_ROLES:
             owners = {path.rpartition(".")[0] for path in paths}
             looked_up |= owners
-            if any(SymbolKind.SCENE in table.kinds.get(owner, ()) for owner in owners for table in tables):
+            if any(SymbolKind.SCENE in file.names.kinds[owner] for owner in owners for file in scope.declaring(owner)):
                 through_others = True
                 found, other = _lookup_in_scene(scope, ref.role, paths)
         elif found is None and ref.role in ROLES:
             through_others = True
-            found, other = _lookup(tables, ref.role, (*paths, *paths_through(scope.files, paths)))
+            found, other = _lookup(scope, ref.role, (*paths, *paths_through(scope.standing_for, paths)))
         if found is not None:
             targets[ref] = found
         else:
@@ -219,20 +218,21 @@ def _known_lookups(_: tuple[NameTable, ...]) -> _Lookups:
 
 def _lookup_in_scene(scope: Scope, role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
     """Return the element with a name in a scene; none if several have it."""
-    found = [_lookup(scope.tables, role, (path,)) for path in paths_through(scope.files, paths)]
+    found = [_lookup(scope, role, (path,)) for path in paths_through(scope.standing_for, paths)]
     fitting = {target for target, _ in found if target is not None}
     others = (other for _, other in found if other is not None)
     return (fitting.pop(), None) if len(fitting) == 1 else (None, None if fitting else next(others, None))
 
 
-def _lookup(tables: tuple[NameTable, ...], role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
+def _lookup(scope: Scope, role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
     """Return the nearest declaration of a matching kind, else the nearest of another kind."""
     kinds = ROLE_KINDS[role]
     other: Target | None = None
     for path in paths:
-        for position, table in enumerate(tables):
-            for number, kind in enumerate(table.kinds.get(path, ())):
+        for file in scope.declaring(path):
+            for number, kind in enumerate(file.names.kinds[path]):
+                target = Target(file.document.uri, path, number)
                 if kind in kinds:
-                    return Target(position, path, number), None
-                other = other or Target(position, path, number)
+                    return target, None
+                other = other or target
     return None, other

@@ -2,32 +2,75 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cached_property
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from robbdd_tools.names.definition import Definition
-from robbdd_tools.names.indirect_names import instance_parts
+from robbdd_tools.names.index import FileIndex
+from robbdd_tools.names.indirect_names import instance_parts, targets_in
 from robbdd_tools.names.namespaces import namespace_of
 from robbdd_tools.names.roles import ROLE_KINDS
 from robbdd_tools.syntax.declaration import SymbolKind
 from robbdd_tools.syntax.tree import Namespace
 
 if TYPE_CHECKING:
-    from robbdd_tools.names.index import Declared, FileIndex
+    from robbdd_tools.names.index import Declared
     from robbdd_tools.names.name_table import Entry, NameTable
+    from robbdd_tools.names.reachability import Reachability
     from robbdd_tools.syntax.declaration import Symbol
 
 
-@dataclass(frozen=True)
+MAX_SEARCHED = 64
+"""Maximum number of files that are searched one by one; larger scopes use an index of names."""
+
+
 class Scope:
-    """The files whose names a file can use: itself first, then its imports in order of distance.
+    """The files whose names a file can use: itself first, then its imports in order of nearness (breadth first)."""
 
-    ``unread`` are the URIs of imports that could not be read.
-    """
+    def __init__(self, own: FileIndex, reachability: Reachability) -> None:
+        self.own = own
+        self._reachability = reachability
 
-    files: tuple[FileIndex, ...]
-    unread: tuple[str, ...]
+    def __eq__(self, other: object) -> bool:
+        """Return whether two scopes have the same files in the same order."""
+        if self is other or not isinstance(other, Scope):
+            return self is other
+        return self.own is other.own and self.files == other.files and self.unread == other.unread
+
+    def walk(self) -> Iterator[FileIndex]:
+        """Yield the files, nearest first; as many as somebody takes are looked for."""
+        sources = self._reachability.sources
+        for uri in self._reachability.walk(self.own.document.uri):
+            source = sources.get(uri)
+            if isinstance(source, FileIndex):
+                yield source
+
+    @cached_property
+    def nearest(self) -> tuple[FileIndex, ...]:
+        """The first files, ``MAX_SEARCHED`` at most."""
+        return tuple(islice(self.walk(), MAX_SEARCHED))
+
+    @cached_property
+    def is_small(self) -> bool:
+        """Whether ``nearest`` are all files."""
+        cycle = self._reachability.cycle(self.own.document.uri)
+        return len(cycle) <= MAX_SEARCHED and next(islice(self.walk(), MAX_SEARCHED, None), None) is None
+
+    @cached_property
+    def files(self) -> tuple[FileIndex, ...]:
+        """All files. In a large cycle of imports each file has as many: ask for names instead."""
+        return self.nearest if self.is_small else tuple(self.walk())
+
+    @cached_property
+    def unread(self) -> tuple[str, ...]:
+        """The URIs of imports that could not be read."""
+        return self._reachability.unread(self.own.document.uri)
+
+    def reaches(self, uri: str) -> bool:
+        """Return whether a file is among those of the scope, read or not."""
+        return self._reachability.reaches(self.own.document.uri, uri)
 
     @property
     def uris(self) -> list[str]:
@@ -39,11 +82,44 @@ class Scope:
         """The files' name tables: identical as long as no name is added, removed or reordered."""
         return tuple(file.names for file in self.files)
 
+    def file(self, uri: str) -> FileIndex:
+        """Return a file of the scope."""
+        found = self._reachability.sources[uri]
+        assert isinstance(found, FileIndex)
+        return found
+
+    def declaring(self, path: str, kind: SymbolKind | None = None) -> Iterator[FileIndex]:
+        """Yield the files that declare a qualified name, as a certain kind where one is given, nearest first."""
+        if kind is None:
+            return self._having(lambda file: path in file.names.entries, lambda reach: reach.declaring.get(path, ()))
+        return self._having(
+            lambda file: kind in file.names.kinds.get(path, ()), lambda reach: reach.declaring_as.get((path, kind), ())
+        )
+
+    def standing_for(self, name: str) -> Iterator[str]:
+        """Yield the targets of an alias, nearest first; see ``indirect_names``."""
+        files = self._having(lambda file: name in targets_in(file), lambda reach: reach.standing_for.get(name, ()))
+        return (target for file in files for target in targets_in(file)[name])
+
+    def _having(
+        self, has: Callable[[FileIndex], bool], indexed: Callable[[Reachability], Sequence[str]]
+    ) -> Iterator[FileIndex]:
+        """Yield the files that ``has`` accepts, nearest first; a large scope takes them from the index."""
+        if self.is_small:
+            yield from filter(has, self.nearest)
+            return
+        is_own, uris = has(self.own), indexed(self._reachability)
+        if is_own:
+            yield self.own
+        if len(uris) - is_own > 1:
+            yield from filter(has, islice(self.walk(), 1, None))
+        elif len(uris) > is_own:
+            yield from (self.file(uri) for uri in uris if uri != self.own.document.uri and self.reaches(uri))
+
     def find(self, path: str) -> Iterator[tuple[FileIndex, Declared]]:
         """Yield the declarations of a qualified name, nearest first."""
-        for file in self.files:
-            if path in file.names.entries:
-                yield from ((file, declared) for declared in file.declared(path))
+        for file in self.declaring(path):
+            yield from ((file, declared) for declared in file.declared(path))
 
     def define(self, file: FileIndex, declared: Declared) -> Definition:
         """Return a declaration of a file in this scope as a definition."""
@@ -76,8 +152,8 @@ class Scope:
         """Return the IRI prefix of a file's declarations in a namespace, ``None`` if unknown."""
         if namespace is None:
             return None
-        # A namespace is looked up in the declaration's own file first, then in the files that it imports.
-        for other in (file, *(other for other in self.files if other is not file)):
+        # A declaration's namespace is looked up from its own file; the nearest one outside is a file it imports.
+        for other in (file, *(other for other in self.declaring(namespace) if other is not file)):
             for entry in other.names.entries.get(namespace, ()):
                 root = other.declarations[entry.declaration].declaration.tree
                 if isinstance(root, Namespace):

@@ -109,8 +109,15 @@ class Model:
     def diagnostics(self) -> tuple[Finding, ...]:
         """All findings, without duplicates, ordered by file and place."""
         found: dict[Finding, None] = {}
+        known: set[str] = set()
         for file in self.files:
-            found |= dict.fromkeys(findings(file.snapshot, file.diagnostics))
+            cycle = file.snapshot.reachability.cycle(file.uri)
+            if len(cycle) == 1 or len(self.files) == 1:
+                found |= dict.fromkeys(findings(file.snapshot, file.diagnostics))
+            elif file.uri not in known:
+                # Each of these files imports all others: one validation has the findings of them all.
+                known.update(cycle)
+                found |= dict.fromkeys(findings(file.snapshot, all_diagnostics(file.snapshot, file.uri, cycle)))
         return tuple(found)
 
     @property

@@ -6,7 +6,7 @@ User input never raises an error. A broken declaration, an unresolved name or an
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from robbdd_tools.graph.rdf.prefixes import bind_prefixes, prefix_for
@@ -46,15 +46,16 @@ TEMPLATE_PARTS = ("-scene", "-scenario", "-scenario-given", "-scenario-when", "-
 SCENARIO_PARTS = {"given": "bdd:Given", "when": "bdd:When", "then": "bdd:Then"}
 
 
-def build_graph(snapshot: Snapshot, uri: str) -> BuiltGraph:
-    """Return the graph of a file in a snapshot. It is empty if the file cannot be read.
+def build_graph(snapshot: Snapshot, uri: str, together: Collection[str] = ()) -> BuiltGraph:
+    """Return the graph of a file in a snapshot (empty if the file cannot be read).
 
-    If the file has the extension of a graph format, it is parsed as a graph.
+    A file with a graph format's extension is parsed as a graph. Of the imported files ``together``, all declarations
+    are included.
     """
     file = snapshot.file(uri) if graph_format(uri) else None
     if file is not None:
         return read_graph_file(file.document, [snapshot.document(other) for other in snapshot.joined.get(uri, ())])
-    uses = Uses(snapshot.closure(uri))
+    uses = Uses(snapshot.closure(uri), together)
     reached = reachable_declarations(uses)
     return build_declarations(uri, uses, reached, identities(snapshot, reached))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -55,15 +55,16 @@ class Reached:
 
 
 class Uses:
-    """References between the declarations of a file and its imports.
+    """References between the declarations of a file and its imports (``closure``, the file first).
 
-    ``closure`` are these files, the file itself first.
+    The declarations of the first file, and those of the files ``together``, are its own.
     """
 
-    def __init__(self, closure: Sequence[FileAnalysis]) -> None:
+    def __init__(self, closure: Sequence[FileAnalysis], together: Collection[str] = ()) -> None:
+        own = {closure[0].document.uri, *together} if closure else set[str]()
         self._files = {
             file.document.uri: tuple(
-                Reached(file, placed, file is closure[0], (file.document.uri, placed.offset))
+                Reached(file, placed, file.document.uri in own, (file.document.uri, placed.offset))
                 for placed in file.declarations
             )
             for file in reversed(closure)

@@ -80,9 +80,9 @@ def identities(snapshot: Snapshot, reached: Sequence[Reached]) -> Identities:
         scope = snapshot.scope(entry.uri)
         own: dict[str | None, None] = {}
         for named in _named(entry.placed.declaration):
-            namespace = namespace_of(scope.files[0], named.symbol)
+            namespace = namespace_of(scope.own, named.symbol)
             if (entry.uri, namespace) not in iris:
-                iris[entry.uri, namespace] = scope.namespace_iri(scope.files[0], namespace)
+                iris[entry.uri, namespace] = scope.namespace_iri(scope.own, namespace)
             start = iris[entry.uri, namespace]
             own[start] = None
             if start is None:

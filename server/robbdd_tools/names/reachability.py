@@ -1,0 +1,117 @@
+"""The import graph of a snapshot and an index of the names that its files declare, computed once for all files.
+
+Files that import each other reach the same files, so the files that a file reaches depend on its strongly connected
+component only: one bit for each component.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+
+from robbdd_tools.base.files import Unreadable
+from robbdd_tools.names.imports import components
+from robbdd_tools.names.index import FileIndex
+from robbdd_tools.names.indirect_names import targets_in
+from robbdd_tools.syntax.declaration import SymbolKind
+
+Source = FileIndex | Unreadable
+
+
+class Reachability:
+    """The imports among the files of one snapshot; all of it is computed when it is first asked for."""
+
+    def __init__(self, sources: Mapping[str, Source]) -> None:
+        self.sources = sources
+
+    @cached_property
+    def cycles(self) -> Mapping[str, int]:
+        """A number for each file, equal for files that import each other, directly or not."""
+        return components({uri: _imports(source) for uri, source in self.sources.items()})
+
+    def cycle(self, uri: str) -> tuple[str, ...]:
+        """Return a file and those that import it and are imported by it, directly or not, in alphabetical order."""
+        return self.members[self.cycles[uri]] if uri in self.cycles else (uri,)
+
+    @cached_property
+    def members(self) -> Mapping[int, tuple[str, ...]]:
+        """The files of each number of ``cycles``, in alphabetical order."""
+        found: dict[int, list[str]] = {}
+        for uri, number in self.cycles.items():
+            found.setdefault(number, []).append(uri)
+        return {number: tuple(sorted(uris)) for number, uris in found.items()}
+
+    @cached_property
+    def _reached(self) -> Mapping[int, int]:
+        """For each number of ``cycles`` the components that it reaches, one bit each."""
+        bits = {number: 1 << position for position, number in enumerate(self.members)}
+        found: dict[int, int] = {}
+        # Components are found before those that lead to them.
+        for number, uris in self.members.items():
+            mask = bits[number]
+            for uri in uris:
+                for other in _imports(self.sources[uri]):
+                    if other in self.cycles and self.cycles[other] != number:
+                        mask |= found[self.cycles[other]]
+            found[number] = mask
+        return found
+
+    @cached_property
+    def _bits(self) -> Mapping[int, int]:
+        return {number: position for position, number in enumerate(self.members)}
+
+    def reaches(self, one: str, other: str) -> bool:
+        """Return whether a file is another one or imports it, directly or not."""
+        if one not in self.cycles or other not in self.cycles:
+            return one == other
+        return bool(self._reached[self.cycles[one]] >> self._bits[self.cycles[other]] & 1)
+
+    def walk(self, uri: str) -> Iterator[str]:
+        """Yield a file and those that it imports, directly or not, breadth first."""
+        waiting, seen = [uri], {uri}
+        for current in waiting:
+            yield current
+            fresh = [other for other in _imports(self.sources.get(current)) if other not in seen]
+            waiting += dict.fromkeys(fresh)
+            seen.update(fresh)
+
+    def unread(self, uri: str) -> tuple[str, ...]:
+        """Return the imports of a file, directly or not, that cannot be read."""
+        return tuple(other for other in self._unread if self.reaches(uri, other))
+
+    @cached_property
+    def _unread(self) -> tuple[str, ...]:
+        return tuple(uri for uri, source in self.sources.items() if not isinstance(source, FileIndex))
+
+    @cached_property
+    def declaring(self) -> Mapping[str, list[str]]:
+        """The files that declare a qualified name."""
+        found: dict[str, list[str]] = {}
+        for uri, source in self.sources.items():
+            for path in source.names.entries if isinstance(source, FileIndex) else ():
+                found.setdefault(path, []).append(uri)
+        return found
+
+    @cached_property
+    def declaring_as(self) -> Mapping[tuple[str, SymbolKind], list[str]]:
+        """The files that declare a qualified name as a certain kind."""
+        found: dict[tuple[str, SymbolKind], list[str]] = {}
+        for path, uris in self.declaring.items():
+            for uri in uris:
+                source = self.sources[uri]
+                for kind in dict.fromkeys(source.names.kinds[path]) if isinstance(source, FileIndex) else ():
+                    found.setdefault((path, kind), []).append(uri)
+        return found
+
+    @cached_property
+    def standing_for(self) -> Mapping[str, list[str]]:
+        """The files in which a name stands for others, see ``indirect_names``."""
+        found: dict[str, list[str]] = {}
+        for uri, source in self.sources.items():
+            for name in targets_in(source) if isinstance(source, FileIndex) else ():
+                found.setdefault(name, []).append(uri)
+        return found
+
+
+def _imports(source: Source | None) -> list[str]:
+    return [link.uri for link in source.imports] if isinstance(source, FileIndex) else []
