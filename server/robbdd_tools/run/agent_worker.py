@@ -17,6 +17,11 @@ GRACE = 0.5
 """Seconds that a process has after a deadline to dump its stack before it is killed."""
 
 
+def grace(limit: float) -> float:
+    """Return the seconds that a process has beyond a time limit (s), of which they are a tenth at most."""
+    return min(GRACE, limit / 10)
+
+
 @dataclass(slots=True, eq=False)
 class AgentWorker:
     """An agent process, its current scenario, and the deadline for starting or finishing that scenario.
@@ -42,7 +47,7 @@ class AgentWorker:
         self.index = index = self.following.popleft()
         self.started = self.failed = False
         self.judged = set()
-        self.deadline = monotonic() + STARTUP + GRACE
+        self.deadline = monotonic() + STARTUP + grace(STARTUP)
         self.agent.execute(index)
 
     def release(self) -> None:

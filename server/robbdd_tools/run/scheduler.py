@@ -37,7 +37,7 @@ from robbdd_tools.protocol.messages import (
 from robbdd_tools.protocol.run_folder import STARTUP
 from robbdd_tools.protocol.specs import Manifest
 from robbdd_tools.run.agent_log import LIMIT
-from robbdd_tools.run.agent_worker import GRACE, AgentWorker
+from robbdd_tools.run.agent_worker import AgentWorker, grace
 from robbdd_tools.run.launch import Agent, stop
 from robbdd_tools.run.message_check import misfit
 from robbdd_tools.run.message_order import OrderedMessages
@@ -241,7 +241,7 @@ class Scheduler:
             case ScenarioStarted():
                 self._wasted = 0
                 if not worker.started:
-                    worker.started, worker.deadline = True, monotonic() + self._limit + GRACE
+                    worker.started, worker.deadline = True, monotonic() + self._limit + grace(self._limit)
                 yield from self._pass_on(worker, message)
             case UserCodeFailed(None, fault):
                 # Each process loads the code that all scenarios share.
