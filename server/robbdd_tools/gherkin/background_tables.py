@@ -12,7 +12,7 @@ from robbdd_tools.graph.acceptance_model import Cell, Iri, SceneModel
 
 @dataclass(frozen=True, slots=True)
 class SceneTable:
-    """A scene step with its one-column table of names."""
+    """A Gherkin step that sets up a part of the scene, with its one-column table of element names."""
 
     title: str
     names: tuple[str, ...]
@@ -29,7 +29,7 @@ def scene_tables(writer: StepWriter, scene: SceneModel) -> tuple[SceneTable, ...
 
 
 def variable_table(writer: StepWriter, elements: Iterable[Iri]) -> tuple[SceneTable, ...]:
-    """Return the table of the elements that a scenario's values add to its scene; empty if there are none."""
+    """Return the table of the elements that the values of a scenario add to its scene; empty if there are none."""
     names = tuple(elements)
     return (_table(writer, "variable scene elements", names),) if names else ()
 
@@ -40,12 +40,15 @@ def members(scene: SceneModel) -> frozenset[Iri]:
 
 
 def extra_elements(cells: Iterable[Cell], kinds: Mapping[Iri, str], present: Collection[Iri]) -> tuple[Iri, ...]:
-    """Return the scene elements among some values that are not in the scene yet."""
+    """Return the scene elements among some values that are not yet in the scene.
+
+    ``kinds`` has all scene elements, and ``present`` are those in the scene.
+    """
     return tuple(element for element in elements_of(cells) if element in kinds and element not in present)
 
 
 def elements_of(cells: Iterable[Cell]) -> tuple[Iri, ...]:
-    """Return the IRIs among a scenario's values, including those in sets, each once, in order."""
+    """Return the IRIs among the values of a scenario, including those in sets, each IRI once and in order."""
     found: dict[Iri, None] = {}
     for cell in cells:
         for value in cell if isinstance(cell, tuple) else (cell,):

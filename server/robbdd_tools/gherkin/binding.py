@@ -36,12 +36,15 @@ Values = Mapping[Iri, Value]
 
 
 class UnknownElements(Exception):
-    """A clause needs the elements of a set that a Scenario Outline leaves open."""
+    """A clause needs the elements of a set, but the value of the set varies in the Scenario Outline."""
 
 
 @dataclass(frozen=True, slots=True)
 class Binder:
-    """Binds the clauses of one model to values. Clauses with IRIs in ``by_code`` also carry their values by name."""
+    """Binds the clauses of one model to values.
+
+    A clause whose IRI is in ``by_code`` also contains its values by name.
+    """
 
     model: AcceptanceModel
     catalog: Catalog
@@ -49,14 +52,14 @@ class Binder:
     _curies: dict[str, str] = field(default_factory=dict[str, str])
 
     def curie(self, iri: str) -> str:
-        """Return the short form of an IRI (cached)."""
+        """Return the CURIE of an IRI. The result is cached."""
         found = self._curies.get(iri)
         if found is None:
             found = self._curies[iri] = self.model.curie(iri)
         return found
 
     def bind(self, clause: Clause, values: Values) -> stated.Statement:
-        """Return the statement of a clause."""
+        """Return the statement of a clause, in which the values replace the variables."""
         match clause:
             case BehaviourClause():
                 behaviour = self.catalog.behaviours[clause.behaviour]
@@ -70,7 +73,7 @@ class Binder:
                 return self.clause(clause, values)
 
     def clause(self, clause: Clause, values: Values) -> stated.Clause:
-        """Return the statement of a clause other than a When clause."""
+        """Return the statement of a clause that is not a ``When`` clause."""
         match clause:
             case Fluent():
                 predicate = self.catalog.predicates[clause.predicate]
@@ -99,7 +102,10 @@ class Binder:
                 raise TypeError("a When clause cannot be part of a group")
 
     def elements(self, in_set: Iri, values: Values) -> tuple[Cell, ...]:
-        """Return the elements of a set: the value of a variable, or a constant set; raises ``UnknownElements``."""
+        """Return the elements of a set, which is the value of a variable or a constant set.
+
+        Raises ``UnknownElements``.
+        """
         match values.get(in_set, self.model.sets.get(in_set, ())):
             case stated.AnyOf(elements):
                 return elements
@@ -111,15 +117,16 @@ class Binder:
                 return (one,)
 
     def some(self, exists: Exists, values: Values) -> Values:
-        """Return values in which a quantifier's variable is any element of its set."""
+        """Return values in which any element of the quantifier's set is assigned to its variable."""
         elements = tuple(self._plain(element) for element in self.elements(exists.in_set, values))
         return {**values, exists.variable: stated.AnyOf(elements)}
 
     def is_one_choice(self, exists: Exists, values: Values) -> bool:
-        """Return whether *any of* in one place expresses the quantifier: otherwise each choice is written out and
-        joined by *or*.
+        """Return whether *any of* in a single place can express a quantifier.
 
-        The same element must satisfy all clauses, and "some element is not there" differs from "none of them is there".
+        This is possible if the variable occurs only once. Otherwise each choice must be written out and joined by *or*,
+        because the same element must satisfy all clauses, and because "some element is not there" differs from "none of
+        them is there".
         """
         if not self.elements(exists.in_set, values):
             return True
@@ -127,7 +134,7 @@ class Binder:
         return not about or (len(about) == 1 and _mentions_once(about[0], exists.variable))
 
     def filler(self, value: Value) -> stated.Filler:
-        """Return a value as the filler of a slot."""
+        """Return a value in the form in which it fills the slot of a phrase."""
         match value:
             case Iri():
                 return self.curie(value)
@@ -143,7 +150,7 @@ class Binder:
         return found[0] if len(found) == 1 else stated.Junction("or" if operator == "or" else "and", found)
 
     def _any_of(self, place: Iri, values: Values) -> Value:
-        """Return the value of a place; from a set, a behaviour chooses any element."""
+        """Return the value of a place. If the value is a set, a behaviour may choose any of its elements."""
         value = values.get(place, self.model.sets.get(place, place))
         return stated.AnyOf(tuple(map(self._plain, value))) if isinstance(value, tuple) else value
 
@@ -175,7 +182,7 @@ class Binder:
                 return After(self.curie(event), horizon)
 
     def _named(self, clause: Fluent | TextFluent | TextClause, values: Values) -> dict[str, object]:
-        """Return by name the values of a clause's variables and slots."""
+        """Return the values of a clause's variables and slots, by name."""
         if clause.iri not in self.by_code:
             return {}
         slots: Mapping[str, Iri | str] = {} if isinstance(clause, TextClause) else clause.arguments

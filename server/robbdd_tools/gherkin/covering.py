@@ -26,12 +26,16 @@ Combined = tuple[tuple[int, int], ...]
 
 
 class TooManyCombinations(Exception):
-    """The variables have too many values for their combinations to be listed."""
+    """The combinations of values cannot be listed, because the variables have too many values."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cover:
-    """Indices of scenarios (from 0, ascending); the number of possible combinations, and of covered ones."""
+    """A covering array.
+
+    ``indices`` are the indices of its scenarios (from 0, ascending). ``possible`` is the number of combinations that
+    exist, and ``covered`` is the number of those that the scenarios contain.
+    """
 
     indices: tuple[int, ...]
     covered: int
@@ -39,9 +43,9 @@ class Cover:
 
 
 def cover(variation: Product | Table, strength: int, allowed: Condition | None = None) -> Cover:
-    """Choose scenarios that cover all combinations of ``strength`` variables that occur in an allowed scenario.
+    """Choose scenarios that together contain all combinations of values of ``strength`` variables.
 
-    Raises ``TooManyCombinations``.
+    Only allowed scenarios, and combinations that occur in them, are considered. Raises ``TooManyCombinations``.
     """
     strength = min(strength, len(variation.variables))
     if isinstance(variation, Product):
@@ -68,7 +72,7 @@ def cover(variation: Product | Table, strength: int, allowed: Condition | None =
 
 @dataclass(frozen=True, slots=True)
 class _Space:
-    """The scenarios of a variation as rows of indices. ``numbers`` maps a table's rows to their indices."""
+    """The scenarios of a variation as rows of indices. ``numbers`` maps the rows of a table to their indices."""
 
     columns: tuple[tuple[Cell, ...], ...]
     numbers: dict[Row, int] | None

@@ -1,4 +1,4 @@
-"""Features: one per user story, one scenario per set of values, with a map from lines to clauses."""
+"""Write features: one for each user story, one scenario for each set of values, and a map from lines to clauses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Numbered = tuple[int, Binding]
 
 @dataclass(frozen=True, slots=True)
 class StoryHeader:
-    """The text above the scenarios. ``background`` holds the scene tables that all scenarios share."""
+    """The text above the scenarios of a story. ``background`` holds the scene tables that all scenarios share."""
 
     name: str
     iri: Iri
@@ -34,10 +34,10 @@ class StoryHeader:
 
 @dataclass(frozen=True, slots=True)
 class VariantHeader:
-    """The data shared by the scenarios of a variant.
+    """The data that the scenarios of a variant share.
 
-    ``columns`` names its variables; ``tables`` are the scene tables that the background lacks. ``outline`` contains all
-    scenarios at once, ``None`` if that is not possible.
+    ``columns`` are the names of its variables. ``tables`` are the scene tables that are not in the background.
+    ``outline`` expresses all scenarios at once; ``None`` if this is not possible.
     """
 
     name: str
@@ -51,10 +51,13 @@ class VariantHeader:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioText:
-    """One scenario: ``number`` counts from 1 within the variation, ``line`` is that of its heading in the feature.
+    """The text of one scenario.
 
-    ``cells`` are the values as words, in the order of the variant's columns. ``lines`` are the feature lines of
-    ``steps``, 0 for a step that the template omits. ``tables`` are the scene tables that the background lacks.
+    - ``number``: the number of the scenario in the variation (from 1).
+    - ``line``: the line of its heading in the feature.
+    - ``cells``: its values as words, in the order of the variant's columns.
+    - ``lines``: the feature lines of ``steps``; 0 for a step that the template omits.
+    - ``tables``: its scene tables that are not in the background.
     """
 
     name: str
@@ -71,7 +74,7 @@ class ScenarioText:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioData:
-    """The fields of a ``ScenarioText`` that templates get."""
+    """The fields of a ``ScenarioText`` that templates can use."""
 
     name: str
     number: int
@@ -89,7 +92,7 @@ class ScenarioData:
 
 @dataclass(frozen=True, slots=True)
 class FeaturePiece:
-    """A part of a feature's text: its head, the head of a variant, one scenario, or its end."""
+    """A part of a feature's text: the head of the story, the head of a variant, one scenario, or the end."""
 
     text: str
     scenario: ScenarioText | None
@@ -106,9 +109,9 @@ def feature_pieces(
     scenarios: Callable[[Variant], Iterable[Numbered]] = every_scenario,
     sheet: Sheet | None = None,
 ) -> Iterator[FeaturePiece]:
-    """Yield the feature of a story piece by piece, in written order, in constant memory.
+    """Yield the text of a story's feature piece by piece, in written order. Memory use does not grow with its size.
 
-    ``scenarios`` selects the scenarios of each variant; ``sheet`` is the template, by default ours. Raises
+    ``scenarios`` selects the scenarios of each variant. ``sheet`` is the template, by default the built-in one. Raises
     ``TemplateProblem``.
     """
     writer = _FeatureWriter(StepWriter(model, load_catalog()), sheet or our_sheet(), story)
@@ -116,9 +119,9 @@ def feature_pieces(
 
 
 def feature_file_name(model: AcceptanceModel, story: Story) -> str:
-    """Return the name of a story's feature file, valid on every file system.
+    """Return the name of a story's feature file. It is valid on every file system.
 
-    It is the story's name; stories with the same name in several namespaces are numbered.
+    The name is that of the story. Stories with the same name in several namespaces are numbered.
     """
     name = _file_stem(model, story.iri)
     same = [other.iri for other in model.stories if _file_stem(model, other.iri).casefold() == name.casefold()]
@@ -130,7 +133,7 @@ def _file_stem(model: AcceptanceModel, iri: Iri) -> str:
 
 
 class _FeatureWriter:
-    """Counts the lines of one feature."""
+    """Writes one feature and counts its lines."""
 
     def __init__(self, writer: StepWriter, sheet: Sheet, story: Story) -> None:
         self._writer = writer
@@ -176,7 +179,7 @@ class _FeatureWriter:
 
 
 class _VariantWriter:
-    """Makes the scenarios of one variant; with ``outlined`` also its outline."""
+    """Writes the scenarios of one variant and, if ``outlined`` is true, its outline."""
 
     def __init__(
         self, writer: StepWriter, variant: Variant, background: tuple[SceneTable, ...], outlined: bool
@@ -223,7 +226,10 @@ class _VariantWriter:
 
 
 def _in_order(variant: Variant) -> tuple[Clause, ...]:
-    """Order the clauses by role (given, when, then), in each role the template's before the variant's."""
+    """Return the clauses of a variant in the order of their roles: given, when, then.
+
+    Within a role, the clauses of the template are before those of the variant.
+    """
     clauses = (*variant.template.clauses, *variant.clauses)
     return tuple(clause for role in ("given", "when", "then") for clause in clauses if _role(clause) == role)
 
@@ -234,9 +240,9 @@ def _role(clause: Clause) -> str:
 
 
 def _located(scenario: ScenarioText, rendered: str, first_line: int, shared: tuple[int, ...]) -> ScenarioText:
-    """Find the lines of a scenario's heading and steps in its rendered text.
+    """Return a scenario with the lines of its heading and its steps in the rendered text.
 
-    A scenario without steps of its own, a row of an outline, has those of the outline (``shared``).
+    A row of an outline has no steps of its own, so it gets the lines of the outline's steps (``shared``).
     """
     heading = 0
     for number, text_line in enumerate(rendered.split("\n"), start=first_line):
@@ -251,7 +257,7 @@ def _located(scenario: ScenarioText, rendered: str, first_line: int, shared: tup
 
 
 def _places(rendered: str, steps: tuple[Step, ...], first_line: int) -> tuple[int, ...]:
-    """Return the line of each step, 0 for a missing one; steps are in order."""
+    """Return the line of each step in the rendered text; 0 for a missing step. Steps are searched in order."""
     found: list[int] = []
     lines = enumerate(rendered.split("\n"), start=first_line)
     written = [(number, text_line.strip()) for number, text_line in lines]

@@ -1,4 +1,4 @@
-"""Feature files, each with a map from its lines to clauses, written incrementally."""
+"""Write feature files incrementally, each with a map from its lines to clauses."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ MAP_ENDING = ".map.json"
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Source range of a clause: a file's name and (line, column) of start and end, counted from 1."""
+    """The source range of a clause.
+
+    It has the name of the file, and (line, column) of the start and of the end, counted from 1.
+    """
 
     file: str
     start: tuple[int, int]
@@ -35,7 +38,10 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class FeaturePlan:
-    """A model's stories, the scenarios of each variant, the template; ``origins`` where known."""
+    """What to write: the stories of a model, the scenarios of each variant, and the template.
+
+    ``origins`` are the source ranges of clauses, if known.
+    """
 
     model: AcceptanceModel
     stories: tuple[Story, ...]
@@ -54,12 +60,12 @@ class WrittenScenario:
 
 
 def whole_plan(model: AcceptanceModel, origins: Mapping[str, Origin] | None = None) -> FeaturePlan:
-    """Return the plan that writes everything with our default template."""
+    """Return the plan that writes all scenarios with the built-in template."""
     return FeaturePlan(model, model.stories, every_scenario, our_sheet(), origins or {})
 
 
 def clause_origins(built: BuiltGraph, snapshot: Snapshot, model: AcceptanceModel) -> dict[str, Origin]:
-    """Return the source ranges of a model's clauses; clauses without source text are left out."""
+    """Return the source range of each clause of a model. Clauses without source text are left out."""
     found: dict[str, Origin] = {}
     documents: dict[str, Document | None] = {}
     for story in model.stories:
@@ -80,18 +86,19 @@ def clause_origins(built: BuiltGraph, snapshot: Snapshot, model: AcceptanceModel
 
 
 def write_features(plan: FeaturePlan, folder: Path) -> list[Path]:
-    """Write a feature and its line map per story; returns the features' paths. Raises the same as
-    ``written_scenarios``."""
+    """Write a feature and its line map for each story, and return the paths of the features.
+
+    Raises the same errors as ``written_scenarios``.
+    """
     for _ in written_scenarios(plan, folder):
         pass
     return [folder / feature_file_name(plan.model, story) for story in plan.stories]
 
 
 def written_scenarios(plan: FeaturePlan, folder: Path) -> Iterator[WrittenScenario]:
-    """Write a feature and its line map per story into ``folder`` (created if missing); yield each scenario once
-    written.
+    """Write a feature and its line map for each story, and yield each scenario after it is written.
 
-    Raises ``OSError``, and ``TemplateProblem`` if the template fails.
+    ``folder`` is created if it is missing. Raises ``OSError``, and ``TemplateProblem`` if the template fails.
     """
     folder.mkdir(parents=True, exist_ok=True)
     for story in plan.stories:
@@ -112,7 +119,7 @@ def only(story: Story, wanted: Callable[[Iri], bool]) -> Story:
 
 
 class _LineMap:
-    """Writes a line map as JSON while its feature is written; see docs/gherkin.md."""
+    """Writes a line map as JSON while the feature is written (see ``docs/gherkin.md``)."""
 
     def __init__(self, plan: FeaturePlan, story: Story, feature: str, file: TextIO) -> None:
         self._model = plan.model

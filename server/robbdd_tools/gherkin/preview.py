@@ -25,7 +25,7 @@ MAX_SHOWN = 50
 
 @dataclass(frozen=True, slots=True)
 class PreviewLine:
-    """A line of a preview, from 0, and its source: a clause, a variant, or a row of its table."""
+    """A line of a preview (from 0) and its source, which is a clause, a variant, or a row of the variant's table."""
 
     line: int
     iri: str
@@ -34,7 +34,7 @@ class PreviewLine:
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """Concatenated features, the number of scenarios shown, and their total number."""
+    """The text of all previewed features, the number of scenarios in it, and the number of all scenarios."""
 
     text: str
     lines: tuple[PreviewLine, ...]
@@ -43,7 +43,10 @@ class Preview:
 
 
 def preview(snapshot: Snapshot, uri: str, variant: str | None = None, most: int = MAX_SHOWN) -> Preview:
-    """Return the features of a file without errors, or of one ``variant``, with at most ``most`` scenarios."""
+    """Return a preview of the features of a file without errors, with at most ``most`` scenarios.
+
+    If ``variant`` is given, only its scenarios are shown.
+    """
     from robbdd_tools.graph.read.acceptance import read_model
     from robbdd_tools.graph.write.build import build_graph
 
@@ -87,7 +90,7 @@ def _pieces(model: AcceptanceModel, story: Story, most: int) -> Iterator[Feature
 
 
 class _Places:
-    """Source ranges of clauses, variants and rows."""
+    """The source ranges of clauses, variants and table rows."""
 
     def __init__(self, snapshot: Snapshot, uri: str, sources: SourceMap) -> None:
         self._sources = sources
@@ -103,7 +106,7 @@ class _Places:
                     self._rows[variant.iri, number] = Location(name, row)
 
     def lines(self, scenario: ScenarioText, above: int) -> Iterator[PreviewLine]:
-        """Yield the sources of a scenario's lines; ``above`` is the number of lines before its feature."""
+        """Yield the source of each line of a scenario. ``above`` is the number of preview lines above its feature."""
         variant = scenario.variant.iri
         heading = self._rows.get((variant, scenario.number), self._variants.get(variant))
         if heading is not None:

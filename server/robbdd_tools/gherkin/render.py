@@ -1,6 +1,6 @@
-"""Feature templates: compiled, and rendered block by block in this process.
+"""Compile feature templates and render them block by block.
 
-Our own templates are rendered here; users' templates in a separate process, see ``user_template``.
+Built-in templates are rendered in this process, users' templates in a separate process (see ``user_template``).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ LONGEST_MESSAGE = 2000
 
 
 class TemplateProblem(Exception):
-    """A template cannot be used; the message starts with its file and, if known, the line (from 1)."""
+    """A template cannot be used. The message begins with the file of the template and, if known, the line (from 1)."""
 
     def __init__(self, file: str, line: int, message: str) -> None:
         super().__init__(f"{file}:{line}: {message}" if line else f"{file}: {message}")
@@ -45,13 +45,16 @@ class Sheet(Protocol):
         ...
 
     def render(self, block: str, values: Mapping[str, object]) -> str:
-        """Return the text of one block, empty if the template lacks it; raises ``TemplateProblem``."""
+        """Return the text of one block; empty if the template has no such block. Raises ``TemplateProblem``."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class CompiledSheet:
-    """A compiled template with those that it extends; a block of more than ``largest`` bytes is an error."""
+    """A compiled template together with the templates that it extends.
+
+    A block of more than ``largest`` bytes is an error.
+    """
 
     file: str
     chain: tuple[Template, ...]
@@ -104,7 +107,11 @@ def _our_source(name: str) -> str | None:
 
 
 def compiled(file: str, source: str, largest: int | None = None) -> CompiledSheet:
-    """Compile our template, or a user's with blocks of at most ``largest`` bytes; raises ``TemplateProblem``."""
+    """Compile a template. Raises ``TemplateProblem``.
+
+    ``source`` is the text of a built-in template or of a user's. Each block of a user's template may have at most
+    ``largest`` bytes.
+    """
     from jinja2 import (
         Environment,
         FunctionLoader,
@@ -154,7 +161,7 @@ def compiled(file: str, source: str, largest: int | None = None) -> CompiledShee
 
 
 def _problem(sheet: CompiledSheet, error: Exception) -> TemplateProblem:
-    """Attribute an error to the innermost line of a template in its traceback."""
+    """Return an error of a template as a problem at the innermost template line in its traceback."""
     templates = {template.filename: template for template in sheet.chain}
     places = [entry for entry in traceback.extract_tb(error.__traceback__) if entry.filename in templates]
     file, line = sheet.file, 0

@@ -1,4 +1,4 @@
-"""All scenarios of a variant as one Scenario Outline, if its steps differ only in values."""
+"""Write all scenarios of a variant as one Scenario Outline. This is possible if their steps differ only in values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ from robbdd_tools.graph.acceptance_model import Cell, Clause, Iri, Product, Sele
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """Tables and steps with ``<column>`` instead of values. ``tags`` are those of the clauses."""
+    """The tables and steps of a Scenario Outline, with ``<column>`` instead of values.
+
+    ``tags`` are the tags of its clauses.
+    """
 
     tags: tuple[str, ...]
     tables: tuple[SceneTable, ...]
@@ -31,10 +34,10 @@ def variable_name(variable: Iri) -> str:
 def outline(
     writer: StepWriter, clauses: tuple[Clause, ...], variation: Product | Table, present: Collection[Iri]
 ) -> Outline | None:
-    """Return the outline of some clauses, ``None`` if a table of values cannot express the scenarios.
+    """Return the outline of some clauses, or ``None`` if a table of values cannot express the scenarios.
 
-    That is so if a quantifier iterates over a varying set, if parsers would read a cell differently, and if only some
-    of a variable's values are in the scene (``present``).
+    A table cannot express them in these cases: a quantifier has a set that varies; some parsers read a cell differently
+    from others; only some of a variable's values are in the scene (``present``).
     """
     columns = {variable: variable_name(variable) for variable in variation.variables}
     words = [writer.word(cell) for cell in _cells(variation)]
@@ -60,7 +63,10 @@ def outline(
 
 
 def _added(writer: StepWriter, cell: Cell, present: Collection[Iri]) -> bool | None:
-    """Whether a value adds to the scene; ``None`` for a set that does, because it needs several rows."""
+    """Return whether a value adds an element to the scene.
+
+    For a set that adds elements, return ``None``, because it needs several rows.
+    """
     new = [element for element in elements_of((cell,)) if element in writer.model.kinds and element not in present]
     return None if new and isinstance(cell, tuple) else bool(new)
 
@@ -76,7 +82,7 @@ def _cells(variation: Product | Table) -> Iterator[Cell]:
 
 
 def _column(variation: Product | Table, index: int) -> Iterable[Cell]:
-    """Return the values of a variable; of a selection, each element as a set of one."""
+    """Return the values of a variable. The values of a selection are its elements, each as a set of one."""
     if isinstance(variation, Table):
         return (row[index] for row in variation.rows)
     choices = variation.choices[index]

@@ -1,4 +1,4 @@
-"""Select scenarios of variants before generation, without making the others."""
+"""Select scenarios of variants before they are generated, without generating the others."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ from robbdd_tools.graph.acceptance_model import AcceptanceModel, Iri, Variant
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """A user's selection: ``where`` filters the scenarios, and at most one other criterion reduces them further.
+    """A user's selection. ``where`` filters the scenarios, and at most one other criterion reduces them further.
 
-    ``first`` and ``sample`` are numbers of scenarios of the whole model, ``strength`` is that of a covering array per
-    variant; ``seed`` determines the sample.
+    - ``first`` and ``sample``: numbers of scenarios of the whole model.
+    - ``strength``: the number of variables whose combinations a covering array of each variant contains.
+    - ``seed``: determines the sample.
     """
 
     where: str | None = None
@@ -31,14 +32,14 @@ class Wanted:
 
 
 class SelectionError(RobbddError):
-    """The selection is not possible; the message gives the user the reason."""
+    """The selection is not possible. The message gives the reason."""
 
 
 class Selected:
     """The selected scenarios of some variants.
 
-    ``total`` is their number, ``None`` if counting needs iterating over them; ``covers`` maps each variant to its
-    covering array.
+    ``total`` is their number, or ``None`` if they would have to be generated to count them. ``covers`` maps each
+    variant to its covering array.
     """
 
     def __init__(self, model: AcceptanceModel, variants: Sequence[Variant], wanted: Wanted) -> None:
@@ -57,14 +58,14 @@ class Selected:
         self.total = self._total()
 
     def scenarios(self, variant: Variant) -> Iterator[Numbered]:
-        """Yield the selected scenarios of a variant in written order, with their numbers among all its scenarios."""
+        """Yield the selected scenarios of a variant in written order, each with its number among all its scenarios."""
         indices = self._indices.get(variant.iri)
         if indices is not None:
             return ((index + 1, at(variant.variation, index)) for index in indices)
         return islice(self._fitting(variant), self._limits.get(variant.iri))
 
     def is_empty(self) -> bool:
-        """Return whether nothing is selected; iterates up to the first selected scenario."""
+        """Return whether no scenario is selected. Scenarios are generated only up to the first selected one."""
         if self.total is not None:
             return self.total == 0
         return all(next(self.scenarios(variant), None) is None for variant in self._variants)
@@ -106,7 +107,7 @@ class Selected:
             wanted -= found
 
     def _sample(self, variants: Sequence[Variant], wanted: int, dice: random.Random) -> None:
-        """Sample without replacement, each set of scenarios equally likely."""
+        """Draw a sample without replacement. Each set of scenarios is equally likely."""
         drawn: Sequence[tuple[int, int]]
         if self._conditions:
             fitting = (
@@ -131,7 +132,10 @@ def _conditions(model: AcceptanceModel, variants: Sequence[Variant], where: str 
 
 
 def _drawn(sizes: Sequence[int], wanted: int, dice: random.Random) -> list[tuple[int, int]]:
-    """Sample from groups of known sizes by Floyd's algorithm: one step per sample, however large the groups."""
+    """Draw a sample from groups of known sizes by Floyd's algorithm.
+
+    The effort is one step for each drawn scenario, however large the groups are.
+    """
     total = sum(sizes)
     chosen: set[int] = set()
     for top in range(max(0, total - wanted), total):

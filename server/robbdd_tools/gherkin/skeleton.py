@@ -1,4 +1,4 @@
-"""Step function stubs for another robot or simulator: one per distinct sentence of a model."""
+"""Write stubs of step functions for another robot or simulator, one for each distinct sentence of a model."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _QUOTED_SLOT = re.compile(r'(?<=")\{(\w[\w-]*)\}(?=")|\{(\w[\w-]*)\}')
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """A sentence in the form of behave's ``parse`` matcher; ``parameters`` are names with their Python types."""
+    """A sentence in the form of behave's ``parse`` matcher. ``parameters`` are pairs of a name and its Python type."""
 
     role: str
     text: str
@@ -59,7 +59,7 @@ class Pattern:
 
 
 def patterns(model: AcceptanceModel) -> list[Pattern]:
-    """Return the distinct sentences of a model: those of the scene first, then in clause order."""
+    """Return the distinct sentences of a model: first those of the scene, then those of the clauses in order."""
     found: dict[Pattern, None] = {}
     writer = StepWriter(model, load_catalog())
     for story in model.stories:
@@ -74,7 +74,7 @@ def patterns(model: AcceptanceModel) -> list[Pattern]:
 
 
 def free_patterns(model: AcceptanceModel) -> list[Pattern]:
-    """Return the distinct free-text sentences of a model, which the catalog cannot judge."""
+    """Return the distinct sentences of a model that are free text, so that the catalog cannot judge them."""
     clauses = (
         c
         for story in model.stories
@@ -85,9 +85,9 @@ def free_patterns(model: AcceptanceModel) -> list[Pattern]:
 
 
 def add_steps(wanted: Collection[Pattern], target: Path, name: str) -> int:
-    """Add the missing steps to a file of steps, creating it if missing; return the number of new functions.
+    """Add the missing steps to a file of steps, and return the number of new functions.
 
-    Raises ``OSError``, and ``SyntaxError`` if the file is not Python.
+    ``target`` is created if it is missing. Raises ``OSError``, and ``SyntaxError`` if the file is not Python.
     """
     existing = load_text(target) if os.path.lexists(target) else None
     text, new = skeleton(wanted, existing, name)
@@ -98,10 +98,10 @@ def add_steps(wanted: Collection[Pattern], target: Path, name: str) -> int:
 
 
 def skeleton(wanted: Iterable[Pattern], existing: str | None, name: str) -> tuple[str, int]:
-    """Return the text of a file of steps and the number of new functions in it.
+    """Return the text of a file of steps, and the number of new functions in it.
 
-    ``existing`` is the file's current text or ``None``; its definitions are kept. Raises ``SyntaxError`` if it is not
-    Python.
+    ``existing`` is the current text of the file or ``None``. Its definitions are kept. Raises ``SyntaxError`` if it is
+    not Python.
     """
     defined, names = defined_steps(existing or "")
     grouped: dict[tuple[str, tuple[tuple[str, str], ...]], list[str]] = {}
@@ -188,7 +188,7 @@ def _function(sentence: str, parameters: tuple[tuple[str, str], ...], roles: lis
 
 
 def _name(sentence: str, taken: set[str]) -> str:
-    """Return an unused function name made of the words of a sentence."""
+    """Return a function name that is made of the words of a sentence and not yet taken."""
     words = re.findall(r"[a-z0-9]+", re.sub(r"\{(\w+)[^}]*\}", r" \1 ", sentence).lower())
     base = "_".join(words)[:60].strip("_") or "step"
     base = base if not base[0].isdigit() else f"step_{base}"

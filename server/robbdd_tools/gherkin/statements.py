@@ -14,9 +14,10 @@ if TYPE_CHECKING:
 
 
 def statements(model: AcceptanceModel, variant: str, variation: int) -> set[tuple[str, str]]:
-    """Return clauses (IRIs) and sentences of scenario number ``variation`` (from 1) of a variant (its IRI).
+    """Return the clauses (IRIs) and the sentences of scenario number ``variation`` (from 1) of a variant (IRI).
 
-    A clause repeated for each element of a set has several sentences. Empty if there is no such scenario.
+    A clause that is repeated for each element of a set has several sentences. If there is no such scenario, the result
+    is empty.
     """
     found = next((one for story in model.stories for one in story.variants if one.iri == variant), None)
     values = None if found is None else next(islice(bindings(found.variation), variation - 1, None), None)

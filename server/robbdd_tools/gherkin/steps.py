@@ -1,4 +1,4 @@
-"""Clauses with their values as Gherkin steps; every sentence comes from the catalog."""
+"""Write clauses with their values as Gherkin steps. Every sentence is taken from the catalog."""
 
 from __future__ import annotations
 
@@ -31,10 +31,12 @@ Scope = tuple[tuple[Iri, int], ...]
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step: keyword, text, and its clause. ``role`` is ``given``, ``when`` or ``then``.
+    """One Gherkin step: its keyword, its text and its clause.
 
-    ``statement`` is the text's content as data; ``source`` is the model's clause with the values of its variables.
-    ``scope`` is its iterations, outermost first.
+    - ``role``: ``given``, ``when`` or ``then``.
+    - ``statement``: the content of the text as data.
+    - ``source``: the clause of the model, and the values of its variables.
+    - ``scope``: the iterations of ``for all`` that contain the step, outermost first.
     """
 
     keyword: str
@@ -58,7 +60,10 @@ class StepWriter:
         return self._binder.curie(iri)
 
     def steps(self, clauses: Collection[Clause], values: Values, scope: Scope = ()) -> Iterator[Step]:
-        """Yield the steps of clauses in order; ``for all`` is repeated per element, ``and`` is split into steps."""
+        """Yield the steps of some clauses in order.
+
+        The clauses of a ``for all`` are repeated for each element, and an ``and`` is split into several steps.
+        """
         for clause in clauses:
             match clause:
                 case ForAll():
@@ -75,11 +80,11 @@ class StepWriter:
                     yield self._step(clause.role, clause, values, scope)
 
     def sentence(self, clause: Clause, values: Values) -> str:
-        """Return the sentence of one clause with its values."""
+        """Return the sentence of one clause with the values of its variables."""
         return sentence(self._binder.bind(clause, values))
 
     def word(self, value: Value) -> str:
-        """Return a value as written inside the quotes of a sentence."""
+        """Return a value as it is written inside the quotes of a sentence."""
         return word(self._binder.filler(value))
 
     def _step(self, role: str, clause: Clause, values: Values, scope: Scope) -> Step:
@@ -88,7 +93,7 @@ class StepWriter:
 
 
 def sentence(statement: stated.Statement, *, within: bool = False) -> str:
-    """Return the sentence of a statement; ``within``: as part of a group."""
+    """Return the sentence of a statement. ``within`` is true if the sentence is a part of a group."""
     match statement:
         case stated.Fluent(predicate, arguments, time):
             return f"{filled(predicate.sentence, arguments)} {_time_words(time)}"

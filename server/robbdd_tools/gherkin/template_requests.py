@@ -1,4 +1,4 @@
-"""Requests to the process that renders a user's template, see ``template_worker``."""
+"""The requests to the process that renders a user's template (see ``template_worker``)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class TemplateSource:
-    """The template to compile; the answer is the list of its blocks."""
+    """A request to compile a template. The answer is the list of its blocks."""
 
     file: str
     source: str
@@ -18,7 +18,7 @@ class TemplateSource:
 
 @dataclass(frozen=True, slots=True)
 class BlockRequest:
-    """A block to render with some values by name; ``fresh`` are those that differ from the last time."""
+    """A request to render a block. ``fresh`` are the values, by name, that differ from those of the last request."""
 
     block: str
     names: tuple[str, ...]

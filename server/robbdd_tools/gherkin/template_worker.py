@@ -1,8 +1,8 @@
-"""Process that renders one user template. It exits at the end of its input.
+"""The process that renders one user template. It exits at the end of its input.
 
-Each line of its input is a pickled request in Base64, each line of its output the answer as JSON: ``value``, or
-``file``, ``line`` and ``message`` of a problem. The first answer reports that the process is ready. The first request
-is the template, the others are blocks.
+Each line of its input is a pickled request in Base64. Each line of its output is the answer as JSON: either ``value``,
+or ``file``, ``line`` and ``message`` of a problem. The first answer, before any request, reports that the process is
+ready. The first request is the template, and all others are blocks.
 """
 
 from __future__ import annotations
@@ -19,14 +19,17 @@ from robbdd_tools.gherkin.template_requests import Request, TemplateSource, deco
 
 
 class _Worker:
-    """State of the process between two requests."""
+    """The state of the process between two requests."""
 
     def __init__(self) -> None:
         self._sheet: CompiledSheet | None = None
         self._values: dict[str, object] = {}
 
     def answer(self, request: Request) -> object:
-        """Return the blocks of a template, or the text of a block; raises ``TemplateProblem``."""
+        """Return the answer to a request: the blocks of a template, or the text of a block.
+
+        Raises ``TemplateProblem``.
+        """
         if isinstance(request, TemplateSource):
             self._sheet = compiled(request.file, request.source, TEMPLATE_OUTPUT.value())
             return [block for block in BLOCKS if self._sheet.has(block)]

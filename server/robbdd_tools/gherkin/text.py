@@ -25,21 +25,21 @@ def line(text: str) -> str:
 
 
 def free(text: str) -> str:
-    """Return a text for a step, outside of quotes, stripped, because parsers drop outer blanks."""
+    """Return a text for use in a step outside of quotes. It is stripped, because parsers drop outer blanks."""
     return _control_escaped(text.strip().replace("\\", "\\\\"))
 
 
 def inside_quotes(text: str) -> str:
     """Return a string for use between the double quotes of a step.
 
-    A string that looks like a set (``[…]``, ``any of […]``) gets a backslash in front.
+    A string that looks like a set (``[…]``, ``any of […]``) gets a backslash in front, so that it is not read as a set.
     """
     escaped = _quotable(text)
     return f"\\{escaped}" if escaped.startswith(("[", "any of [")) else escaped
 
 
 def set_inside_quotes(elements: Iterable[str]) -> str:
-    """Return a set for use between the double quotes of a step: a list of strings in Python's notation."""
+    """Return a set for use between the double quotes of a step. It is written as a Python list of strings."""
     return _quotable(str(list(elements)))
 
 
@@ -56,13 +56,13 @@ def cell(text: str) -> str:
 def tag(kind: str, iri: str) -> str:
     """Return the tag for an IRI, without its ``@``: ``clause=https:;;example.org;part``.
 
-    ``;`` replaces a slash and ``=XX`` is a byte in hexadecimal digits: some runners drop all other characters.
+    ``;`` replaces a slash, and ``=XX`` is a byte in hexadecimal digits, because some runners drop all other characters.
     """
     return f"{kind}={_UNSAFE_IN_TAGS.sub(_encoded, iri)}"
 
 
 def read_tag(text: str) -> tuple[str, str] | None:
-    """Return kind and IRI of a tag made by ``tag``, with or without its ``@``; ``None`` for any other."""
+    """Return the kind and the IRI of a tag made by ``tag``, or ``None`` for any other tag. The ``@`` may be missing."""
     match = _TAG.fullmatch(text)
     if match is None:
         return None

@@ -1,4 +1,4 @@
-"""Users' templates, each rendered in a process that is killed if a block takes too long."""
+"""Render users' templates. Each template has its own process, which is killed if a block takes too long."""
 
 from __future__ import annotations
 
@@ -21,14 +21,17 @@ WORKER = "robbdd_tools.gherkin.template_worker"
 
 
 def sheet(name: str) -> Sheet:
-    """Return a built-in template by its name, or a user's by its path; raises ``TemplateProblem``."""
+    """Return the built-in template ``name``, or the user's template at the path ``name``.
+
+    Raises ``TemplateProblem``.
+    """
     return our_sheet(name) if name in OURS else UserSheet(name)
 
 
 class UserSheet:
-    """A user's template in its own process, which ends with this object or at the first problem.
+    """A user's template in its own process. The process ends with this object or at the first problem.
 
-    Compiling and each block may take ``template-seconds``. Raises ``TemplateProblem``.
+    Compiling the template and rendering a block may each take ``template-seconds``. Raises ``TemplateProblem``.
     """
 
     def __init__(self, file: str) -> None:
@@ -52,7 +55,7 @@ class UserSheet:
         return block in self._blocks
 
     def render(self, block: str, values: Mapping[str, object]) -> str:
-        """Return the text of one block, empty if the template lacks it; raises ``TemplateProblem``."""
+        """Return the text of one block; empty if the template has no such block. Raises ``TemplateProblem``."""
         if not self.has(block):
             return ""
         fresh = {name: value for name, value in values.items() if self._sent.get(name) is not value}

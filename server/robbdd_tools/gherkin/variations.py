@@ -1,4 +1,4 @@
-"""Expand a variation into the values of its scenarios, one at a time, in written order."""
+"""Expand a variation into the values of its scenarios, one scenario at a time and in written order."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Binding = Mapping[Iri, Cell]
 
 
 def bindings(variation: Product | Table) -> Iterator[Binding]:
-    """Yield the values of each scenario; in a product the last variable varies fastest."""
+    """Yield the values of each scenario. In a product, the last variable varies fastest."""
     if isinstance(variation, Table):
         rows: Iterable[tuple[Cell, ...]] = variation.rows
     else:
@@ -29,7 +29,7 @@ def count(variation: Product | Table) -> int:
 
 
 def at(variation: Product | Table, index: int) -> Binding:
-    """Return the values of one scenario, counted from 0, without generating the others; raises ``IndexError``."""
+    """Return the values of the scenario at an index (from 0) without generating the others. Raises ``IndexError``."""
     if not 0 <= index < count(variation):
         raise IndexError(index)
     if isinstance(variation, Table):
@@ -42,7 +42,7 @@ def at(variation: Product | Table, index: int) -> Binding:
 
 
 def _product(choices: tuple[tuple[Cell, ...] | Selection, ...]) -> Iterator[tuple[Cell, ...]]:
-    """Same as ``itertools.product``, which would expand every selection in memory first."""
+    """Yield the same as ``itertools.product``, which would first expand every selection in memory."""
     if not choices:
         yield ()
         return

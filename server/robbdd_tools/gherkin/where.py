@@ -51,7 +51,11 @@ class WhereError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """``variable sign value``; ``column`` is that of the variable, ``fits`` tests one value."""
+    """A comparison of a variable with a value.
+
+    ``column`` is the column of the variable in the expression. ``fits`` tests whether one value satisfies the
+    comparison.
+    """
 
     variable: str
     column: int
@@ -60,7 +64,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """Expressions joined by ``and`` or ``or``, or one negated expression."""
+    """Expressions that are joined by ``and`` or ``or``, or one expression that is negated."""
 
     operator: Literal["and", "or", "not"]
     operands: tuple[Expression, ...]
@@ -88,7 +92,7 @@ def check_where(expression: Expression, model: AcceptanceModel, variants: Sequen
 
 
 def condition(expression: Expression, model: AcceptanceModel, variant: Variant) -> Condition:
-    """Return the expression as a test of the values of one variant."""
+    """Return a function that tests whether the values of a scenario of the variant satisfy the expression."""
     columns = {
         name: index
         for index, variable in enumerate(variant.variation.variables)
@@ -169,7 +173,7 @@ class _Token:
 
 
 class _Parser:
-    """Recursive-descent parser; the value after an operator is read as one word, whatever it contains."""
+    """A recursive-descent parser. The value after an operator is read as one word, whatever it contains."""
 
     def __init__(self, text: str) -> None:
         self._text = text

@@ -11,7 +11,7 @@ from robbdd_tools.protocol.clauses import AnyOf, Filler
 
 
 class Placeholder(str):
-    """Value of a variable in a Scenario Outline: the name of its column."""
+    """The value of a variable in a Scenario Outline, which is the name of its column."""
 
     __slots__ = ()
 
@@ -30,7 +30,7 @@ def word(filler: Filler) -> str:
 
 
 def filled(sentence: str, fillers: Mapping[str, Filler]) -> str:
-    """Return a sentence with its ``{slots}`` filled in; unfilled slots stay."""
+    """Return a sentence in which fillers replace the ``{slots}``. Slots without a filler stay."""
     parts = list(_slots(sentence))
     for index in range(1, len(parts), 2):
         filler = fillers.get(parts[index])
@@ -41,5 +41,5 @@ def filled(sentence: str, fillers: Mapping[str, Filler]) -> str:
 # Not str.format: a user's template must not reach attributes or items of our objects.
 @cache
 def _slots(sentence: str) -> tuple[str, ...]:
-    """Split a sentence at its ``{slots}``: words and slot names alternate."""
+    """Split a sentence at its ``{slots}``. The result alternates between text and slot names."""
     return tuple(re.split(r"\{(\w[\w-]*)\}", sentence))

@@ -1,1 +1,1 @@
-"""The language server: converts, publishes and schedules; it contains no knowledge of the language itself."""
+"""The language server. It converts, publishes and schedules, but contains no knowledge of the language itself."""

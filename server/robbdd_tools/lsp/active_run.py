@@ -1,4 +1,4 @@
-"""The run in progress: at most one per server."""
+"""The run that is in progress. A server has at most one."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 @dataclass
 class ActiveRun:
-    """A run, from its request on.
+    """A run from the time it is requested.
 
-    ``progress`` is its progress token, unique among runs. ``judged`` are its scenarios by their position in the
-    manifest.
+    ``progress`` is its progress token, which is unique among runs. ``judged`` are its scenarios by their position in
+    the manifest.
     """
 
     options: RunOptions
@@ -27,17 +27,17 @@ class ActiveRun:
 
     @property
     def id(self) -> str:
-        """The run's name in its messages."""
+        """The name of the run in the messages about it."""
         return self.options.token or self.progress
 
     def execute(self, run: Run) -> None:
-        """Set the prepared run; cancel it if a cancellation arrived during preparation."""
+        """Set the run after it is prepared. If it was cancelled during preparation, cancel it now."""
         self.run = run
         if self.cancelled:
             run.cancel()
 
     def cancel(self) -> None:
-        """Cancel the run; during preparation, cancel it as soon as it is prepared."""
+        """Cancel the run. A run that is still in preparation is cancelled as soon as it is prepared."""
         self.cancelled = True
         if self.run is not None:
             self.run.cancel()

@@ -1,4 +1,4 @@
-"""The single thread that owns the project: urgent work in message order, other work when idle."""
+"""The only thread that uses the project. It does urgent work in the order of messages, and other work when idle."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class _Job:
 
 
 class AnalysisThread:
-    """Executes urgent work (edits and requests) in order of arrival, other work when there is none.
+    """Executes urgent work (edits and requests) in the order of arrival, and other work when there is no urgent work.
 
-    At a checkpoint, non-urgent work yields to urgent work, and work whose caller was cancelled ends. So a hover never
-    waits for the diagnostics of a large file, and no result is wasted. An edit also ends at a checkpoint if the
-    next item is another edit ``replacing`` the same text.
+    At a checkpoint, other work is interrupted by urgent work, and work whose caller was cancelled ends. So a hover
+    never waits for the diagnostics of a large file, and no result is wasted. An edit also ends at a checkpoint if the
+    next item is an edit that replaces the same text.
     """
 
     def __init__(self) -> None:
@@ -41,9 +41,10 @@ class AnalysisThread:
         threading.Thread(target=self._work, name="analysis", daemon=True).start()
 
     async def do(self, work: Callable[[], Result], urgent: bool = True, replacing: str | None = None) -> Result:
-        """Return the result of ``work``; if the caller is cancelled, the work is skipped or ends at a checkpoint.
+        """Execute ``work`` in the analysis thread and return its result.
 
-        Raises ``Abandoned`` if other work ``replacing`` the same is done instead.
+        If the caller is cancelled, the work is skipped or ends at its next checkpoint. If newer work has the same key
+        ``replacing``, it may be executed instead; then ``Abandoned`` is raised.
         """
         job = _Job(work, urgent, replacing)
         with self._changed:
@@ -56,7 +57,7 @@ class AnalysisThread:
             raise
 
     def stop(self) -> None:
-        """Start no more work."""
+        """Start no further work."""
         with self._changed:
             self._stopped = True
             self._urgent.clear()

@@ -1,4 +1,4 @@
-"""Protocol methods for reading and writing a text: completion, hover, hints."""
+"""Protocol methods that help to read and write a text: completion, hover and inlay hints."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 
 
 class Background:
-    """Works on its own project, so that it shares no state with the analysis thread."""
+    """Executes work in a thread on a project of its own, so that it shares no state with the analysis thread."""
 
     def __init__(self) -> None:
         self._project = Project()
@@ -23,9 +23,10 @@ class Background:
     async def work(
         self, texts: Mapping[str, tuple[int, str]], work: Callable[[Snapshot], Result], *unopened: str
     ) -> Result:
-        """Run ``work`` on the files on disk, overlaid with the open ``texts`` (version and text by URI).
+        """Call ``work`` with a snapshot of files on disk and of open files, and return its result.
 
-        The snapshot contains the open files, the named ``unopened`` ones, and their imports.
+        ``texts`` maps the URI of each open file to its version and text, which replace the file on disk. The snapshot
+        contains the open files, the files ``unopened``, and the imports of all of them.
         """
 
         def on_snapshot() -> Result:
@@ -40,5 +41,5 @@ class Background:
         return await asyncio.get_running_loop().run_in_executor(self._thread, on_snapshot)
 
     def stop(self) -> None:
-        """Start no more work."""
+        """Start no further work."""
         self._thread.shutdown(wait=False, cancel_futures=True)

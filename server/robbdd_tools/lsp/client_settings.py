@@ -1,4 +1,7 @@
-"""The client's settings for the server: requested where the client supports it, else as sent by it."""
+"""The client's settings for the server.
+
+The server requests them or, if the client cannot answer, uses those it sends.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,10 @@ SECTION = "robbdd"
 
 
 class Settings:
-    """``robbdd.shapes`` and ``robbdd.run.bhv`` by workspace folder (URI); ``""`` outside of all folders."""
+    """The settings ``robbdd.shapes`` and ``robbdd.run.bhv`` of each workspace folder.
+
+    Folders are given by URI; ``""`` holds the settings for files outside of all folders.
+    """
 
     def __init__(self) -> None:
         self._shapes: dict[str, tuple[str, ...]] = {}
@@ -30,11 +36,11 @@ class Settings:
 
     @property
     def patterns(self) -> dict[str, tuple[str, ...]]:
-        """The patterns of each folder that has any."""
+        """The file patterns of shapes for each folder that has any."""
         return {folder: patterns for folder, patterns in self._shapes.items() if patterns}
 
     def set(self, folder: str, section: object) -> str | None:
-        """Apply the section ``robbdd`` of a folder; return what is wrong with it, if anything."""
+        """Apply the section ``robbdd`` of a folder's settings. Return a description of the errors in it, if any."""
         limits = use_limits(cast("dict[str, Any]", section).get("limits")) if isinstance(section, dict) else None
         if limits is not None:
             return limits
@@ -62,11 +68,14 @@ class Settings:
         self._substitutions = {folder: texts for folder, texts in self._substitutions.items() if folder in folders}
 
     def substitutions(self, uri: str) -> dict[str, str]:
-        """Return the catalog behaviours that a model's runs execute instead of implementations of its ``.bddx``."""
+        """Return the catalog behaviours that runs of a model execute instead of implementations in its ``.bddx``."""
         return self._substitutions.get(self._folder_of(uri), {})
 
     def shapes(self, uri: str) -> EditorShapes:
-        """Return the shapes that the editor adds for a document; patterns are relative to its workspace folder."""
+        """Return the file patterns of the shapes that the editor adds for a document.
+
+        Patterns are relative to the workspace folder of the document.
+        """
         folder = self._folder_of(uri)
         path = uri_to_path(folder) if folder else None
         if path is None:
@@ -76,7 +85,7 @@ class Settings:
         return EditorShapes() if path is None else EditorShapes(str(path), patterns)
 
     def _folder_of(self, uri: str) -> str:
-        """Return the innermost workspace folder of a document, ``""`` outside of all."""
+        """Return the innermost workspace folder of a document; ``""`` if it is outside of all folders."""
         inside = [folder for folder in self._shapes if folder and uri.startswith(f"{folder.rstrip('/')}/")]
         return max(inside, key=len, default="")
 
@@ -107,7 +116,10 @@ async def follow_settings(ls: RobbddServer) -> None:
 
 
 async def read_settings(ls: RobbddServer) -> None:
-    """Request the settings of each folder; without support for requests, use the last ones that the client sent."""
+    """Request the settings of each folder.
+
+    If the client does not support such requests, the last settings that it sent are used.
+    """
     before = ls.settings.patterns
     folders = ["", *ls.workspace.folders]
     workspace = ls.client_capabilities.workspace

@@ -1,6 +1,7 @@
 """Commands of the server, and the quick fix that offers one of them.
 
-All take one object with the ``uri`` of a model; those that run also take the options of ``run_options.RunOptions``.
+The argument of every command is one object with the ``uri`` of a model. Commands that run a model also accept the
+options of ``run_options.RunOptions``.
 """
 
 from __future__ import annotations
@@ -62,7 +63,10 @@ def _register_runs(server: RobbddServer) -> None:
 
 
 def _checked(command: str, target: Any) -> dict[str, Any]:
-    """Return a command's argument as sent by the client; raises ``JsonRpcInvalidParams`` unless it names a model."""
+    """Return the argument of a command as sent by the client.
+
+    Raises ``JsonRpcInvalidParams`` unless it names a model.
+    """
     match target:
         case {"uri": str()}:
             return target
@@ -81,7 +85,7 @@ def _register_writing(server: RobbddServer) -> None:
 
 
 def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionParams) -> Iterator[types.CodeAction]:
-    """Yield the fix for clauses that no step can judge, before a run and after it."""
+    """Yield the quick fix for clauses that no step can judge. It is offered before a run and after it."""
     uri = params.text_document.uri
     file = snapshot.file(uri)
     span = ls.convert.span(document_of(snapshot, uri), params.range)
@@ -106,7 +110,10 @@ def step_fixes(ls: RobbddServer, snapshot: Snapshot, params: types.CodeActionPar
 
 
 async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
-    """Write the features of a model, with their line maps, to ``features/`` in its folder; return their URIs."""
+    """Write the features of a model and their line maps to ``features/`` in its folder.
+
+    Return the URIs of the features.
+    """
     path = uri_to_path(uri)
     if path is None:
         ls.warn("save the model first: its features are written to its folder")
@@ -121,7 +128,7 @@ async def _write_gherkin(ls: RobbddServer, uri: str) -> list[str]:
 
 
 async def _write_steps(ls: RobbddServer, uri: str) -> list[str]:
-    """Add functions for clauses that the catalog cannot judge to a file in the model's folder; return its URI."""
+    """Write functions for the clauses that the catalog cannot judge to a file in the model's folder. Return its URI."""
     path = uri_to_path(uri)
     if path is None:
         ls.warn("save the model first: its steps are written to its folder")

@@ -1,4 +1,7 @@
-"""Convert between our data and the protocol's; only this module knows the client's units (UTF-8, UTF-16, UTF-32)."""
+"""Convert between the data types of RobBDD and those of the protocol.
+
+Only this module knows the units in which the client counts characters (UTF-8, UTF-16 or UTF-32).
+"""
 
 from __future__ import annotations
 
@@ -54,9 +57,9 @@ _SYMBOL_KINDS: Mapping[str, types.SymbolKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Converter:
-    """Conversions for one client: ``encoding`` is the one agreed at initialisation.
+    """The conversions for one client. ``encoding`` is the one that was agreed at initialisation.
 
-    ``with_pages`` adds to each diagnostic a link to the page about its code.
+    If ``with_pages`` is true, each diagnostic links to the page about its code.
     """
 
     encoding: types.PositionEncodingKind | str = types.PositionEncodingKind.Utf16
@@ -64,13 +67,16 @@ class Converter:
 
     @classmethod
     def of(cls, encoding: str | None, client: types.ClientCapabilities) -> Converter:
-        """Return the conversions for a client's capabilities."""
+        """Return the conversions for a client with the given capabilities."""
         published = client.text_document.publish_diagnostics if client.text_document is not None else None
         with_pages = bool(published is not None and published.code_description_support)
         return cls(encoding or types.PositionEncodingKind.Utf16, with_pages)
 
     def offset(self, document: Document, position: types.Position) -> int:
-        """Return the code-point offset of a client position; a position beyond a line's end is clamped to the end."""
+        """Return the code-point offset of a client position.
+
+        A position beyond the end of a line is moved to the end of the line.
+        """
         if position.line >= len(document.line_starts):
             return len(document.text)
         line = document.line_text(position.line)
@@ -94,11 +100,11 @@ class Converter:
         return types.Range(start=self.position(document, span.start), end=self.position(document, span.end))
 
     def span(self, document: Document, range: types.Range) -> Span:
-        """Return the span of a client range."""
+        """Return the span of a client range in code points."""
         return Span(self.offset(document, range.start), self.offset(document, range.end))
 
     def location(self, snapshot: Texts, uri: str, span: Span) -> types.Location:
-        """Return a place in any file of a snapshot."""
+        """Return the client location of a span in any file of a snapshot."""
         return types.Location(uri=uri, range=self.range(document_of(snapshot, uri), span))
 
     def diagnostic(self, snapshot: Texts, diagnostic: Diagnostic) -> types.Diagnostic:
@@ -122,14 +128,14 @@ class Converter:
         )
 
     def code_description(self, code: str) -> types.CodeDescription | None:
-        """Return the link to the page about a code if the client shows it."""
+        """Return the link to the page about a diagnostic code, if the client can show it."""
         page = code_page(code) if self.with_pages else None
         return None if page is None else types.CodeDescription(href=page)
 
     def completion(
         self, document: Document, completion: Completion, client: types.ClientCompletionItemOptions | None
     ) -> types.CompletionItem | None:
-        """Return a completion in the client's form; it is matched against the text that it replaces."""
+        """Return a completion in the client's form. The client matches it against the text that it replaces."""
         snippets = client is not None and bool(client.snippet_support)
         if completion.kind == "snippet" and not snippets:
             return None
@@ -154,11 +160,11 @@ class Converter:
         )
 
     def edit(self, document: Document, edit: Edit) -> types.TextEdit:
-        """Return an edit of a document."""
+        """Return the client's form of an edit of one document."""
         return types.TextEdit(range=self.range(document, edit.span), new_text=edit.text)
 
     def workspace_edit(self, snapshot: Snapshot, edits: Iterable[Edit]) -> types.WorkspaceEdit:
-        """Return edits of any files of a snapshot."""
+        """Return the client's form of edits in any files of a snapshot."""
         changes: dict[str, list[types.TextEdit]] = {}
         for edit in edits:
             changes.setdefault(edit.uri, []).append(self.edit(document_of(snapshot, edit.uri), edit))
@@ -174,7 +180,10 @@ class Converter:
 
 
 def document_of(texts: Texts, uri: str) -> Document:
-    """Return the document of a file; an empty one for an unreadable file, so that all its places are the start."""
+    """Return the document of a file.
+
+    For an unreadable file, the document is empty, so that all places in it are the start.
+    """
     return texts.document(uri) if isinstance(texts, Snapshot) else texts.get(uri, Document(uri, 0, ""))
 
 
@@ -186,9 +195,9 @@ def _tags(code: str) -> list[types.DiagnosticTag] | None:
 
 @cache
 def code_page(code: str) -> str | None:
-    """Return the URI of the page about a diagnostic code, or about its family of codes.
+    """Return the URI of the page about a diagnostic code, or about the family of codes to which it belongs.
 
-    The pages are part of the installation: they match its version and can be read offline.
+    The pages are installed with the package, so they match its version and can be read offline.
     """
     for name in (code, code.partition("-")[0]):
         try:
@@ -204,7 +213,7 @@ def symbol_kind(kind: str) -> types.SymbolKind:
 
 
 def markup(markdown: str, formats: Sequence[types.MarkupKind] | None) -> types.MarkupContent:
-    """Return a text in the client's preferred format; plain text if it does not support Markdown."""
+    """Return a text in the format that the client prefers. Without support for Markdown, this is plain text."""
     if formats and types.MarkupKind.Markdown in formats:
         return types.MarkupContent(kind=types.MarkupKind.Markdown, value=markdown)
     plain = re.sub(r"^```.*\n?|\*\*|`|^> ", "", markdown, flags=re.MULTILINE)

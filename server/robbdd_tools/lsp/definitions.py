@@ -1,4 +1,4 @@
-"""Protocol methods that lead from a place to others: definition, implementation, call hierarchy and more."""
+"""Protocol methods that lead from one place to others, for example definition, implementation and call hierarchy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Documents as models of the workbench, with unsaved text."""
+"""Use open documents as models of the workbench, including unsaved text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def runnable_model(snapshot: Snapshot, uri: str) -> ModelFile:
-    """Return a document as a model with scenarios; raises ``ModelErrors`` and ``NothingToRun``."""
+    """Return a document as a model that has scenarios. Raises ``ModelErrors`` and ``NothingToRun``."""
     file = ModelFile(snapshot, uri, uri)
     if not file.has_scenarios:
         raise NothingToRun(NO_SCENARIO)
@@ -20,7 +20,7 @@ def runnable_model(snapshot: Snapshot, uri: str) -> ModelFile:
 
 
 def feature_plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
-    """Return the features of a document; raises ``ModelErrors`` and ``NothingToRun``."""
+    """Return the plan for writing the features of a document. Raises ``ModelErrors`` and ``NothingToRun``."""
     from robbdd_tools.gherkin.feature_files import clause_origins, whole_plan
 
     file = runnable_model(snapshot, uri)
@@ -28,7 +28,10 @@ def feature_plan(snapshot: Snapshot, uri: str) -> FeaturePlan:
 
 
 def reason(error: Exception) -> str:
-    """Return an error as one sentence for a message; the model's findings are already shown in its text."""
+    """Return an error as one sentence for a message.
+
+    Findings of the model are left out, because its text shows them.
+    """
     if isinstance(error, ModelErrors):
         return f"the model has errors, the first: {error.findings[0].message}"
     return str(error)

@@ -49,7 +49,7 @@ def refactorings(ls: RobbddServer, snapshot: Snapshot, uri: str, span: Span) -> 
 
 
 def edit_of(ls: RobbddServer, snapshot: Snapshot, fix: Fix) -> types.WorkspaceEdit | None:
-    """Return the change of a fix or refactoring; ``None`` if it creates a file and the client cannot."""
+    """Return the change that a fix or refactoring makes. Return ``None`` if it creates a file and the client cannot."""
     if fix.new_file is None:
         return ls.convert.workspace_edit(snapshot, fix.edits)
     return _with_new_file(ls, snapshot, fix, fix.new_file) if _creates_files(ls) else None

@@ -1,8 +1,9 @@
-"""Messages between the server and the validation process.
+"""The messages between the server and the validation process.
 
-A frame is a length (4 bytes, big endian) and a pickled object: to the process a tuple of ``Request`` and ``Forget``, in
-which a shared text is stored once; from it a ``Begun`` or an ``Answer``. Both ends are the same installation. A request
-replaces an older one for the same file, even during its validation, but only a limited number of times.
+A frame consists of a length (4 bytes, big endian) and a pickled object. The server sends tuples of ``Request`` and
+``Forget``, in which a shared text is stored once. The process sends ``Begun`` and ``Answer``. Both ends belong to the
+same installation. A request replaces an older one for the same file, even while that is being validated, but only a
+limited number of times.
 """
 
 from __future__ import annotations
@@ -20,10 +21,13 @@ LENGTH = struct.Struct(">I")
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """Validate ``uri``; ``texts`` holds version and text of every open file, ``shapes`` the shapes added by the editor.
+    """A request to validate the file ``uri``.
 
-    An unopened file is ``surveyed``: all findings are wanted, with the texts that contain them. Its ``importers`` are
-    the files that import it, open or not; without them, declarations used only there would seem unused.
+    - ``texts``: the version and the text of every open file.
+    - ``shapes``: the shapes that the editor adds.
+    - ``surveyed``: true for an unopened file. All its findings are wanted, with the texts that contain them.
+    - ``importers``: the files that import it, open or not. Without them, declarations that only they use would be
+      reported as unused.
     """
 
     revision: int
@@ -36,23 +40,27 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Forget:
-    """Stop validating ``uri`` and drop its state."""
+    """A request to stop validating ``uri`` and to drop its state."""
 
     uri: str
 
 
 @dataclass(frozen=True, slots=True)
 class Begun:
-    """The process is now working on ``uri``, until it answers or begins another file (empty: it is idle)."""
+    """The process has begun to work on ``uri``, and continues until it answers or begins another file.
+
+    If ``uri`` is empty, the process is idle.
+    """
 
     uri: str
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The findings about a file and its imports, or the internal error.
+    """The findings about a file and its imports, or the internal error that prevented them.
 
-    For a surveyed file also the files ``reached``, found or missing, and the ``documents`` that the findings refer to.
+    For a surveyed file, ``reached`` are all files that it imports, found or missing, and ``documents`` are the texts to
+    which the findings refer.
     """
 
     revision: int

@@ -1,7 +1,7 @@
-"""The request ``robbdd/graph``: a picture of a document's graph during editing.
+"""The request ``robbdd/graph``: draw the graph of a document while it is edited.
 
-Parameters: ``uri``; optionally ``position`` (of the cursor), ``iri`` (a selected node) and ``most`` (nodes to draw).
-The answer is described by ``docs/schemas/graph.schema.json``.
+The parameters are ``uri`` and, optionally, ``position`` (of the cursor), ``iri`` (of the selected node) and ``most``
+(the number of nodes to draw). ``docs/schemas/graph.schema.json`` describes the answer.
 """
 
 from __future__ import annotations

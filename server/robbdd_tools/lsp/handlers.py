@@ -1,4 +1,4 @@
-"""The protocol's methods, each a thin layer between conversion and a feature."""
+"""The methods of the protocol. Each one converts its parameters, calls a feature and converts the result."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def _asked(only: Sequence[types.CodeActionKind | str] | None, kind: types.CodeAc
 
 
 def _is(kind: types.CodeActionKind | str | None, wanted: types.CodeActionKind | str) -> bool:
-    """Return whether a kind of action is another one or a sub-kind of it."""
+    """Return whether a kind of code action is the wanted kind or one of its sub-kinds."""
     return f"{_value(kind)}.".startswith(f"{_value(wanted)}.")
 
 

@@ -1,4 +1,4 @@
-"""Load importing files from disk into the project: searches for uses need all of them, open or not."""
+"""Load importing files from disk into the project, because a search for uses needs all of them, open or not."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PATIENCE = 0.25
 
 
 class Importers:
-    """Import graph of the files on disk, as of the last read."""
+    """The import graph of the files on disk, as of the last time they were read."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
@@ -40,7 +40,10 @@ class Importers:
         """The names declared in files of the workspace, loaded or not."""
 
     async def graph(self, uri: str | None = None) -> ImportGraph:
-        """Return the imports of the workspace's files; for a file outside it, those in its folder and below."""
+        """Return the imports of the workspace's files.
+
+        For a file outside the workspace, use the files in its folder and below.
+        """
         is_inside = uri is None or bool(self._server.folders(uri))
         near = "" if is_inside or uri is None else uri
         at, known = self._known.get(near, (-LASTING, ImportGraph({})))
@@ -52,7 +55,7 @@ class Importers:
         return known
 
     async def load(self, uris: Iterable[str]) -> bool:
-        """Load all files that import the given ones; return whether any was new. Requests go first."""
+        """Load all files that import the given ones. Return whether a file was new. Requests have priority."""
         found: set[str] = set()
         for uri in uris:
             if uri_to_path(uri) is not None:
@@ -74,14 +77,14 @@ class Importers:
         return bool(found) and await self._server.analyse(read, urgent=False)
 
     async def analyse(self, uri: str, position: types.Position, work: Callable[[Snapshot], Result]) -> Result:
-        """Run ``work`` once all files are loaded that may use the name at a position."""
+        """Load all files that may use the name at a position, then execute ``work``."""
         await self._load_users(uri, position)
         return await self._server.analyse(work)
 
     async def are_there(self, uri: str, position: types.Position) -> bool:
-        """Wait at most ``PATIENCE`` for the files that may use the name at a position.
+        """Load the files that may use the name at a position, but wait at most ``PATIENCE`` seconds.
 
-        Returns whether all are loaded; if not, loading continues.
+        Returns whether all are loaded. If not, loading continues in the background.
         """
         finished, _ = await asyncio.wait([self._server.spawn(self._load_users(uri, position))], timeout=PATIENCE)
         return bool(finished)
@@ -96,15 +99,15 @@ class Importers:
         await self.load([await self._server.analyse(declaring)])
 
     async def look_around(self) -> None:
-        """Load the files on disk that import open ones, and publish what changes through them."""
+        """Load the files on disk that import open files, and publish diagnostics that change because of them."""
         await self._publish_after(self._begin())
 
     def queue_search(self) -> None:
-        """Start ``look_around`` in the background; requests go first."""
+        """Start ``look_around`` in the background. Requests have priority."""
         self._server.spawn(self._publish_after(self._begin()))
 
     async def looked_around(self) -> None:
-        """Wait for a ``look_around`` in progress, if any: a rename must know all uses."""
+        """Wait for a ``look_around`` that is in progress, because a rename must know all uses of a name."""
         if self._looking is not None:
             await asyncio.wait([self._looking])
 

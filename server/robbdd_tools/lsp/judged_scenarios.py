@@ -1,4 +1,4 @@
-"""Verdicts of a run in the form that the editor keeps and shows."""
+"""Convert the verdicts of a run to the form that the editor stores and shows."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BADNESS = {Outcome.VIOLATED: 0.0, Outcome.UNKNOWN: 1e6, Outcome.HOLDS: 2e6}
 def judged_scenario(
     spec: ScenarioSpec, uri: str, digests: Digests, *, run: int, index: int, seed: int | None
 ) -> JudgedScenario:
-    """Return scenario number ``index`` (from 0) of a run, without verdicts; ``seed`` is the seed given by the user."""
+    """Return scenario number ``index`` (from 0) of a run, without verdicts. ``seed`` is the seed that the user gave."""
     execution = "" if spec.execution is None else spec.execution.iri
     return JudgedScenario(
         uri,
@@ -39,7 +39,10 @@ def judged_scenario(
 
 
 def judgement(clause: ClauseSpec, message: ClauseJudged, digests: Digests, shared_fault: str = "") -> Judgement:
-    """Return a verdict; ``shared_fault`` is the error in users' code that leaves all clauses unknown, if any."""
+    """Return a verdict on a clause.
+
+    ``shared_fault`` is the error in users' code that leaves all clauses of the run unknown, if there is one.
+    """
     outcome = Outcome(message.verdict)
     undefined = outcome is Outcome.UNKNOWN and message.cause == Cause.NO_STEP
     return Judgement(

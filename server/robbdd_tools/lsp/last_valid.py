@@ -1,4 +1,4 @@
-"""Answers about a model during editing: the last one made from a text without errors."""
+"""Answer requests about a model while it has errors. The last answer made from a text without errors is used."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Json = dict[str, Any]
 
 
 class LastValid:
-    """Keeps the last good answer by document and further keys."""
+    """Stores the last answer made from a text without errors, by document and further keys."""
 
     def __init__(self) -> None:
         self._kept: dict[str, dict[Hashable, Json]] = {}
@@ -24,7 +24,11 @@ class LastValid:
     def of(
         self, snapshot: Snapshot, uri: str, key: Hashable, make: Callable[[], Json]
     ) -> tuple[Json | None, str | None]:
-        """Return ``make``'s answer for a text without errors, else the last good one with the first error."""
+        """Return an answer about a document, and its first error.
+
+        If the text has no error, the answer is the result of ``make``, and the error is ``None``. Otherwise the answer
+        is the last one that was made from a text without errors, or ``None``.
+        """
         error = _first_error(snapshot, uri)
         kept = self._kept.setdefault(uri, {})
         if error is None:

@@ -1,4 +1,4 @@
-"""Latest-wins task runner that cannot starve: a task is replaced at most ``MAX_REPLACED`` times in a row."""
+"""Run tasks of which only the latest matters. A running task is replaced at most ``MAX_REPLACED`` times in a row."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ MAX_REPLACED = 8
 
 
 class LatestWins:
-    """Runs one task at a time for each key; a newer one replaces it, or, after ``MAX_REPLACED``, waits for its end.
+    """Runs one task at a time for each key.
 
-    ``spawn`` starts a coroutine as a task.
+    A newer task replaces the running one. After ``MAX_REPLACED`` replacements, the newer task waits for the end of the
+    running one. ``spawn`` starts a coroutine as a task.
     """
 
     def __init__(self, spawn: Callable[[Coroutine[Any, Any, None]], asyncio.Task[None]]) -> None:
@@ -24,7 +25,7 @@ class LatestWins:
         self._waiting: dict[str, Work] = {}
 
     def begin(self, key: str, work: Work) -> None:
-        """Run ``work`` instead of the running or waiting task of this key."""
+        """Run ``work`` as the latest task of this key; see the class for the task that is running."""
         running = self._running.get(key)
         if running is not None:
             replaced = self._replaced.get(key, 0)
@@ -36,7 +37,7 @@ class LatestWins:
         self._start(key, work)
 
     def end(self, key: str) -> None:
-        """Cancel the running and the waiting task of a key."""
+        """Cancel the running task and the waiting task of a key."""
         self._waiting.pop(key, None)
         self._replaced.pop(key, None)
         running = self._running.pop(key, None)

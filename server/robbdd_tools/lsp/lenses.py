@@ -27,9 +27,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Runnable:
-    """A scenario variant or an execution of one: ``choice`` are the options of the command that runs it.
+    """A scenario variant, or an execution of one, that can be run.
 
-    ``number`` is the number of its scenarios, if known; ``variant`` is the IRI of a plain variant.
+    ``choice`` are the options of the command that runs it. ``number`` is the number of its scenarios, if known.
+    ``variant`` is the IRI of the variant; ``None`` for an execution.
     """
 
     definition: Definition
@@ -72,7 +73,7 @@ def register_lenses(server: RobbddServer) -> None:
 
 
 def source_actions(snapshot: Snapshot, uri: str, span: Span, findings: Findings) -> Iterator[types.CodeAction]:
-    """Yield the actions on the scenarios in a part of a file, and on the file."""
+    """Return the actions on the scenarios in a part of a file, and on the whole file."""
     every = list(_runnable(snapshot, uri, findings))
     commands = [one.command(one.title, RUN) for one in every if one.touches(span)]
     if any(one.variant is not None for one in every):

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Locations in a file and its imports (``uris``).
+    """The client locations of the declarations in a file and its imports (``uris``).
 
-    ``declarations`` are those of clauses and variants by IRI, ``rows`` those of table rows by the IRI of the variant
-    and the number of the scenario (from 1).
+    ``declarations`` are the locations of clauses and variants by IRI. ``rows`` are the locations of table rows by the
+    IRI of the variant and the number of the scenario (from 1).
     """
 
     uris: tuple[str, ...]

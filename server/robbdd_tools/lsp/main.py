@@ -17,7 +17,7 @@ LARGEST_PORT = 65535
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the server until its client ends it; returns the exit code."""
+    """Run the server until its client ends it. Return the exit code."""
     parser = argparse.ArgumentParser("robbdd-lsp", description="Language server for RobBDD models.")
     parser.add_argument("--version", action="version", version=f"robbdd-lsp {__version__}")
     way = parser.add_mutually_exclusive_group()
@@ -58,7 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def address(text: str) -> tuple[str, int]:
-    """Parse ``PORT`` or ``HOST:PORT``; raises ``ArgumentTypeError`` for anything else."""
+    """Return the host and the port in ``PORT`` or ``HOST:PORT``. Raises ``ArgumentTypeError`` for any other text."""
     host, colon, port = text.rpartition(":")
     if not port.isdecimal() or int(port) > LARGEST_PORT or (colon and not host):
         raise argparse.ArgumentTypeError(f"'{text}' is not an address: write PORT or HOST:PORT, such as 2087")
@@ -66,7 +66,10 @@ def address(text: str) -> tuple[str, int]:
 
 
 def _log_to(file: Path | None) -> None:
-    """Log warnings to standard error, or all records to a file; standard output belongs to the protocol."""
+    """Write all log records to a file or, without one, warnings to standard error.
+
+    Standard output is not used, because it belongs to the protocol.
+    """
     handler = logging.StreamHandler(sys.stderr) if file is None else logging.FileHandler(file, encoding="utf-8")
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
     handler.addFilter(RefusalFilter())

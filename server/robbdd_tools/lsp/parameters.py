@@ -1,4 +1,4 @@
-"""Parameters of our own requests, which the protocol's schema does not check."""
+"""Read the parameters of RobBDD's own requests, which the schema of the protocol does not check."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LARGEST = 2**31 - 1
 
 
 class Parameters:
-    """The parameters sent by a client; each method raises ``JsonRpcInvalidParams`` for a value of another type."""
+    """The parameters that a client sent. Each method raises ``JsonRpcInvalidParams`` for a value of the wrong type."""
 
     def __init__(self, given: Any) -> None:
         # pygls converts JSON objects to named tuples and leaves all other values unchanged.
@@ -27,14 +27,14 @@ class Parameters:
         return found
 
     def optional_text(self, name: str) -> str | None:
-        """Return an optional text, ``None`` if absent."""
+        """Return an optional text, or ``None`` if it is absent."""
         found = self._given.get(name)
         if found is not None and not isinstance(found, str):
             raise JsonRpcInvalidParams(f"'{name}' must be a text")
         return found
 
     def optional_number(self, name: str) -> int | None:
-        """Return an optional non-negative integer, ``None`` if absent."""
+        """Return an optional non-negative integer, or ``None`` if it is absent."""
         found = self._given.get(name)
         if found is None:
             return None
@@ -43,7 +43,7 @@ class Parameters:
         return found
 
     def optional_position(self, name: str) -> types.Position | None:
-        """Return an optional text position, ``None`` if absent."""
+        """Return an optional text position, or ``None`` if it is absent."""
         found = self._given.get(name)
         if found is None:
             return None
@@ -54,10 +54,10 @@ class Parameters:
         return types.Position(line, character)
 
     def run(self) -> str | None:
-        """Return the stored run, a number or a word, ``None`` if absent."""
+        """Return the number or the word that names a stored run, or ``None`` if it is absent."""
         found = self._given.get("run")
         return str(self.optional_number("run")) if isinstance(found, int) else self.optional_text("run")
 
     def others(self, *names: str) -> dict[str, Any]:
-        """Return the present ones of some values."""
+        """Return those of the named parameters that are present."""
         return {name: self._given[name] for name in names if self._given.get(name) is not None}

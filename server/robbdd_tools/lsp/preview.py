@@ -1,7 +1,7 @@
-"""The request ``robbdd/preview``: the Gherkin of a document during editing.
+"""The request ``robbdd/preview``: show the Gherkin of a document while it is edited.
 
-Parameters: ``uri``; optionally ``scenario`` (IRI of a variant) and ``most`` (scenarios to show). The answer is
-described by ``docs/schemas/preview.schema.json``.
+The parameters are ``uri`` and, optionally, ``scenario`` (the IRI of a variant) and ``most`` (the number of scenarios to
+show). ``docs/schemas/preview.schema.json`` describes the answer.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ NOTHING: dict[str, Any] = {"text": "", "lines": [], "shown": 0, "total": 0}
 
 
 class Previews:
-    """Makes previews and keeps the last good one of each document and scenario."""
+    """Makes previews, and stores the last one without errors for each document and scenario."""
 
     def __init__(self) -> None:
         self._kept = LastValid()
         self.forget = self._kept.forget
 
     def show(self, snapshot: Snapshot, convert: Converter, asked: Parameters) -> dict[str, Any]:
-        """Return the answer to a request; for a text with errors, the last preview without errors."""
+        """Return the answer to a request. For a text with errors, this is the last preview without errors."""
         uri = asked.text("uri")
         scenario = asked.optional_text("scenario")
         most = asked.optional_number("most") or MAX_SHOWN

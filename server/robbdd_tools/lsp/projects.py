@@ -1,7 +1,8 @@
 """The requests ``robbdd/templates`` and ``robbdd/newProject``: create a project from the editor.
 
-The first has no parameters and answers a list of ``name`` and ``about``. The second takes ``template`` and the ``uri``
-of a new or empty folder, and answers the URIs of the ``models`` written there, or the ``problem``.
+``robbdd/templates`` has no parameters; the answer is a list of ``name`` and ``about``. The parameters of
+``robbdd/newProject`` are ``template`` and the ``uri`` of a new or empty folder. Its answer has the URIs of the
+``models`` that were written there, or the ``problem``.
 """
 
 from __future__ import annotations

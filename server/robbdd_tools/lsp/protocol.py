@@ -1,4 +1,4 @@
-"""pygls' protocol with serialisation moved off the event loop into a separate thread."""
+"""The protocol of pygls, with serialisation in a separate thread instead of the event loop."""
 
 from __future__ import annotations
 
@@ -28,14 +28,17 @@ class Protocol(LanguageServerProtocol):
         self._outbox = ThreadPoolExecutor(1, thread_name_prefix="outbox")
 
     def set_writer(self, writer: Any, include_headers: bool = True) -> None:
-        """Use this writer from now on."""
+        """Set the writer for all messages from now on."""
         if isinstance(writer, asyncio.StreamWriter):
             writer = LoopWriter(writer)
         super().set_writer(writer, include_headers)
 
     @lsp_method(types.EXIT)
     def lsp_exit(self, *arguments: Any) -> Generator[Any, Any, None]:
-        """End the server when everything is sent; immediately if the client reads nothing or work does not end."""
+        """End the server after everything is sent.
+
+        If the client does not read or work does not end, the server ends immediately.
+        """
         end_soon(self.exit_code)
         self._outbox.shutdown(wait=True)
         # pygls does not declare the types of these arguments.
@@ -47,7 +50,7 @@ class Protocol(LanguageServerProtocol):
         return 0 if self._shutdown else 1
 
     def handle_message(self, message: Any) -> None:
-        """Handle a message; after ``shutdown`` every request is refused."""
+        """Handle a message. After ``shutdown``, every request is refused."""
         if self._shutdown and hasattr(message, "id") and hasattr(message, "method"):
             self._send_response(message.id, error=self._late().to_response_error())
         elif getattr(message, "method", "") == types.EXIT:
@@ -56,7 +59,7 @@ class Protocol(LanguageServerProtocol):
             super().handle_message(message)
 
     def _exit(self, message: Any, turns: int = 100) -> None:
-        """Handle ``exit`` after the answers that are ready, such as that of ``shutdown``."""
+        """Handle ``exit`` after the answers that are ready have been sent, for example the answer to ``shutdown``."""
         if turns and self._request_futures:
             asyncio.get_running_loop().call_soon(self._exit, message, turns - 1)
         else:
@@ -66,7 +69,7 @@ class Protocol(LanguageServerProtocol):
         return JsonRpcInvalidRequest("the server is shut down: only 'exit' may follow")
 
     def structure_message(self, data: dict[str, Any]) -> Any:
-        """Parse a message; a request with invalid parameters is answered here, as pygls does not answer it."""
+        """Parse a message. A request with invalid parameters is answered here, because pygls does not answer it."""
         try:
             return super().structure_message(with_canonical_uris(data))
         except JsonRpcException as error:
@@ -106,7 +109,7 @@ class Protocol(LanguageServerProtocol):
 
 
 def with_canonical_uris(message: Any) -> Any:
-    """Return a message with one canonical URI for each file; the texts of documents are not changed."""
+    """Return a message in which each file has one canonical URI. The texts of documents are not changed."""
     match message:
         case str():
             return canonical_uri(message)
@@ -120,18 +123,18 @@ def with_canonical_uris(message: Any) -> Any:
 
 
 class LoopWriter:
-    """Thread-safe writer to an asyncio stream, which may only be used in its event loop's thread."""
+    """A thread-safe writer to an asyncio stream. The stream itself may only be used in the thread of its event loop."""
 
     def __init__(self, stream: asyncio.StreamWriter) -> None:
         self._stream = stream
         self._loop = asyncio.get_running_loop()
 
     def write(self, data: bytes) -> None:
-        """Schedule a write, in call order."""
+        """Schedule a write. Writes are done in the order of the calls."""
         self._loop.call_soon_threadsafe(self._stream.write, data)
 
     async def close(self) -> None:
-        """Close after all scheduled writes."""
+        """Close the stream after all scheduled writes."""
         self._stream.close()
         with suppress(ConnectionError):
             await self._stream.wait_closed()

@@ -1,7 +1,7 @@
-"""Pull diagnostics: of a document, and of the whole workspace.
+"""Pull diagnostics of a document and of the whole workspace.
 
-Used only if the server can also ask the client to pull again (``workspace/diagnostic/refresh``), since findings of
-shapes and results of runs arrive later than the text. For all other clients, diagnostics are published.
+They are used only if the server can ask the client to pull again (``workspace/diagnostic/refresh``), because findings
+of shapes and results of runs arrive later than the text. For all other clients, diagnostics are published.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def can_pull(client: types.ClientCapabilities) -> bool:
-    """Return whether a client pulls diagnostics, and again at the server's request."""
+    """Return whether a client pulls diagnostics, and pulls them again when the server asks for it."""
     asks = client.text_document is not None and client.text_document.diagnostic is not None
     return asks and is_refreshed(client, DIAGNOSTICS)
 
@@ -38,7 +38,7 @@ def register_pull(server: RobbddServer) -> None:
     async def of_workspace(
         ls: RobbddServer, params: types.WorkspaceDiagnosticParams
     ) -> types.WorkspaceDiagnosticReport:
-        """Return the files with changed diagnostics; if there are none, wait for a change."""
+        """Return the files whose diagnostics have changed. If there are none, wait for a change."""
         known = {entry.uri: entry.value for entry in params.previous_result_ids}
         is_first, published = not known, False
         while True:

@@ -1,4 +1,4 @@
-"""Ask the client to refresh diagnostics, tokens, hints and lenses after changes in other files or results."""
+"""Ask the client to refresh diagnostics, tokens, hints and lenses after other files or results have changed."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ def is_refreshed(capabilities: types.ClientCapabilities, what: str) -> bool:
 
 
 class Refreshes:
-    """Sends one refresh for each kind, however often it is requested, and only if the client supports it."""
+    """Sends one refresh of each kind, however often it is requested.
+
+    Kinds that the client does not support are skipped.
+    """
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
@@ -33,7 +36,7 @@ class Refreshes:
         self._sending: asyncio.TimerHandle | None = None
 
     def want(self, *what: str, after: float = GATHERING) -> None:
-        """Refresh within ``after`` seconds."""
+        """Request refreshes of the given kinds. They are sent within ``after`` seconds."""
         self._wanted |= dict.fromkeys(what)
         loop = asyncio.get_running_loop()
         if self._sending is not None:

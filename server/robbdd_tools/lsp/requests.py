@@ -1,4 +1,4 @@
-"""Common parts of all handlers: errors are caught, and answers about an outdated text are withheld."""
+"""Common parts of all handlers: they catch errors and withhold answers about an outdated text."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Handler = Callable[..., Any]
 
 @dataclass(eq=False)
 class _Waiting:
-    """A request in progress, with its document."""
+    """A request in progress, with the document that it is about."""
 
     method: str
     uri: str
@@ -28,21 +28,24 @@ class _Waiting:
 
 
 class Requests:
-    """The requests in progress. ``repeated`` are methods that the client repeats after a text change."""
+    """The requests in progress. ``repeated`` are the methods that the client repeats after a text change."""
 
     def __init__(self) -> None:
         self.repeated: frozenset[str] = frozenset()
         self._waiting: set[_Waiting] = set()
 
     def text_changed(self, uri: str) -> None:
-        """Answer requests that the client repeats anyway with ``ContentModified``, and cancel their work."""
+        """Cancel requests about a document, because its text has changed.
+
+        Only requests that the client repeats anyway are cancelled. They are answered with ``ContentModified``.
+        """
         for waiting in self._waiting:
             if waiting.uri == uri and waiting.method in self.repeated and waiting.task is not None:
                 waiting.outdated = True
                 waiting.task.cancel()
 
     def with_logged_errors(self, method: str, handler: Handler) -> Handler:
-        """Return a handler whose errors are logged with their context; the client gets a one-sentence message."""
+        """Return a handler whose errors are logged with their context. The client gets a message of one sentence."""
         if inspect.iscoroutinefunction(handler):
 
             @wraps(handler)

@@ -1,4 +1,7 @@
-"""Pictures for a clause's last result, if the client shows pictures: the violated moment, the margin over time."""
+"""Pictures of the last result of a clause: the violated moment, and the margin over time.
+
+They are added to a hover if the client can show pictures.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +37,7 @@ _LOG = logging.getLogger(__name__)
 
 
 def pictures_of(stores: Stores, judged: Judged) -> str:
-    """Return a result's pictures side by side as Markdown; empty if the stored run is gone."""
+    """Return the pictures of a result side by side as Markdown; empty if the stored run no longer exists."""
     scenario, judgement = judged
     try:
         run = _run_of(stores.of(scenario.model), scenario)
@@ -47,7 +50,7 @@ def pictures_of(stores: Stores, judged: Judged) -> str:
 
 
 def replay_link(judged: Judged) -> str:
-    """Return a Markdown link that replays a result's execution; empty without a stored run."""
+    """Return a Markdown link that replays the execution of a result; empty if there is no stored run."""
     scenario, judgement = judged
     if not scenario.run:
         return ""

@@ -1,4 +1,4 @@
-"""Show a run in the client during its execution: results at the clauses, messages, progress."""
+"""Show a run in the client while it executes: results at the clauses, messages and progress."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class RunFollower:
-    """Follows one run. Messages arrive in the run's thread and are handled in the event loop."""
+    """Follows one run. Messages arrive in the thread of the run and are handled in the event loop."""
 
     def __init__(self, ls: RobbddServer, active: ActiveRun, text: RunText, run: Run) -> None:
         self._ls = ls
@@ -48,7 +48,7 @@ class RunFollower:
         run.listen(self._hear)
 
     async def follow(self) -> None:
-        """Execute the run and show it until its end."""
+        """Execute the run to its end and show it."""
         uris = self._text.places.uris
         await self._progress.begin()
         try:
@@ -65,7 +65,7 @@ class RunFollower:
         self._ls.refreshes.want(LENSES)
 
     def summary(self) -> dict[str, Any]:
-        """Return how the run ended, as the answer to the requesting client."""
+        """Return the outcome of the run, for the answer to the client that requested it."""
         outcomes = Counter(str(scenario.verdict) for scenario in self._results.scenarios)
         counts = {outcome: outcomes[outcome] for outcome in ("holds", "violated", "unknown")}
         total, cancelled = len(self._results.scenarios), self._active.cancelled
@@ -75,7 +75,7 @@ class RunFollower:
         self._loop.call_soon_threadsafe(self._take, message)
 
     def _conclude(self) -> None:
-        """Close the scenarios left open, and remove results that no longer belong to the model."""
+        """Close the scenarios that are still open, and remove results that no longer belong to the model."""
         ending = self._run.ending
         for judged in self._results.close(ending):
             self._take(judged, open_after_cancel=self._active.cancelled)
@@ -91,7 +91,11 @@ class RunFollower:
         self._take(RunFinished(not ending))
 
     def _take(self, message: RunMessage, *, open_after_cancel: bool = False) -> None:
-        """Handle a message; a clause left open by cancellation is unknown in the report, but not stored."""
+        """Handle a message.
+
+        ``open_after_cancel`` is true for a clause that a cancelled run left open. Such a clause is unknown in the
+        report, but its verdict is not stored.
+        """
         self._results.apply(message)
         match message:
             case ScenarioStarted(index):

@@ -1,6 +1,6 @@
-"""The notification ``robbdd/runMessage``: a run message with the texts and places that a client needs.
+"""The notification ``robbdd/runMessage``: a message of a run, with the texts and places that a client needs.
 
-It is described by ``docs/schemas/runmessage.schema.json``.
+``docs/schemas/runmessage.schema.json`` describes it.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ RUN_MESSAGE = "robbdd/runMessage"
 def for_client(
     run: str, text: RunText, results: RunResults, message: RunMessage, *, cancelled: bool = False
 ) -> dict[str, Any]:
-    """Return the parameters of the notification about a message of run ``run``.
+    """Return the parameters of the notification about a message of the run named ``run``.
 
-    A clause with ``cancelled`` was left open by a cancelled run.
+    ``cancelled`` is true for a clause that a cancelled run left open.
     """
     fields: dict[str, Any] = {"type": type(message).__name__, **asdict(message)}
     match message:

@@ -1,4 +1,4 @@
-"""Arguments of the commands that run scenarios, and the selection that they define."""
+"""The arguments of the commands that run scenarios, and the selection of scenarios that they define."""
 
 from __future__ import annotations
 
@@ -19,18 +19,21 @@ NO_SCENARIO_FAILED = "no scenario failed"
 
 
 class BadArgument(RobbddError):
-    """A command's argument is not as documented."""
+    """The argument of a command does not have its documented form."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """Options of a client; all but ``uri`` are optional.
+    """The options of a client for a run. All but ``uri`` are optional.
 
-    ``scenario`` is a variant or execution (local name, CURIE or IRI), ``variation`` the number of one scenario in its
-    variant. Each entry of ``only`` has a ``variant`` (IRI) and optionally the numbers of scenarios (``variations``) and
-    one ``execution`` (IRI). ``failed`` selects scenarios that did not hold in their last run. ``where``, ``first``,
-    ``sample``, ``pairwise``, ``seed``, ``repeat`` and ``jobs`` are those of ``robbdd run``. ``record`` renders a
-    picture of each violation. ``token`` is the run's name in its messages.
+    - ``scenario``: a variant or an execution, by local name, CURIE or IRI.
+    - ``variation``: the number of one scenario in its variant.
+    - ``only``: a list of scenarios. Each entry has a ``variant`` (IRI) and, optionally, the numbers of scenarios
+      (``variations``) and one ``execution`` (IRI).
+    - ``failed``: select the scenarios that did not hold in their last run.
+    - ``where``, ``first``, ``sample``, ``pairwise``, ``seed``, ``repeat`` and ``jobs``: as for ``robbdd run``.
+    - ``record``: render a picture of each violation.
+    - ``token``: the name of the run in the messages about it.
     """
 
     uri: str
@@ -51,7 +54,7 @@ class RunOptions:
 
     @classmethod
     def of(cls, argument: Mapping[str, Any]) -> RunOptions:
-        """Read the argument of a command; raises ``BadArgument``."""
+        """Return the options in the argument of a command. Raises ``BadArgument``."""
         known = {name: argument[name] for name in cls.__slots__ if argument.get(name) is not None}
         known.setdefault("scenario", argument.get("variant"))
         for name, (fits, form) in _FORMS.items():
@@ -78,9 +81,9 @@ def select(
     results: Iterable[JudgedScenario],
     substitutions: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[Selection, int | None]:
-    """Return the selection for a model, and the number of repetitions (``None``: that of the model).
+    """Return the selection for a model, and the number of repetitions (``None`` for the number that the model states).
 
-    ``results`` are those of earlier runs. Raises ``NothingFailed``.
+    ``results`` are the results of earlier runs. Raises ``NothingFailed``.
     """
     variants = [variant.iri for story in model.stories for variant in story.variants]
     names = () if options.scenario is None else (options.scenario,)
@@ -111,7 +114,7 @@ def select(
 
 
 def _failed(failed: Sequence[JudgedScenario]) -> Failed:
-    """Return how to execute failed scenarios again, with the seed of their latest run."""
+    """Return the selection that executes failed scenarios again, with the seed of their latest run."""
     if not failed:
         raise NothingFailed(NO_SCENARIO_FAILED)
     listed = [

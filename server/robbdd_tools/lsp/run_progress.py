@@ -1,4 +1,4 @@
-"""Work-done progress of a run."""
+"""Show the progress of a run as work-done progress of the protocol."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class RunProgress:
-    """Work-done progress with a ``token``; nothing is sent to a client that does not support it or refuses it."""
+    """Work-done progress with a ``token``. Nothing is sent to a client that does not support it or refuses it."""
 
     def __init__(self, server: RobbddServer, token: str) -> None:
         self._progress = server.work_done_progress
@@ -34,7 +34,7 @@ class RunProgress:
         self._progress.begin(self._token, begin)
 
     def report(self, done: int, failed: int, total: int) -> None:
-        """Report how many scenarios are finished, and how many of these did not hold."""
+        """Report how many scenarios have finished, and how many of these did not hold."""
         if self._is_shown:
             words = f"{done}/{total} scenarios" + (f", {failed} not passed" if failed else "")
             self._progress.report(

@@ -1,4 +1,4 @@
-"""Plan a run from the editor, and record the text that it judges."""
+"""Plan a run from the editor, and record the text that the run judges."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RunText:
-    """The planned text of a run: the places and digests of its declarations.
+    """The text that a run judges: the places and digests of its declarations.
 
-    ``variants`` and ``executions`` are the IRIs of all in the model. ``seed`` is the seed that the user gave for this
-    run or, when failures are executed again, for theirs; ``None`` without one. ``notes`` are shown when it starts.
+    - ``variants`` and ``executions``: the IRIs of all variants and executions in the model.
+    - ``seed``: the seed that the user gave, or ``None``. If failures are executed again, it is the seed of their run.
+    - ``notes``: messages to show when the run starts.
     """
 
     uri: str
@@ -41,7 +42,10 @@ class RunText:
 
 @dataclass(frozen=True, slots=True)
 class PlannedRun:
-    """Scenarios to execute, number of repetitions (``repeat``; ``None``: that of the model), and the text to use."""
+    """A planned run: the scenarios to execute and the text that they judge.
+
+    ``repeat`` is the number of repetitions; ``None`` takes the number that the model states.
+    """
 
     plan: Plan
     repeat: int | None
@@ -55,9 +59,9 @@ def plan_run(
     results: Iterable[JudgedScenario],
     substitutions: Mapping[str, str] = MappingProxyType({}),
 ) -> PlannedRun:
-    """Plan a run; ``results`` are those of earlier runs, ``substitutions`` those of the client's settings.
+    """Plan a run. Raises ``ModelErrors``, ``NothingToRun``, ``NothingFailed`` and ``SelectionError``.
 
-    Raises ``ModelErrors``, ``NothingToRun``, ``NothingFailed`` and ``SelectionError``.
+    ``results`` are the results of earlier runs. ``substitutions`` are those in the client's settings.
     """
     uri = options.uri
     file = runnable_model(snapshot, uri)

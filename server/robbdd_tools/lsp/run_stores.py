@@ -1,4 +1,4 @@
-"""Stores of runs from the editor: in their projects, or, if that fails, in a folder of the server."""
+"""Store the runs of the editor in their projects or, if that fails, in a temporary folder of the server."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, project_root,
 
 
 class Stores:
-    """The stores of one server's projects."""
+    """The stores of runs in the projects of one server."""
 
     def __init__(self) -> None:
         self._own: dict[Path | None, RunStore] = {}
@@ -30,9 +30,9 @@ class Stores:
         return self._made(None) if path is None else store_beside(path)
 
     def replayable(self, uri: str) -> frozenset[str]:
-        """Return the IRIs of the variants that a document's store can replay, from any run.
+        """Return the IRIs of the variants that have a replayable run in the store of a document.
 
-        A run is read again only when its results have changed.
+        A run is read again only if its results have changed.
         """
         return frozenset[str]().union(*map(self._traced_in, self.of(uri).runs()))
 
@@ -50,9 +50,10 @@ class Stores:
         return known[1]
 
     def begin(self, uri: str) -> tuple[StoredRun, str]:
-        """Create the folder of a new run; return it with a note for the user if it is lost with the server.
+        """Create the folder of a new run, and return it with a note for the user.
 
-        Raises ``OSError`` if the fallback cannot be written either.
+        If the store cannot be written, a temporary folder is used, and the note says that the run is lost when the
+        server ends. Raises ``OSError`` if the temporary folder cannot be written either.
         """
         path = uri_to_path(uri)
         store = self.of(uri)
@@ -67,7 +68,7 @@ class Stores:
             return own.begin(), f"this run is kept in {own.folder} until the server ends: {why}"
 
     def close(self) -> None:
-        """Remove the server's own folder."""
+        """Remove the temporary folder of the server."""
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)
 

@@ -1,4 +1,4 @@
-"""Runs from the editor: one at a time, planned and executed by the workbench, shown by ``run_follower``."""
+"""Runs from the editor, one at a time. The workbench plans and executes them, and ``run_follower`` shows them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _BUSY = "a run is in progress: cancel it first"
 
 
 async def start_run(ls: RobbddServer, argument: dict[str, Any], **more: object) -> dict[str, Any]:
-    """Execute scenarios to the end and show their results; return a summary, or why nothing was run."""
+    """Execute scenarios to the end and show their results. Return a summary, or the reason why nothing was run."""
     if not ls.trusted:
         return _refused(ls, await refuse_run(ls, {**argument, **more}))
     if ls.run is not None:
@@ -59,7 +59,7 @@ def cancel_run(ls: RobbddServer) -> None:
 
 
 async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
-    """Plan a run on the open texts and prepare its folder; raises ``RobbddError`` and ``OSError``."""
+    """Plan a run on the texts of open files, and prepare its folder. Raises ``RobbddError`` and ``OSError``."""
     results = list(ls.results)
     substitutions = ls.settings.substitutions(options.uri)
     planned = await ls.in_background(
@@ -73,13 +73,13 @@ async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
 
 
 def _refused(ls: RobbddServer, problem: str, *, momentary: bool = False) -> dict[str, Any]:
-    """Show why nothing was run; a ``momentary`` reason is unrelated to the scenarios."""
+    """Show the reason why nothing was run. ``momentary`` is true if the reason is unrelated to the scenarios."""
     ls.warn(problem)
     return {"problem": problem, "momentary": True} if momentary else {"problem": problem}
 
 
 async def _record(ls: RobbddServer, place: StoredRun) -> list[str]:
-    """Render the violations of a run into its folder; return the pictures' URIs."""
+    """Render the violations of a run into its folder. Return the URIs of the pictures."""
     pictures = place.folder / PICTURES
     try:
         await asyncio.to_thread(render_violations, place.folder, pictures)

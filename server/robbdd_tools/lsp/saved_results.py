@@ -1,4 +1,4 @@
-"""Results that survive a restart: one file in ``.robbdd/`` of each workspace folder."""
+"""Save results, so that they survive a restart: one file in ``.robbdd/`` of each workspace folder."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class KeptResults:
-    """Results of earlier sessions; ``seen`` is the last run read from each store (by its folder)."""
+    """The results of earlier sessions. ``seen`` maps the folder of each store to the last run that was read from it."""
 
     scenarios: tuple[JudgedScenario, ...] = ()
     seen: Mapping[str, int] = field(default_factory=dict[str, int])
 
 
 def load_results(folders: Iterable[Path]) -> KeptResults:
-    """Return the results kept in workspace folders; unreadable files are skipped."""
+    """Return the results that are saved in workspace folders. Unreadable files are skipped."""
     found = [_read(folder / FOLDER / FILE) for folder in folders]
     scenarios = tuple(scenario for kept in found for scenario in kept.scenarios)
     return KeptResults(scenarios, {store: number for kept in found for store, number in kept.seen.items()})
 
 
 def save_results(folders: Iterable[Path], scenarios: Iterable[JudgedScenario], seen: Mapping[str, int]) -> None:
-    """Write each scenario to the innermost workspace folder with its model; unwritable folders are skipped."""
+    """Save each scenario in the innermost workspace folder that contains its model. Unwritable folders are skipped."""
     every = list(scenarios)
     for folder, own in _by_folder(sorted(folders, key=lambda path: -len(path.parts)), every):
         document = {"version": VERSION, "seen": dict(seen), "scenarios": [as_json(entry) for entry in own]}

@@ -1,4 +1,4 @@
-"""State of the server: the project behind its analysis thread, published data, running work."""
+"""The state of the server: the project and its analysis thread, published data, and work in progress."""
 
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ _LOG = logging.getLogger(__name__)
 
 
 class RobbddServer(LanguageServer):
-    """One client's server.
+    """The server of one client.
 
-    All analysis is done in one thread, in message order, so that the event loop stays free and no answer is older than
-    the edits before it.
+    All analysis is done in one thread in the order of messages. So the event loop stays free, and every answer takes
+    all earlier edits into account.
     """
 
     def __init__(self) -> None:
@@ -95,37 +95,37 @@ class RobbddServer(LanguageServer):
         self._changed: dict[str, None] = {}
 
     def feature(self, feature_name: str, options: Any | None = None) -> Callable[[Handler], Handler]:
-        """Register a method's handler; its errors are caught."""
+        """Register the handler of a protocol method. Its errors are caught."""
         register = super().feature(feature_name, options)
         return lambda handler: register(self.requests.with_logged_errors(feature_name, handler))
 
     def command(self, command_name: str) -> Callable[[Handler], Handler]:
-        """Register a command; its errors are caught."""
+        """Register a command. Its errors are caught."""
         register = super().command(command_name)
         return lambda handler: register(self.requests.with_logged_errors(command_name, handler))
 
     def report_server_error(self, error: Exception, source: Any) -> None:
-        """Log an error that no request waits for; handlers have already logged theirs with context."""
+        """Log an error that no request waits for. Handlers have already logged their own errors with context."""
         if not isinstance(error, JsonRpcException):
             _LOG.error("internal error (%s)", source, exc_info=error)
 
     async def analyse(self, work: Callable[[Snapshot], Result], urgent: bool = True) -> Result:
-        """Run ``work`` on the latest snapshot in the analysis thread."""
+        """Execute ``work`` on the latest snapshot in the analysis thread."""
         return await self._analysis.do(lambda: work(self.project.snapshot()), urgent)
 
     async def _in_thread(self, work: Callable[[], Result]) -> Result:
         return await self._analysis.do(work)
 
     async def in_background(self, work: Callable[[Snapshot], Result], *unopened: str) -> Result:
-        """Run ``work`` on the latest texts in a separate thread, so that requests do not wait for it.
+        """Execute ``work`` on the latest texts in a separate thread, so that requests do not wait for it.
 
-        Files that may not be open must be named.
+        The files that it needs must be named if they may not be open.
         """
         texts = await self._in_thread(self.project.texts)
         return await self._background.work(texts, work, *unopened)
 
     async def text_changed(self, uri: str, version: int, text: str) -> None:
-        """Apply a new text of an open document and publish its effects."""
+        """Set the new text of an open document, and publish the effects on diagnostics."""
         is_new = uri not in self._opened
         self._opened.setdefault(uri)
         if is_new:
@@ -142,7 +142,7 @@ class RobbddServer(LanguageServer):
         await self.user_errors.refresh()
 
     async def text_closed(self, uri: str) -> None:
-        """Return to the file on disk and remove its diagnostics from the editor."""
+        """Use the file on disk instead of the closed text, and remove the diagnostics of the file from the editor."""
         self._opened.pop(uri, None)
         self._publishing.end(uri)
         self.validator.forget(uri)
@@ -156,7 +156,7 @@ class RobbddServer(LanguageServer):
         self.survey.closed(uri)
 
     async def files_changed(self, uris: Sequence[str]) -> None:
-        """Read changed files again, and publish the effects on open ones."""
+        """Read changed files again, and publish the effects on open files."""
 
         def forget() -> None:
             for uri in uris:
@@ -168,7 +168,10 @@ class RobbddServer(LanguageServer):
         await self.settings_changed(uris if all(language_of(uri) for uri in uris) else None)
 
     async def settings_changed(self, files: Sequence[str] | None = None) -> None:
-        """Check all documents again after a change of settings, or only those affected by changed ``files``."""
+        """Check all documents again after settings have changed.
+
+        If ``files`` are given, check those affected by them only.
+        """
         self.survey.schedule(files)
         await self.user_errors.refresh()
         for uri in list(self._opened):
@@ -211,12 +214,12 @@ class RobbddServer(LanguageServer):
         return Request(next(self._orders), uri, texts, self.settings.shapes(uri), surveyed=True, importers=importers)
 
     def _order(self, snapshot: Snapshot, uri: str) -> tuple[Request, dict[str, str]]:
-        """Return the request to validate a file, with the texts that its answer will refer to."""
+        """Return a request to validate a file, and the texts to which its answer will refer."""
         texts = {name: snapshot.document(name).text for name in snapshot.reachability.walk(uri)}
         return Request(next(self._orders), uri, self.project.texts(), self.settings.shapes(uri)), texts
 
     def show_results(self, uris: Sequence[str]) -> None:
-        """Show new results of clauses in some files soon; combine frequent updates."""
+        """Show new results of clauses in some files soon. Frequent updates are combined."""
         if not self._changed:
             self.spawn(self._show_changed())
         self._changed |= dict.fromkeys(uris)
@@ -226,7 +229,7 @@ class RobbddServer(LanguageServer):
         await self.show_changed()
 
     async def show_changed(self) -> None:
-        """Show the waiting results now."""
+        """Show the results that are waiting to be shown."""
         changed, self._changed = self._changed, {}
         self.findings = self.results.findings()
         self.refreshes.want(HINTS, LENSES)
@@ -243,7 +246,10 @@ class RobbddServer(LanguageServer):
                 await self._publish_one(uri)
 
     def folders(self, uri: str | None = None) -> list[Path]:
-        """Return the workspace folders, with ``uri`` those that contain the file, innermost first."""
+        """Return the workspace folders.
+
+        With ``uri``, return those that contain the file, innermost first.
+        """
         paths = [path for folder in self.workspace.folders if (path := uri_to_path(folder)) is not None]
         file = None if uri is None else uri_to_path(uri)
         if uri is not None:
@@ -251,7 +257,7 @@ class RobbddServer(LanguageServer):
         return sorted(paths, key=lambda path: -len(path.parts))
 
     def warn(self, message: str, kind: types.MessageType = types.MessageType.Error) -> None:
-        """Show the user why something was not done."""
+        """Show the user a message that says why something was not done."""
         # VS Code turns [words](command:…) in messages into links; the words may be a user's. The space has no width.
         shown = printable(message).replace("](", "]\u200b(")
         self.window_show_message(types.ShowMessageParams(type=kind, message=shown))
@@ -278,7 +284,7 @@ class RobbddServer(LanguageServer):
             self.send(uri, version, diagnostics)
 
     async def diagnostics(self, uri: str) -> tuple[int, list[types.Diagnostic]]:
-        """Return all current diagnostics of a file, with the version of its text."""
+        """Return all current diagnostics of a file, and the version of the text to which they refer."""
 
         broken = [scenario for scenario in self.results if scenario.faults]
 

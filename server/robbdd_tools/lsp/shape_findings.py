@@ -1,4 +1,4 @@
-"""The validation process's findings about open files, moved along with later edits."""
+"""The findings of the validation process about open files. Their places are moved along with later edits."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ UNCHECKED = "the shapes were not checked, because of an internal error: {}; they
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """Findings about a file and its imports, with the texts that they refer to, by URI."""
+    """The findings about a file and its imports, and the texts (by URI) to which they refer."""
 
     revision: int
     diagnostics: tuple[Diagnostic, ...]
@@ -28,18 +28,18 @@ class _Found:
 
 
 class ShapeFindings:
-    """The latest findings about each open file. The event loop writes, the analysis thread reads."""
+    """The latest findings about each open file. The event loop writes them, and the analysis thread reads them."""
 
     def __init__(self) -> None:
         self._found: dict[str, _Found] = {}
         self._requested: dict[str, dict[int, Mapping[str, str]]] = {}
 
     def request(self, uri: str, revision: int, texts: Mapping[str, str]) -> None:
-        """Record the texts that an answer about a file will refer to."""
+        """Record the texts to which the answer about a file will refer."""
         self._requested.setdefault(uri, {})[revision] = texts
 
     def take(self, answer: Answer) -> bool:
-        """Store an answer; return whether there is something to show or to remove."""
+        """Store an answer. Return whether diagnostics must be shown or removed because of it."""
         requested = self._requested.get(answer.uri, {})
         before = self._found.get(answer.uri)
         if answer.revision not in requested or (before is not None and before.revision > answer.revision):
@@ -55,12 +55,15 @@ class ShapeFindings:
         return bool(diagnostics or (before and before.diagnostics))
 
     def forget(self, uri: str) -> None:
-        """Drop the findings about a file; a later answer about it is ignored."""
+        """Drop the findings about a file. A later answer about it is ignored."""
         self._found.pop(uri, None)
         self._requested.pop(uri, None)
 
     def valid(self, snapshot: Snapshot, uri: str) -> list[Diagnostic]:
-        """Return the findings in a file, from all open files, except where its text has changed."""
+        """Return the findings in a file, without those at places where its text has changed since.
+
+        Findings from the validation of all open files are included.
+        """
         text = document_of(snapshot, uri).text
         # A list, since the other thread may add and remove entries meanwhile.
         return [one for found in list(self._found.values()) for one in _in_place(found, uri, text)]
@@ -83,7 +86,10 @@ def _in_place(found: _Found, uri: str, text: str) -> Iterator[Diagnostic]:
 
 
 def _moved(span: Span, start: int, end: int, grown: int) -> Span | None:
-    """Return a place after an edit between ``start`` and ``end``, ``None`` if the edit touches it."""
+    """Return the place of a span after an edit between ``start`` and ``end`` that made the text ``grown`` longer.
+
+    Returns ``None`` if the edit touches the span.
+    """
     if span.end < start:
         return span
     return span.shifted(grown) if span.start > end else None

@@ -1,4 +1,4 @@
-"""Run the validation process on the latest revision and drop late answers."""
+"""Run the validation process on the latest revision of each file, and drop outdated answers."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _LOG = logging.getLogger(__name__)
 class ShapeValidator:
     """Validates files in a worker process.
 
-    ``deliver`` receives each answer about a file that is still requested, including errors. With ``in_passing``, the
-    process has low priority. A newer request is sent immediately, and the process abandons the older one, unless it has
-    abandoned too many. The process is started at the first request. When it dies, or hangs and is killed, it is
-    restarted with its unanswered requests, except for the file that caused the failure.
+    ``deliver`` is called with each answer about a file that is still requested, including errors. If ``in_passing`` is
+    true, the process has low priority. A newer request is sent immediately, and the process abandons the older one,
+    unless it has already abandoned too many. The process is started at the first request. If it dies, or hangs and is
+    killed, it is restarted with its unanswered requests, except for the file that caused the failure.
     """
 
     def __init__(self, deliver: Callable[[Answer], None], in_passing: bool = False) -> None:
@@ -52,12 +52,12 @@ class ShapeValidator:
         return None if self._process is None else self._process.pid
 
     def request(self, request: Request) -> None:
-        """Request a validation; replaces an older request for the same file."""
+        """Request a validation. It replaces an older request for the same file."""
         self._open[request.uri] = request
         self._send(request)
 
     def forget(self, uri: str) -> None:
-        """Cancel the requests about a file, and drop its state."""
+        """Cancel the requests about a file, and drop the state of the file."""
         self._open.pop(uri, None)
         if self._process is not None:
             self._send(Forget(uri))
@@ -123,7 +123,7 @@ class ShapeValidator:
         self._deliver(message)
 
     def _work_on(self, uri: str) -> None:
-        """Record the worker's current file (empty: none) and arm its watchdog."""
+        """Record the file on which the worker is working, and start its time limit. An empty ``uri`` means no file."""
         self._working = uri
         if self._watch is not None:
             self._watch.cancel()

@@ -1,7 +1,7 @@
-"""The requests ``robbdd/runs`` and ``robbdd/trace``: stored runs, and a recorded execution to be drawn.
+"""The requests ``robbdd/runs`` and ``robbdd/trace``: list stored runs, and return a recorded execution for drawing.
 
-Both take the ``uri`` of a document of the project; for the rest, see docs/schemas/runs.schema.json and
-trace.schema.json.
+The parameters of both contain the ``uri`` of a document in the project. The schemas ``runs.schema.json`` and
+``trace.schema.json`` in ``docs/schemas`` describe the answers.
 """
 
 from __future__ import annotations
@@ -80,7 +80,10 @@ def _trace(store: RunStore, asked: Parameters) -> dict[str, Any]:
 
 
 def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: int) -> set[tuple[str, str]] | None:
-    """Return a scenario's current statements from the first file with its variant; ``None`` if that file has errors."""
+    """Return the current statements of a scenario, from the first file that contains its variant.
+
+    Returns ``None`` if that file has errors.
+    """
     from robbdd_tools.gherkin.statements import statements
 
     for uri in files:
@@ -94,7 +97,7 @@ def _stated(snapshot: Snapshot, files: Sequence[str], variant: str, variation: i
 
 
 async def _answered(work: Callable[[], Result]) -> Result:
-    """Run work in a thread; convert its "nothing to show" errors to an error response for the user."""
+    """Execute work in a thread. If there is nothing to show, the user gets the reason as an error response."""
     try:
         return await asyncio.to_thread(work)
     except (NoTrace, NoSuchRun) as error:

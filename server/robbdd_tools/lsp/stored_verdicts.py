@@ -1,4 +1,7 @@
-"""Show the verdicts of stored runs, also of the command line and of servers that ended during their run."""
+"""Show the verdicts of stored runs.
+
+These include runs of the command line and of servers that ended during a run.
+"""
 
 from __future__ import annotations
 
@@ -27,14 +30,17 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class FoundRun:
-    """The finished scenarios of a stored run; ``some_repetitions`` if it executed only some of their repetitions."""
+    """The finished scenarios of a stored run.
+
+    ``some_repetitions`` is true if the run executed only some repetitions of its scenarios.
+    """
 
     scenarios: tuple[JudgedScenario, ...]
     some_repetitions: bool
 
 
 class StoredVerdicts:
-    """Synchronises the server's results with the stores of its projects."""
+    """Updates the results of the server from the stores of its projects."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
@@ -44,7 +50,7 @@ class StoredVerdicts:
         self._loaded = asyncio.Event()
 
     async def load(self) -> None:
-        """Show the results of earlier runs in the workspace."""
+        """Load and show the results of earlier runs in the workspace."""
         try:
             await self._load()
         finally:
@@ -71,7 +77,7 @@ class StoredVerdicts:
         await self._loaded.wait()
 
     async def look_beside(self, *uris: str) -> None:
-        """Read the stores of documents' projects, unless already read."""
+        """Read the stores of the projects that contain some documents, unless they have already been read."""
         await self.loaded()
         paths = filter(None, map(uri_to_path, uris))
         stores = {store.folder: store for store in map(store_beside, paths)}
@@ -95,7 +101,7 @@ class StoredVerdicts:
                 await self.save()
 
     async def save(self) -> None:
-        """Save the shown results for the next session; nothing is written in an untrusted workspace."""
+        """Save the shown results for the next session. In an untrusted workspace, nothing is written."""
         ls = self._server
         if ls.trusted:
             seen = {store: number for store, number in self._seen.items() if number}

@@ -85,7 +85,7 @@ def _kept_scenario(scenario: JudgedScenario, now: Digests) -> dict[str, Any]:
 
 
 def _read(uri: str) -> list[ImportedScenario] | str:
-    """Return the contents of a results file, or why it cannot be read."""
+    """Return the contents of a results file, or the reason why it cannot be read."""
     path = uri_to_path(uri)
     text = Unreadable("file-missing", f"'{uri}' is not a file") if path is None else read_text(path)
     if isinstance(text, Unreadable):
@@ -98,7 +98,10 @@ def _read(uri: str) -> list[ImportedScenario] | str:
 
 
 def _matched(snapshot: Snapshot, scenarios: Sequence[ImportedScenario], files: Sequence[str]) -> dict[str, Any]:
-    """Match results with variants, by IRI, else by the names of story and variant, and with executions."""
+    """Match imported results with variants and executions of models.
+
+    A variant is matched by its IRI or, without one, by the names of its story and of itself.
+    """
     places: dict[str, list[tuple[str, str]]] = {}
     executions: dict[tuple[str, str], list[tuple[str, str]]] = {}
     for uri in files:
@@ -120,7 +123,10 @@ def _matched(snapshot: Snapshot, scenarios: Sequence[ImportedScenario], files: S
 
 
 def _place(scenario: ImportedScenario, candidates: Sequence[tuple[str, str]] | None) -> tuple[str, str] | None:
-    """Return file and IRI; among several files, prefer the one named in the results."""
+    """Return the file and the IRI of a matching variant.
+
+    If several files match, prefer the one that the results name.
+    """
     candidates = candidates or ()
     name = scenario.model.replace("\\", "/").rsplit("/", 1)[-1]
     return next((place for place in candidates if name and place[0].endswith(f"/{name}")), next(iter(candidates), None))

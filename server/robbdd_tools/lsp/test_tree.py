@@ -1,8 +1,8 @@
-"""The request ``robbdd/tests``: the runnable items, level by level, for a test tree.
+"""The request ``robbdd/tests``: the items that can be run, level by level, for a test tree.
 
-Without parameters, the answer has the files with such items; with ``uri``, the stories of a file and their variants, or
-the executions of a ``.bddx``; with ``uri`` and ``variant`` (IRI), scenarios, ``most`` of them from number ``first`` on,
-and their clauses. The answer is described by ``docs/schemas/tests.schema.json``.
+Without parameters, the answer has the files that contain such items. With ``uri``, it has the stories of the file and
+their variants, or the executions of a ``.bddx``. With ``uri`` and ``variant`` (IRI), it has ``most`` scenarios from
+number ``first`` on, and their clauses. ``docs/schemas/tests.schema.json`` describes the answer.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def register_tests(server: RobbddServer) -> None:
 
 
 def _stories(snapshot: Snapshot, convert: Converter, uri: str) -> dict[str, Any]:
-    """Answer with the stories of a file; for a text with errors, with those that can be recognised."""
+    """Answer with the stories of a file. If its text has errors, answer with the stories that can be recognised."""
 
     def story(listed: ListedStory) -> dict[str, Any]:
         return {
@@ -109,7 +109,7 @@ def _counted(count: int | None, word: str) -> str:
 
 
 def _execution_words(execution: PlacedExecution, count: int | None) -> Iterator[str]:
-    """Yield the settings of an execution, apart from its variant, as text."""
+    """Yield the settings of an execution as text, except for its variant."""
     node = execution.node
     yield _counted(count, "scenario")
     yield "" if node.repeat is None or node.repeat.value == 1 else f"{node.repeat.value} times each"

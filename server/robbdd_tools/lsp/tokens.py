@@ -1,7 +1,7 @@
-"""Semantic tokens: standard types, which every theme colours, with the language's concepts as modifiers.
+"""Encode semantic tokens: standard types, which every theme colours, with concepts of the language as modifiers.
 
-A theme without RobBDD support colours by type; others can distinguish a story from a template by the modifier
-(``class.story``), in any client.
+A theme without support for RobBDD colours by type. In any client, other themes can distinguish a story from a template
+by the modifier (``class.story``).
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ _NUMBERS = {
 
 @dataclass
 class SentTokens:
-    """The tokens that a client has for each document, so that only changes must be sent."""
+    """The tokens that the client has of each document. They are stored so that only changes must be sent."""
 
     _count: int = 0
     _sent: dict[str, tuple[str, Sequence[int]]] = field(default_factory=dict[str, tuple[str, Sequence[int]]])
@@ -101,7 +101,7 @@ class SentTokens:
     def difference(
         self, uri: str, previous: str, data: Sequence[int]
     ) -> types.SemanticTokens | types.SemanticTokensDelta:
-        """Return the changes since a result; all tokens if that result is no longer known."""
+        """Return the changes since an earlier result. If that result is no longer known, return all tokens."""
         known, before = self._sent.get(uri, ("", ()))
         now = self.whole(uri, data)
         if known != previous:
@@ -120,7 +120,7 @@ class SentTokens:
 
 
 def encoded(convert: Converter, document: Document, tokens: Sequence[Token]) -> list[int]:
-    """Return tokens in protocol form: five numbers each, places relative to the previous token."""
+    """Return tokens in the form of the protocol: five numbers each, with places relative to the previous token."""
     data: list[int] = []
     line, column = 0, 0
     for token in tokens:
@@ -136,13 +136,13 @@ def encoded(convert: Converter, document: Document, tokens: Sequence[Token]) -> 
 
 
 class Encoder:
-    """Encodes whole documents; encodings of unchanged pieces are cached."""
+    """Encodes whole documents. The encodings of unchanged pieces are cached."""
 
     def __init__(self) -> None:
         self._kept: WeakKeyDictionary[Coloured, tuple[Converter, list[int]]] = WeakKeyDictionary()
 
     def whole(self, convert: Converter, document: Document, pieces: Sequence[tuple[int, Coloured]]) -> list[int]:
-        """Return the tokens of all pieces (given with their offsets) of a document."""
+        """Return the encoded tokens of a document, which are given as pieces with their offsets."""
         data: list[int] = []
         line, column = 0, 0
         for offset, piece in pieces:

@@ -1,4 +1,4 @@
-"""Standard input for pygls: tolerant of header forms, limited in message size, with a reliable end."""
+"""Standard input for pygls. It tolerates variants of headers, limits the size of messages, and ends reliably."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ _LOG = logging.getLogger(__name__)
 class BoundedInput:
     """The lines and contents that pygls reads, with normalised headers.
 
-    A message above the limit is skipped and logged. After a broken header, reading resumes at the next valid one.
+    A message above the size limit is skipped and logged. After a broken header, reading continues at the next valid
+    one.
     """
 
     def __init__(self, stream: BinaryIO) -> None:
@@ -31,7 +32,7 @@ class BoundedInput:
         self._has_length = False
 
     def readline(self) -> bytes:
-        """Return the next header line, ``b""`` at the end of the input."""
+        """Return the next header line, or ``b""`` at the end of the input."""
         line = self._line()
         stated = _LENGTH.search(line)
         if stated is not None:
@@ -48,7 +49,7 @@ class BoundedInput:
         return line
 
     def read(self, size: int) -> bytes:
-        """Return the content of a message; shorter at the end of the input."""
+        """Return the content of a message. It is shorter than ``size`` at the end of the input."""
         self._has_length = False
         return self._stream.read(size)
 
@@ -68,7 +69,7 @@ class BoundedInput:
 
 
 def bounded(stream: IO[bytes]) -> BinaryIO:
-    """Return a stream for pygls, which only reads lines and contents."""
+    """Return a stream for pygls, which uses only its methods for reading lines and contents."""
     return cast("BinaryIO", BoundedInput(cast("BinaryIO", stream)))
 
 
@@ -85,10 +86,10 @@ def end_soon(code: int, seconds: float = EXIT_SECONDS) -> None:
 
 
 class RefusalFilter(logging.Filter):
-    """Logging filter that drops deliberate error responses, such as the refusal of an invalid rename."""
+    """A logging filter that drops deliberate error responses, for example the refusal of an invalid rename."""
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Return whether a record is an error of the server."""
+        """Return whether a log record is an error of the server itself."""
         error = record.exc_info[1] if record.exc_info else None
         if error is None or not record.name.startswith("pygls"):
             return True

@@ -1,4 +1,7 @@
-"""Untrusted workspaces: their code is never run; a refusal names the code that a run would execute."""
+"""Protect against untrusted workspaces.
+
+Their code is never run, and a refusal names the code that a run would execute.
+"""
 
 from __future__ import annotations
 
@@ -24,12 +27,12 @@ _SEARCHED = 100
 
 
 def forbid_user_code() -> None:
-    """Forbid all processes started from here to import users' code."""
+    """Forbid all processes that are started from here to import users' code."""
     os.environ[NO_USER_CODE] = UNTRUSTED
 
 
 async def refuse_run(ls: RobbddServer, argument: dict[str, Any]) -> str:
-    """Return why a requested run is refused, with the places of its users' code if it has any."""
+    """Return the reason why a requested run is refused, with the places of its users' code if it has any."""
     try:
         asked = RunOptions.of(argument)
         first = min(asked.first or _SEARCHED, _SEARCHED)

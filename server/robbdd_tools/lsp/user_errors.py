@@ -1,4 +1,8 @@
-"""Show errors in users' code: in open models with their other diagnostics, in other files with the survey's."""
+"""Show errors in users' code.
+
+In open models, they are shown with the other diagnostics, and in all other files with the findings about unopened
+files.
+"""
 
 from __future__ import annotations
 
@@ -27,18 +31,18 @@ END_OF_LINE = 10_000
 
 
 class UserErrors:
-    """The errors in files that are not open as models: Python files, and models that a run has reached."""
+    """The errors in files that are not open as models. These are Python files, and models that a run has used."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
         self._elsewhere: Mapping[str, list[types.Diagnostic]] = {}
 
     def elsewhere(self) -> Mapping[str, list[types.Diagnostic]]:
-        """The errors of unopened files, by file."""
+        """The errors of each file that is not open."""
         return {uri: found for uri, found in self._elsewhere.items() if not self._server.is_open(uri)}
 
     async def refresh(self) -> None:
-        """Collect the errors again, after a run or a change of a file."""
+        """Collect the errors again. This is done after a run and after a file has changed."""
         scenarios = [scenario for scenario in self._server.results if scenario.faults]
         if not (scenarios or self._elsewhere):
             return
@@ -50,7 +54,10 @@ class UserErrors:
             self._server.survey.publish_soon()
 
     async def code_changed(self) -> None:
-        """Show the errors of code that is unchanged since its execution."""
+        """Show the errors again after code has changed.
+
+        Only errors in code that is unchanged since its execution remain.
+        """
         if any(scenario.faults for scenario in self._server.results):
             await self.refresh()
             self._server.show_results(self._server.opened())
@@ -137,7 +144,7 @@ def _related(error: UserError) -> list[types.DiagnosticRelatedInformation]:
 
 
 def _calls(error: UserError) -> list[types.DiagnosticRelatedInformation]:
-    """Return the other frames of the traceback in the user's files."""
+    """Return the other frames of the traceback that are in the user's files."""
     calls = [frame for frame in error.fault.frames if frame.own and frame != error.fault.place]
     return [
         types.DiagnosticRelatedInformation(

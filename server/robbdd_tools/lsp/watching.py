@@ -1,4 +1,4 @@
-"""Changes outside the open documents: files on disk, and the workspace folders."""
+"""Handle changes outside of open documents: changes of files on disk, and of the workspace folders."""
 
 from __future__ import annotations
 

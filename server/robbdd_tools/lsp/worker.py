@@ -1,4 +1,4 @@
-"""The validation process: reads texts, answers with the shapes' findings. It ends when its input ends."""
+"""The validation process. It reads texts and answers with the findings of the shapes until its input ends."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ MAX_LEFT = 8
 
 
 class Inbox:
-    """The latest request of each file, in the order of first requests.
+    """The latest request for each file, in the order of the first requests for them.
 
-    A thread reads during validation, so that work can detect that it is outdated.
+    A thread reads the input during validation, so that the validation can detect that it is outdated.
     """
 
     def __init__(self, stream: BinaryIO) -> None:
@@ -35,13 +35,13 @@ class Inbox:
         threading.Thread(target=self._read, name="inbox", daemon=True).start()
 
     def take(self) -> Request | Forget | None:
-        """Wait for a request; ``None`` at the end of the input."""
+        """Wait for a request and return it; return ``None`` at the end of the input."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._ended)
             return None if self._ended else self._waiting.pop(next(iter(self._waiting)))
 
     def has_newer(self, uri: str) -> bool:
-        """Return whether work on a file is outdated."""
+        """Return whether the work on a file is outdated, because a newer request is waiting or the input has ended."""
         return self._ended or uri in self._waiting
 
     def _read(self) -> None:
@@ -60,7 +60,7 @@ class Inbox:
 
 @dataclass(slots=True)
 class Worker:
-    """State of the process between requests."""
+    """The state of the process between two requests."""
 
     inbox: Inbox
     project: Project = field(default_factory=Project)
@@ -74,7 +74,7 @@ class Worker:
         self.left.pop(uri, None)
 
     def answer(self, request: Request) -> Answer | None:
-        """Return the findings about a file; ``None`` if abandoned because of a newer request."""
+        """Return the findings about a file, or ``None`` if the work was abandoned because of a newer request."""
         self.project.replace(request.texts)
         if request.surveyed:
             return self._survey(request)
@@ -112,14 +112,14 @@ class Worker:
 
 
 def _document(snapshot: Snapshot, uri: str) -> Document:
-    """Return a file from the snapshot; one that is not a model, such as a configuration, from disk."""
+    """Return the document of a file. A file that is not a model, such as a configuration, is read from disk."""
     path = None if uri in snapshot.sources else uri_to_path(uri)
     text = None if path is None else read_text(path)
     return Document(uri, 0, text) if isinstance(text, str) else snapshot.document(uri)
 
 
 def main(in_passing: bool = False) -> None:
-    """Answer requests until the input ends; ``in_passing`` runs at low priority."""
+    """Answer requests until the input ends. If ``in_passing`` is true, the process has low priority."""
     if in_passing:
         lower_priority()
     stdout = sys.stdout.buffer

@@ -1,7 +1,7 @@
-"""Findings in unopened model files of the workspace, computed in the background.
+"""Findings in the unopened model files of the workspace. They are computed in the background.
 
-A separate low-priority process validates one file after another: all of them when the client has started, and later
-those affected by changes, on disk or in an editor.
+A separate process with low priority validates one file after another. It validates all files when the client has
+started, and later those that are affected by changes on disk or in an editor.
 """
 
 from __future__ import annotations
@@ -33,21 +33,21 @@ AT_ONCE = 2
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """Diagnostics of one file; ``id`` is the same for the same diagnostics at the same places."""
+    """The diagnostics of one file. Equal diagnostics at the same places have the same ``id``."""
 
     diagnostics: tuple[types.Diagnostic, ...]
     id: str
 
     @classmethod
     def of(cls, diagnostics: Iterable[types.Diagnostic]) -> Findings:
-        """Return the diagnostics with their id."""
+        """Return the diagnostics together with their ``id``."""
         found = tuple(diagnostics)
         text = repr(found).encode("utf-8", "surrogatepass")
         return cls(found, blake2b(text, digest_size=12).hexdigest())
 
 
 class WorkspaceDiagnostics:
-    """The findings in unopened files, by file, as far as validated."""
+    """The findings in each unopened file that has been validated so far."""
 
     def __init__(self, server: RobbddServer) -> None:
         self._server = server
@@ -77,7 +77,7 @@ class WorkspaceDiagnostics:
         self._timer = asyncio.get_running_loop().call_later(PAUSE, self._begin)
 
     def closed(self, uri: str) -> None:
-        """Take over a file that the editor has just closed."""
+        """Schedule the validation of a file that the editor has just closed."""
         self._published.pop(uri, None)
         self.schedule([uri])
 
@@ -89,11 +89,11 @@ class WorkspaceDiagnostics:
         self._validator.stop()
 
     async def wait_for_news(self) -> None:
-        """Wait for further findings, or until all files are validated."""
+        """Wait until there are further findings, or until all files are validated."""
         await self._news.wait()
 
     def findings(self) -> dict[str, Findings]:
-        """Return the findings of each unopened file, merged from all files that reach it."""
+        """Return the findings in each unopened file, merged from the validation of all files that import it."""
         parts: dict[str, list[Findings]] = {}
         for owner in sorted(self._found):
             if self._server.is_open(owner):
@@ -111,7 +111,7 @@ class WorkspaceDiagnostics:
         self._server.spawn(self._order())
 
     async def _order(self) -> None:
-        """Determine the files to validate."""
+        """Find the files to validate, and request their validation."""
         changed, self._changed = self._changed, set()
         everything, self._everything = self._everything, False
         roots = list(self._server.workspace.folders)

@@ -34,9 +34,9 @@ class VariationReader:
         return Product(variables, tuple(self._fitting(variable, choices) for variable, choices in pairs))
 
     def _fitting(self, variable: Iri, choices: tuple[Cell, ...] | Selection) -> tuple[Cell, ...] | Selection:
-        """Return the choices for a variable. Sets of one element become single elements if the variable is no set.
+        """Return the choices for a variable; a selection of sets of one element may become the elements themselves.
 
-        This is needed for published graphs, which select one element for a variable.
+        This is done if the variable is not a set, because published graphs select one element for such a variable.
         """
         single = isinstance(choices, Selection) and choices.length == 1 and not self.records.is_a(variable, "bdd:Set")
         return choices.source if isinstance(choices, Selection) and single else choices

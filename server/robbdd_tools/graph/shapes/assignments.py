@@ -26,7 +26,10 @@ class _Choice:
 
 
 def add_assignments(derived: Derived, variant: Iri) -> None:
-    """Derive the assignments of a variant to the variables of its template and its variation."""
+    """Derive the assignments of a variant to the variables of its template.
+
+    Variables that only the variation of the variant names are included.
+    """
     records = derived.records
     templates = records.iris(records.all(variant, "bdd:of-template"))
     variations = records.iris(records.all(variant, "bdd:has-variation"))

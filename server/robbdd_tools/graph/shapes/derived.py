@@ -57,5 +57,8 @@ class Derived:
         self.graph.add((subject, URIRef(expand(term)), value))
 
     def anchor(self, node: Node | str, value: str, *keys: Key) -> None:
-        """Record the source of a derived value of a node (``""`` for a derived node itself)."""
+        """Record the source-map keys of a derived value of a node.
+
+        If the value is ``""``, the keys are those of a derived node itself.
+        """
         self.anchors.setdefault((str(node), value), []).extend(keys)

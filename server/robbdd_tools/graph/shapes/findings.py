@@ -94,7 +94,7 @@ class FindingWriter:
         return next((self.built.authors[node] for node in nodes if node in self.built.authors), ())
 
     def _locations(self, result: Result) -> tuple[Location, ...]:
-        """Return the most precise known places: of the value, else of the property, else of the node."""
+        """Return the most precise known places: those of the value, else of the property, else of the node."""
         places = self.built.sources.places
         for key in self._keys(result):
             if key in places:

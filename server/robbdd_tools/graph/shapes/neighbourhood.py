@@ -109,7 +109,10 @@ class Neighbourhoods:
         return anchor.declaration is None or (anchor.uri, anchor.declaration, 0) in self._present
 
     def _add_compositions(self) -> None:
-        """Add dependencies of a composition on those of the workspaces in it, whether it names them or not."""
+        """Record that a composition depends on the compositions of the workspaces in it.
+
+        It depends on them even if it does not name them.
+        """
         compositions = [entry for entry in self.reached if isinstance(entry.tree, tree.Composition)]
         describing: dict[str, list[Reached]] = {}
         for entry in compositions:

@@ -80,7 +80,7 @@ def _culprits(writer: FindingWriter, files: list[ShapeFile]) -> list[Diagnostic]
 def _faults(built: BuiltGraph, found: list[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the faults of a graph file.
 
-    If an omitted variant has another finding, its omission is not reported, too.
+    If the findings contain an error, the omission of a variant is not reported, because the error is its cause.
     """
     has_error = any(diagnostic.severity is Severity.ERROR for diagnostic in found)
     return (fault for fault in built.faults if not (has_error and fault.code == "incomplete-variant"))

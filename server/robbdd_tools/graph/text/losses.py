@@ -129,7 +129,10 @@ class _Side:
 
 
 def _align(first: _Side, second: _Side, mapping: dict[str, str]) -> None:
-    """Match nodes without a written name, the parts of templates and variants, by the paths that lead to them."""
+    """Match the nodes without a written name by the paths that lead to them.
+
+    Such nodes are parts of templates and variants.
+    """
     from rdflib import URIRef
 
     waiting = sorted(set(first.graph.subjects()), key=str)

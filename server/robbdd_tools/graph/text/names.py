@@ -58,7 +58,7 @@ class Names:
     def declare(self, node: str, kind: str, *, owner: str = "", namespace: str | None = None, before: str = "") -> str:
         """Return the name of a node for its declaration, and record the reference to it.
 
-        - ``kind``: the name to use if the node has none.
+        - ``kind``: the kind of the declaration. It is also the name if the node has none.
         - ``owner``: the qualified name of the node's parent.
         - ``namespace``: the namespace that the text imposes on the node.
         - ``before``: the text that the language puts before the name in the IRI.

@@ -38,7 +38,7 @@ def foreign_namespaces(document: Document, graph: Graph) -> Iterator[Diagnostic]
 
 
 def _lookalikes(graph: Graph) -> dict[str, tuple[str, set[str]]]:
-    """Map each unknown namespace to the vocabulary namespace that shares most terms with it, and these terms."""
+    """Map each unknown namespace to the namespace of the vocabulary with most terms in common, and to these terms."""
     from rdflib.namespace import RDF
 
     used: dict[str, set[str]] = {}

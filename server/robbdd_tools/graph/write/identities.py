@@ -130,7 +130,7 @@ def _states(symbol: Symbol, words: Mapping[str, str]) -> str | None:
 
 
 def _behaviours(body: tree.Body) -> Iterator[tuple[str, str]]:
-    """Yield name and word of each behaviour of a template; of nested ``for all``, the innermost one."""
+    """Yield the name and the catalog word of each behaviour of a template, including those inside ``for all``."""
     inner: tree.Body | None = body
     while inner is not None:
         if inner.when is not None:

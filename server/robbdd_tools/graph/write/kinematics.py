@@ -91,8 +91,8 @@ class TreeWriter:
     """Writes the parts of a tree or graph.
 
     - ``owner``: the tree or graph that declares the parts.
-    - ``path``: its qualified name, under which the parts are written.
-    - ``node``: its node.
+    - ``node``: the node to which the parts are added.
+    - ``path``: the qualified name of that node.
     - ``scopes``: the paths to which names may be relative, innermost last.
     - ``template``: the name by which the parts of an instance may refer to their own tree.
     """

@@ -97,7 +97,7 @@ class _Writer:
             self._clause(node, f"{node}/clause/{place}", _object(clause, f"clause {place} of {where}"), entry)
 
     def _shared(self, run: URIRef, scenario: URIRef, entry: Json, where: str) -> None:
-        """Add the execution of a behaviour tree that a scenario was judged from, possibly together with others."""
+        """Add the behaviour-tree execution from which a scenario was judged; other scenarios may share it."""
         from urllib.parse import quote
 
         name = _field(entry, "execution", str, where)
