@@ -83,7 +83,10 @@ class Protocol(LanguageServerProtocol):
     def _execute_handler(
         self, msg_id: Any, handler: Any, callback: Any, args: Any = None, kwargs: dict[str, Any] | None = None
     ) -> None:
-        """Call a handler and drop its future when done: pygls keeps futures of notifications forever."""
+        """Call a handler and drop its future when it is done.
+
+        Otherwise pygls would keep the futures of notifications for ever.
+        """
         super()._execute_handler(msg_id, handler, callback, args, kwargs)
         future = self._request_futures.get(msg_id)
         if future is None:

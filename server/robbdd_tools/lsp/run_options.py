@@ -69,7 +69,10 @@ class RunOptions:
 
     @property
     def is_whole(self) -> bool:
-        """Whether all scenarios of the variants run, so that other stored results of these variants are obsolete."""
+        """Whether all scenarios of the selected variants run.
+
+        In this case, other stored results of these variants are obsolete.
+        """
         numbers = {self.variation, self.where, self.first, self.sample, self.pairwise}
         parts = (entry.get("variations") for entry in self.only or ())
         return not self.failed and numbers == {None} and all(part is None for part in parts)

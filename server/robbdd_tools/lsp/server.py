@@ -178,7 +178,10 @@ class RobbddServer(LanguageServer):
             await self.publish(uri)
 
     async def publish(self, changed: str) -> None:
-        """Publish the fast diagnostics of a document and of its open importers; request the slow ones."""
+        """Publish the fast diagnostics of a document and of the open files that import it.
+
+        The slow diagnostics of these files are requested.
+        """
 
         def affected(snapshot: Snapshot) -> list[str]:
             importers = snapshot.importers(changed)

@@ -109,9 +109,10 @@ class StoredVerdicts:
 
 
 def _read(store: RunStore, seen: int) -> tuple[list[FoundRun], int, int]:
-    """Return the results of runs after number ``seen``, the last run read, and the newest run of the store.
+    """Return the results of runs that have not been read yet, the number of the last run read, and the newest run.
 
-    A run in progress and later runs are read only when it has ended.
+    ``seen`` is the number of the last run that was read before. A run that is in progress, and all later runs, are read
+    only after that run has ended.
     """
     runs = store.runs()
     newest = runs[-1].number if runs else 0

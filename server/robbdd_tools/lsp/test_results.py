@@ -1,7 +1,7 @@
-"""The requests ``robbdd/testResults`` and ``robbdd/importResults``: results of runs before, or elsewhere.
+"""The requests ``robbdd/testResults`` and ``robbdd/importResults``: results of earlier runs, or of runs made elsewhere.
 
-The first has no parameters; the second takes the ``uri`` of a file that ``robbdd run --json`` or ``--junit`` wrote.
-Both answers are described by ``docs/schemas/testresults.schema.json``.
+``robbdd/testResults`` has no parameters. The parameter of ``robbdd/importResults`` is the ``uri`` of a file that
+``robbdd run --json`` or ``--junit`` wrote. ``docs/schemas/testresults.schema.json`` describes both answers.
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ class WorkspaceDiagnostics:
         return not (self._waiting or self._asked or self._timer or self._telling)
 
     def schedule(self, changed: Iterable[str] | None = None) -> None:
-        """Schedule validation of all files, or of those that depend on the ``changed`` ones."""
+        """Schedule the validation of all files or, with ``changed``, of the files that depend on these."""
         self._changed.update(changed or ())
         self._everything |= changed is None
         if self._timer is not None:
