@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from kit import MODELS
@@ -83,6 +83,7 @@ def read(sentence: str, role: str = "then") -> object:
 
 
 @given(junctions(st.recursive(SIMPLE, junctions, max_leaves=6)), CELLS, CELLS)
+@example(junction("and", [told("x and y", Before("x:e")), located(Before("x:e"))]), THING, THING)
 def test_groups_are_read_back_as_they_were_written(clause: Clause, thing: Cell, place: Cell) -> None:
     for step in WRITER.steps((clause,), {THING: thing, PLACE: place}):
         assert read(step.text) == bare(step.statement)

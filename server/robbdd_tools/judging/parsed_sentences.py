@@ -78,8 +78,10 @@ def read_clause(text: str) -> Clause:
         inner = match["inner"]
     for operator in ("and", "or"):
         parts = _split(inner, f" {operator} ")
-        if len(parts) > 1:
-            return Junction(operator, tuple(read_clause(part) for part in parts))
+        operands = tuple(read_clause(part) for part in parts) if len(parts) > 1 else ()
+        # Without parentheses, "and" and "or" may be words of free text.
+        if operands and (inner != text or not any(isinstance(operand, Text) for operand in operands)):
+            return Junction(operator, operands)
     if inner != text:
         return read_clause(inner)
     match = re.fullmatch(rf"(?P<words>.*?) {TIME}", text)
