@@ -1,7 +1,8 @@
-"""Semantic rules beyond syntax, names and shapes, one file per diagnostic code.
+"""Semantic rules beyond syntax, names and shapes. There is one file for each diagnostic code.
 
-A rule checks either one declaration and its references, and reruns only when one of these changed, or a whole file; the
-latter must do only a few operations per declaration.
+A rule checks either one declaration with its references, or a whole file. In the first case, it is checked again only
+when the declaration or one of its references has changed. In the second case, it may do only a few operations for each
+declaration.
 """
 
 from __future__ import annotations

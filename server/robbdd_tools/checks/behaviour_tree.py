@@ -1,4 +1,4 @@
-"""``behaviour-tree``: a leaf with no behaviour or with two, or a behaviour that a single node cannot execute."""
+"""``behaviour-tree``: a leaf has no behaviour or two, or a single node cannot execute a behaviour."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ CODE = "behaviour-tree"
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A behaviour linked to a node, identified by its document and path, and the reference's place."""
+    """A link from a behaviour to a node of a tree.
+
+    The behaviour is identified by its document and path. The place is that of the reference to the node.
+    """
 
     node: tuple[str, str]
     behaviour: tree.BehaviourUse
@@ -34,7 +37,7 @@ class Link:
 
 
 def behaviour_tree(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Check the trees of a file, including links from its importers, and the file's own links."""
+    """Check the behaviour trees of a file, including links from files that import it, and the file's own links."""
     for link in links_in(file):
         if link.is_repeated:
             message = (
@@ -88,7 +91,7 @@ def _leaves(
 
 
 def _linking(snapshot: Snapshot, file: FileAnalysis, path: str) -> Iterator[Fix]:
-    """Yield the fixes that link an unlinked behaviour of a template to a node."""
+    """Yield a fix for each unlinked behaviour of a template. The fix links the behaviour to the node."""
     for uri in (file.document.uri, *snapshot.importers(file.document.uri)):
         other = snapshot.file(uri)
         for placed in other.declarations if other is not None else ():
@@ -101,7 +104,7 @@ def _linking(snapshot: Snapshot, file: FileAnalysis, path: str) -> Iterator[Fix]
 
 
 def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
-    """Yield the behaviours of a valid template that name no node and are not repeated."""
+    """Yield the behaviours of a valid template that are linked to no node and not repeated."""
     root = declaration.tree
     if isinstance(root, tree.Template) and not declaration.faults and root.body.when is not None:
         use = root.body.when.behaviour
@@ -110,7 +113,7 @@ def _free_uses(declaration: Declaration) -> Iterator[tree.BehaviourUse]:
 
 
 def _apart(snapshot: Snapshot, links: list[Link]) -> Iterator[Fix]:
-    """Yield the fix that removes some links, all of which conflict with others."""
+    """Yield the fix that removes some links. Each of them conflicts with other links."""
     removals = [fix for link in links for fix in _without(snapshot, link, "")]
     names = listed(list(dict.fromkeys(link.behaviour.name.text for link in links)))
     if removals and len(removals) == len(links):
@@ -126,7 +129,7 @@ def _without(snapshot: Snapshot, link: Link, title: str) -> Iterator[Fix]:
 
 
 def links_to(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Link]:
-    """Yield the links to nodes of a file's trees, among others, from the file and its importers."""
+    """Yield the links to nodes that a file and the files that import it contain."""
     for uri in (file.document.uri, *snapshot.importers(file.document.uri)):
         other = snapshot.file(uri)
         yield from () if other is None else links_in(other)
@@ -144,7 +147,7 @@ def links_in(file: FileAnalysis) -> Iterator[Link]:
 
 @kept_with_key
 def _linked_uses(declaration: Declaration) -> tuple[tuple[tree.BehaviourUse, tree.Ref, bool], ...]:
-    """Return the behaviours of a template with their nodes, and whether they are repeated."""
+    """Return the linked behaviours of a template with their nodes, and whether they are repeated."""
     root = declaration.tree
     if not isinstance(root, tree.Template):
         return ()

@@ -1,4 +1,7 @@
-"""``catalog-models``: names the catalog models of a scene without executable scene, chosen by element names."""
+"""``catalog-models``: list the catalog models of a scene that has no executable scene.
+
+Names of elements select them.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,10 @@ if TYPE_CHECKING:
 
 
 def catalog_models(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report once per scene the models of its elements, unless a loaded executable scene defines them."""
+    """Report the models of the elements of each scene, once for each scene.
+
+    A scene is skipped if a loaded executable scene defines its models.
+    """
     for placed in file.declarations:
         scene = placed.declaration.tree
         if not isinstance(scene, tree.Scene) or _is_executable(snapshot, scene.name.text):

@@ -1,4 +1,4 @@
-"""``contradictory-order``: two events, each of which must precede the other."""
+"""``contradictory-order``: each of two events must precede the other one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def contradictory_order(site: Site) -> Iterator[Diagnostic]:
-    """Report ``from <b> until <a>`` if ``from <a> until <b>`` precedes it in the same scenario."""
+    """Report ``from <b> until <a>`` if the same scenario contains ``from <a> until <b>`` before it."""
     for clauses in clauses_of(site.placed.declaration):
         if isinstance(clauses.node, tree.Template):
             yield from _contradictions([(site, during) for during in clauses.once], site)

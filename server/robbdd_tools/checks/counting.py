@@ -1,4 +1,4 @@
-"""Number of scenarios of a variation, counted without expanding it."""
+"""Count the scenarios of a variation without expanding it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ UNCOUNTED = 10**12
 
 
 def factors_of(scenario: Scenario) -> tuple[int, ...] | None:
-    """Return the number of values in each line of a product, or the number of a table's rows.
+    """Return factors whose product is the number of scenarios; ``None`` while a set is unknown.
 
-    Their product is the number of scenarios; ``None`` while a set is unknown.
+    For a product, these are the numbers of values in each line. For a table, this is the number of rows.
     """
     variation = scenario.variant.variation
     if isinstance(variation, tree.Table):
@@ -40,7 +40,7 @@ def scenario_count(scenario: Scenario) -> int | None:
 
 
 def choices(site: Site, written: Written) -> int | None:
-    """Return the number of values of a line; ``None`` while the set is unknown."""
+    """Return the number of values in a line of a product; ``None`` while its set is unknown."""
     match written:
         case tree.ValueList():
             return len(written.values)

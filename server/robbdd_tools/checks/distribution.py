@@ -1,6 +1,6 @@
-"""``distribution``: a distribution that a run cannot sample, or whose dimension does not match its numbers.
+"""``distribution``: a run cannot sample a distribution, or its dimension does not match its numbers.
 
-A warning: only a run that places something by it fails.
+This is a warning, because only a run that uses the distribution for a placement fails.
 """
 
 from __future__ import annotations
@@ -22,7 +22,10 @@ CODE = "distribution"
 
 
 def distribution(site: Site) -> Iterator[Diagnostic]:
-    """Report bounds and means of another dimension, otherwise why the distribution cannot be sampled."""
+    """Report bounds and means of another dimension.
+
+    If there are none, report why the distribution cannot be sampled.
+    """
     declared = site.tree
     if not isinstance(declared, tree.Distribution) or not site.whole(declared):
         return
@@ -49,7 +52,7 @@ def distribution(site: Site) -> Iterator[Diagnostic]:
 
 
 def _resized(site: Site, dimension: tree.Number, sized: tuple[tree.Vector | tree.Number, ...]) -> tuple[Fix, ...]:
-    """Return the fix that adapts the dimension to the numbers, if these agree."""
+    """Return the fix that adapts the dimension to the numbers. All numbers must have the same dimension."""
     sizes = {len(_numbers(part)) for part in sized}
     if len(sizes) > 1:
         return ()
@@ -58,7 +61,7 @@ def _resized(site: Site, dimension: tree.Number, sized: tuple[tree.Vector | tree
 
 
 def _ordered(site: Site, law: tree.Uniform) -> tuple[Fix, ...]:
-    """Return the fix that swaps lower and upper bounds where the lower one is greater."""
+    """Return the fix that swaps a lower bound and an upper bound if the lower one is greater."""
     swaps: list[Edit] = []
     for low, high in zip(_parts(law.lower), _parts(law.upper), strict=True):
         if low.value > high.value:
@@ -73,7 +76,7 @@ def _parts(value: tree.Vector | tree.Number) -> list[tree.Number]:
 
 
 def drawn(law: tree.Uniform | tree.UniformRotation | tree.Normal) -> int:
-    """Return the number of values of one sample; a rotation has four."""
+    """Return the number of values in one sample. A rotation has four."""
     match law:
         case tree.UniformRotation():
             return 4

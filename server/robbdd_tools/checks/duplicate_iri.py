@@ -1,4 +1,4 @@
-"""``duplicate-iri``: two declarations with the same IRI, which the graph would merge."""
+"""``duplicate-iri``: two declarations have the same IRI, so the graph would merge them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Node = tuple[str | None, str]
 
 
 def duplicate_iri(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each declaration of the file whose IRI is already used, here or in an imported file."""
+    """Report each declaration of the file whose IRI another declaration, here or in an imported file, already has."""
     uri = file.document.uri
     scope, declaring = snapshot.scope(uri), _declaring(snapshot)
     names: set[str] = set()
@@ -63,7 +63,7 @@ def _report(first: Definition, second: Definition) -> Diagnostic:
 
 
 def _definitions(file: FileAnalysis, names: set[str]) -> Iterator[Definition]:
-    """Yield the declarations of a file that have some names and an IRI of their own."""
+    """Yield the declarations of a file that have one of some names and an IRI of their own."""
     for path in file.definitions:
         if path.rpartition(".")[2] in names:
             definition = file.definitions[path]

@@ -1,4 +1,4 @@
-"""``emission``: ``emits … as …`` names an event that the behaviour lacks, or the same event twice."""
+"""``emission``: ``emits … as …`` names an event that the behaviour does not have, or the same event twice."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``empty-duration``: ``from <a> until <a>``, which is a single instant."""
+"""``empty-duration``: a duration starts and ends with the same event, so it is a single instant."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ def empty_duration(site: Site) -> Iterator[Diagnostic]:
 
 
 def _after(site: Site, node: tree.Node, during: tree.During) -> Iterator[Fix]:
-    """Yield the fix that writes the instant as a time constraint; behaviours and templates must have a duration."""
+    """Yield the fix that writes the instant as another time constraint.
+
+    There is no such fix for behaviours and templates, because they must have a duration.
+    """
     if any(isinstance(clause, tree.Fluent | tree.TextClause) and clause.time is during for clause in walk(node)):
         text = f"after <{during.start.path}>"
         yield change(site, f"Change to '{text}'", during, text)

@@ -1,4 +1,4 @@
-"""``empty-set``: a set without elements; a variation that uses it has no scenario."""
+"""``empty-set``: a set has no elements. A variation that uses it has no scenario."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def empty_set(site: Site) -> Iterator[Diagnostic]:
-    """Report declared sets without elements and variations without values."""
+    """Report declared sets without elements, and variations without values."""
     root = site.tree
     if isinstance(root, tree.ElementSet | tree.ConstantSet) and elements_of(site) == ():
         message = f"the set '{root.name.text}' is empty: add an element between the braces, or remove the set"
@@ -30,7 +30,7 @@ def empty_set(site: Site) -> Iterator[Diagnostic]:
 
 
 def _line(scenario: Scenario, column: Column, written: tree.Node) -> Iterator[Diagnostic]:
-    """Report a line without values, which leaves no scenario; an inner empty set may be intended."""
+    """Report a line without values, because it leaves no scenario. A nested empty set is allowed."""
     site = scenario.site
     related = (related_to(site, column.ref, "the variable"),)
     match written:

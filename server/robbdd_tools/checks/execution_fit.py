@@ -1,4 +1,4 @@
-"""``execution-fit``: parts of an execution that do not match, so that a run leaves clauses unknown."""
+"""``execution-fit``: parts of an execution do not match, so that a run leaves clauses unknown."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ DOES_ALL = "pick-place"
 
 
 def execution_fit(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report behaviours that the implementation does not execute, and distances not between two elements."""
+    """Report behaviours that the implementation does not execute, and distances that are not between two elements."""
     for placed in file.declarations:
         site = Site(snapshot, file, placed)
         match site.tree:
@@ -54,7 +54,7 @@ def _behaviour(site: Site, execution: tree.Execution) -> Iterator[Diagnostic]:
 
 
 def _behaviours(site: Site, execution: tree.Execution) -> list[str]:
-    """Return the behaviours (catalog words) of the executed variant."""
+    """Return the behaviours of the executed variant, as words of the catalog."""
     variant = site.target(execution.variant)
     template = None if variant is None else _template(site.snapshot, variant)
     if template is None or template.tree is None:

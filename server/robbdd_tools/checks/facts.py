@@ -42,11 +42,15 @@ _REFERRED = re.compile(r"(?:<\s*|\bns\s*=\s*)([^\W\d][\w\-]*)")
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """Names in a declaration; independent of reference targets, so valid wherever the declaration is.
+    """Names in a declaration.
 
-    ``own_names`` are the names it declares that need unique IRIs, by namespace. ``heads`` are the first parts of all
-    names it refers to, ``clause_paths`` the names of variables in its clauses as written, ``unused`` the variables that
-    neither a clause nor a quantifier of their own template uses, and ``unused_bounds`` the unused quantified ones.
+    They do not depend on the targets of references, so they stay valid wherever the declaration is moved.
+
+    - ``own_names``: the names that it declares and that need unique IRIs, by namespace.
+    - ``heads``: the first parts of all names to which it refers.
+    - ``clause_paths``: the names of variables in its clauses, as written.
+    - ``unused``: the variables that neither a clause nor a quantifier of their own template uses.
+    - ``unused_bounds``: the variables of quantifiers that no clause uses.
     """
 
     own_names: Mapping[str, tuple[str, ...]]

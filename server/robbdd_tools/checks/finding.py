@@ -1,4 +1,4 @@
-"""Make diagnostics and edits for nodes of trees."""
+"""Make diagnostics and edits for nodes of syntax trees."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def change(site: Site, title: str, node: Node, text: str) -> Fix:
 
 
 def removal(document: Document, title: str, span: Span) -> Fix:
-    """Return the fix that removes a span, with its lines if nothing else is on them."""
+    """Return the fix that removes a span. Lines that would become empty are removed, too."""
     text = document.text
     start, end = span.start, span.end
     line_start = document.line_starts[document.position(start).line]

@@ -1,4 +1,4 @@
-"""``foreign-variable``: a variant uses a variable of another template than its own."""
+"""``foreign-variable``: a variant uses a variable of a template that is not its own."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def foreign_variable(site: Site) -> Iterator[Diagnostic]:
-    """Report the variables of other templates in variations and clauses."""
+    """Report the variables of other templates in the variations and clauses of variants."""
     for scenario in scenarios(site):
         own = scenario.declared()
         if scenario.template is None:
@@ -30,14 +30,14 @@ def foreign_variable(site: Site) -> Iterator[Diagnostic]:
 
 
 def _variables(scenario: Scenario) -> Iterator[tree.Ref]:
-    """Yield the variable references of a scenario, those in the variation first."""
+    """Yield the references to variables in a scenario; those in the variation are first."""
     yield from (column.ref for column in scenario.columns)
     yield from (use.ref for use in scenario.clauses.uses if use.bound is None)
     yield from (bound.in_set for bound in scenario.clauses.bounds)
 
 
 def _is_of_template(scenario: Scenario, found: Definition) -> bool:
-    """Return whether a name is a variable of a template, not one quantified by the variant."""
+    """Return whether a definition is a variable of a template, not a variable of a quantifier in the variant."""
     extent = scenario.site.span(scenario.variant)
     inside = found.uri == scenario.site.uri and extent.contains(found.span.start)
     return found.kind in VARIABLES and not inside

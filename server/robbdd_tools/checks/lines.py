@@ -1,4 +1,4 @@
-"""Edits of whole lines: add an import or an event, remove an import."""
+"""Edits of whole lines: add an import, add an event, or remove an import."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ def import_removal(file: FileAnalysis, link: ImportLink, title: str) -> Iterator
 
 
 def line_below(file: FileAnalysis, kinds: tuple[type[tree.Node], ...], line: str) -> Edit:
-    """Return the edit that adds a line below the last declaration of the first of ``kinds`` that occurs."""
+    """Return the edit that adds a line below the last declaration of a kind.
+
+    ``kinds`` are tried in order, and the first one that the file contains is used.
+    """
     document = file.document
     for kind in kinds:
         ends = [
@@ -46,7 +49,7 @@ def line_below(file: FileAnalysis, kinds: tuple[type[tree.Node], ...], line: str
 
 
 def line_end(document: Document, offset: int) -> int:
-    """Return the end of an offset's line if only white space and a comment follow, else the offset."""
+    """Return the end of the line of an offset if only white space and a comment follow; otherwise return the offset."""
     place = document.position(offset)
     rest = document.line_text(place.line)[place.column :]
     is_last = not rest.strip() or rest.lstrip().startswith("//")

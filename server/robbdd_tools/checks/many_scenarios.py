@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def many_scenarios(site: Site) -> Iterator[Diagnostic]:
-    """Report each variant with more scenarios than anybody will run."""
+    """Report each variant that has too many scenarios for a run."""
     for scenario in scenarios(site):
         known = factors_of(scenario)
         if known is None or isinstance(scenario.variant.variation, tree.Table):

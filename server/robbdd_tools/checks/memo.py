@@ -47,9 +47,10 @@ _FOLLOWED = (SymbolKind.SCENE, SymbolKind.COMPOSITION, SymbolKind.CONSTANT_SET)
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """Cached diagnostics; they depend on the declarations in ``around`` and on which declarations have the ``names``.
+    """The cached diagnostics of a declaration.
 
-    ``paths`` are all qualified names that the declaration itself looked up.
+    They depend on the declarations in ``around``, and on which declarations have the ``names``. ``paths`` are all
+    qualified names that the declaration itself looked up.
     """
 
     names: frozenset[str]
@@ -70,7 +71,7 @@ _runs: dict[str, _Run] = {}
 
 
 def findings_in(snapshot: Snapshot, file: FileAnalysis, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
-    """Yield the rules' diagnostics for the declarations of a file; unchanged ones are not checked again."""
+    """Yield the diagnostics of rules for the declarations of a file. Unchanged declarations are not checked again."""
     uri = file.document.uri
     scope = snapshot.scope(uri)
     known = _still_valid(_runs.get(uri), scope)
@@ -125,7 +126,10 @@ def _is_namespace(declaration: Declaration) -> bool:
 
 
 def _renamed(before: NameTable, after: NameTable) -> set[str]:
-    """Return the qualified names on which two tables may differ; repeated ones may be reordered."""
+    """Return the qualified names whose declarations may differ between two tables.
+
+    Repeated names are included, because their declarations may have a new order.
+    """
     if before is after:
         return set()
     paths = changed_paths(before, after)
@@ -134,9 +138,9 @@ def _renamed(before: NameTable, after: NameTable) -> set[str]:
 
 
 def _around(scope: Scope, declaration: Declaration) -> tuple[frozenset[str], frozenset[Declaration]]:
-    """Return the names that a declaration depends on, and their declarations in its own file.
+    """Return the names on which a declaration depends, and the declarations of these names in its own file.
 
-    Sets and scenes also depend on what they refer to.
+    Sets and scenes also depend on the declarations to which they refer.
     """
     names: set[str] = {declaration.symbols[0].path} if declaration.symbols else set()
     found: dict[Declaration, None] = {}

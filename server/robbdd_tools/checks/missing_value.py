@@ -1,4 +1,4 @@
-"""``missing-value``: a variant without a value for a variable of its template."""
+"""``missing-value``: a variant gives no value to a variable of its template."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 
 
 def missing_value(site: Site) -> Iterator[Diagnostic]:
-    """Report once per variant all variables without a value; an unknown name may be the missing one."""
+    """Report all variables without a value, once for each variant.
+
+    An unknown name in the variation may be the missing variable.
+    """
     for scenario in scenarios(site):
         given = [column.variable for column in scenario.columns if column.variable is not None]
         if len(given) < len(scenario.columns):
@@ -47,7 +50,7 @@ def _report(scenario: Scenario, missing: list[Definition]) -> Diagnostic:
 
 
 def _filled(scenario: Scenario, missing: list[Definition]) -> Iterator[Fix]:
-    """Yield the fixes that add a line or column with values from the scene for each missing variable."""
+    """Yield fixes that add a line or a column for each missing variable, with values from the scene."""
     variation = scenario.variant.variation
     names = listed([variable.symbol.name for variable in missing])
     if isinstance(variation, tree.Table):
@@ -75,7 +78,10 @@ def _lines(scenario: Scenario, product: tree.Product, missing: list[Definition],
 
 
 def _columns(scenario: Scenario, table: tree.Table, missing: list[Definition]) -> Iterator[Fix]:
-    """Yield fixes that add columns: one per matching value of a single variable, or the first match of several."""
+    """Yield fixes that add columns. For a single variable, there is one fix for each matching value.
+
+    For several variables, one fix adds a column with the first matching value of each.
+    """
     if len(missing) == 1 and missing[0].kind is SymbolKind.VARIABLE:
         choices = [[value] for value in scenario.fitting_for(missing[0])[:MAX_OFFERED]]
     else:

@@ -1,4 +1,4 @@
-"""``model-file``: a model file of a scene instance that is missing on this machine; an error only in a run."""
+"""``model-file``: the model file of a scene instance is missing on this machine. It is an error only in a run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``namespace-iri``: a namespace that is not a valid IRI prefix; its names would be missing from the graph."""
+"""``namespace-iri``: a namespace is not a valid IRI prefix, so its names would be missing from the graph."""
 
 from __future__ import annotations
 

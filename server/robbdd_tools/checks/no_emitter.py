@@ -1,4 +1,4 @@
-"""``no-emitter``: a clause refers to an event that nothing in its scenario emits, so it stays unknown."""
+"""``no-emitter``: a clause refers to an event that nothing in its scenario emits, so the clause stays unknown."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ Key = tuple[str, str]
 class _Emitters:
     """The events that an execution of a template emits.
 
-    ``bound`` are the events that delimit the scenario and its behaviours, with their names; ``inner`` are the
-    behaviours' events by their catalog names.
+    ``bound`` maps the events that delimit the scenario and its behaviours to their names. ``inner`` are the events of
+    the behaviours, by their names in the catalog.
     """
 
     bound: dict[Key, str] = field(default_factory=dict[Key, str])

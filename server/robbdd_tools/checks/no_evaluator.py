@@ -1,4 +1,4 @@
-"""``no-evaluator``: free text in a clause that neither a step function nor an observation policy judges."""
+"""``no-evaluator``: neither a step function nor an observation policy judges the free text of a clause."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SLOT = re.compile(r"\{\w[\w-]*\}")
 
 @dataclass(frozen=True, slots=True)
 class Unjudged:
-    """A free-text clause without an evaluator; ``span`` is that of its text."""
+    """A free-text clause that nothing evaluates. ``span`` is the span of its text."""
 
     placed: PlacedDeclaration
     clause: FreeClause
@@ -44,7 +44,7 @@ def no_evaluator(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]
 
 
 def unjudged(snapshot: Snapshot, file: FileAnalysis) -> list[Unjudged]:
-    """Return the free-text clauses without an evaluator, in text order."""
+    """Return the free-text clauses that nothing evaluates, in text order."""
     clauses = [(placed, clause) for placed in file.parts() for clause in _free_clauses(placed.declaration)]
     if not clauses:
         return []
@@ -84,7 +84,7 @@ def _free_clauses(declaration: Declaration) -> tuple[FreeClause, ...]:
 
 
 def _judged_by_policies(snapshot: Snapshot, uri: str) -> Iterator[Span]:
-    """Yield the names of the clauses of a file for which a loaded ``.bddx`` has a policy."""
+    """Yield the names of the clauses of a file for which some loaded ``.bddx`` has a policy."""
     for importer in snapshot.importers(uri):
         file = snapshot.file(importer) if language_of(importer) == "bddx" else None
         for placed in file.declarations if file is not None else ():
@@ -95,7 +95,7 @@ def _judged_by_policies(snapshot: Snapshot, uri: str) -> Iterator[Span]:
 
 
 def _sentence(clause: FreeClause) -> str:
-    """Return the sentence for a step: the text as in a feature, with sample words for events and values."""
+    """Return the sentence of a step for a clause: its text as in a feature, with sample words for events and values."""
     stated = _SLOT.sub('"x"', text_of(clause).value.strip().replace("\\", "\\\\"))
     match clause.time:
         case tree.During():

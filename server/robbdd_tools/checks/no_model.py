@@ -1,6 +1,6 @@
-"""``no-model``: a scene's object or agent without a model in the catalog or a ``.scenex``.
+"""``no-model``: neither the catalog nor a ``.scenex`` has a model for an object or agent of a scene.
 
-A run cannot judge a scenario that uses it; other scenarios leave it out.
+A run cannot judge a scenario that uses the element. Other scenarios leave the element out.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Key = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Elements without a model that are reported at one place: a name, or an entry of the scene."""
+    """Elements without a model that are reported at one place, which is a name or an entry of the scene."""
 
     scene: Site
     span: Span
@@ -39,7 +39,7 @@ class Gap:
 
 
 def no_model(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report elements without a model, as a warning if a scenario uses one of them."""
+    """Report elements without a model. If a scenario uses one of them, the report is a warning."""
     for placed in file.declarations:
         scene = Site(snapshot, file, placed)
         gaps = gaps_of(scene)
@@ -52,7 +52,7 @@ def no_model(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
 
 
 def gaps_of(scene: Site) -> list[Gap]:
-    """Return the elements of a scene without a model; empty if a model of the whole scene may have them."""
+    """Return the elements of a scene without a model; empty if a model of the whole scene may contain them."""
     if not isinstance(scene.tree, tree.Scene):
         return []
     unfit = [element for element in sorted(scene_members(scene) or (), key=lambda one: one.key) if not _fits(element)]
@@ -100,7 +100,7 @@ def _fits(element: Element) -> bool:
 
 
 def _may_have_all(instance: Site) -> bool:
-    """Return whether an executable scene loads its objects from a file, whose bodies are known only in a run."""
+    """Return whether an executable scene loads its objects from a file whose bodies are known only in a run."""
     root = instance.tree
     return isinstance(root, tree.SceneInstance) and any(isinstance(entry, tree.Model) for entry in root.entries)
 

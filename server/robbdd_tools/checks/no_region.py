@@ -1,6 +1,6 @@
-"""``no-region``: a workspace that a variant uses, although no object of its scene carries it.
+"""``no-region``: a variant uses a workspace that no object of its scene carries.
 
-Nothing can be placed or located there, so that a run leaves the scenarios with it unknown.
+Nothing can be placed or located there, so a run leaves the scenarios that use the workspace unknown.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Key = tuple[str, str]
 
 
 def no_region(site: Site) -> Iterator[Diagnostic]:
-    """Report each workspace without an object once per variant, at its first occurrence."""
+    """Report each workspace that no object carries once for each variant, at its first occurrence."""
     for scenario in scenarios(site):
         scene = site.follow(scenario.variant.scene)
         carried = _carried(scene)
@@ -46,7 +46,7 @@ def no_region(site: Site) -> Iterator[Diagnostic]:
 
 
 def _carried(scene: Site | None) -> frozenset[Key] | None:
-    """Return the workspaces of a scene that objects carry; ``None`` if that is not completely known."""
+    """Return the workspaces that objects of a scene carry; ``None`` if they are not completely known."""
     root = None if scene is None else scene.tree
     if scene is None or not isinstance(root, tree.Scene) or not scene.whole(root):
         return None
@@ -61,7 +61,7 @@ def _carried(scene: Site | None) -> frozenset[Key] | None:
 
 
 def _composed(site: Site | None, above: frozenset[Key]) -> set[Key] | None:
-    """Return the carried workspaces of a composition and of those nested in it."""
+    """Return the carried workspaces of a composition and of the compositions nested in it."""
     root = None if site is None else site.tree
     if site is None or not isinstance(root, tree.Composition) or not site.whole(root):
         return None

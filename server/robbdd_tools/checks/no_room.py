@@ -1,4 +1,4 @@
-"""``no-room``: too many agents or containers for the table of a scene without a ``.scenex``."""
+"""``no-room``: there are too many agents or containers for the table of a scene without a ``.scenex``."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Names = frozenset[str]
 
 
 def no_room(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report the first container of a scene without a standard place, and scenarios with too many agents."""
+    """Report the first container of a scene that has no standard place, and scenarios with too many agents."""
     for placed in file.declarations:
         scene = Site(snapshot, file, placed)
         if isinstance(scene.tree, tree.Scene) and used_elements(scene) and not any(scene_instances(scene)):
@@ -76,7 +76,7 @@ def _too_many_agents(site: Site) -> Iterator[Diagnostic]:
 
 
 def _agents(scenario: Scenario) -> Iterator[Names]:
-    """Yield sets of agents that a scenario is certain to use together; executions may use more."""
+    """Yield sets of agents that a scenario certainly uses together. Its executions may use more."""
     site, variation = scenario.site, scenario.variant.variation
     quantified = frozenset(chain.from_iterable(_quantified(scenario)))
     if isinstance(variation, tree.Table):
@@ -98,7 +98,7 @@ def _agents(scenario: Scenario) -> Iterator[Names]:
 
 
 def _quantified(scenario: Scenario) -> Iterator[Names]:
-    """Yield the agents of the sets that the clauses' quantifiers name."""
+    """Yield the agents in the sets that the quantifiers of clauses name."""
     places = [(scenario.site, scenario.clauses)]
     if scenario.template is not None and scenario.outer is not None:
         places.append((scenario.template, scenario.outer))

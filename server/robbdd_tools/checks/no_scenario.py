@@ -1,4 +1,4 @@
-"""``no-scenario``: a ``.bdd`` file without a scenario or anything that another file could use."""
+"""``no-scenario``: a ``.bdd`` file contains neither a scenario nor anything that another file could use."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""``not-in-scene``: a value that is missing in the variant's scene, although the scene has others of that kind.
+"""``not-in-scene``: the scene of a variant lacks a value, although it has other elements of the same kind.
 
-This is allowed: the element then belongs to that scenario only. A scene without any agent, for example, leaves the
-choice of agents to its variants on purpose.
+This is allowed; the element then belongs to the scene of that variant only. For example, a scene without any agent
+leaves the choice of agents to its variants on purpose.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _BROUGHT = ("ObjectSet", "WorkspaceSet", "AgentSet")
 
 
 def not_in_scene(site: Site) -> Iterator[Diagnostic]:
-    """Report each element once per variant, at its first occurrence."""
+    """Report each element that the scene lacks once for each variant, at its first occurrence."""
     known: dict[tuple[str, str], frozenset[Element] | None] = {}
     for scenario in scenarios(site):
         scene = site.target(scenario.variant.scene)
@@ -65,7 +65,7 @@ def _elements_outside(scenario: Scenario, members: frozenset[Element]) -> Iterat
 
 
 def _extended(site: Site | None, element: Element) -> Iterator[Fix]:
-    """Yield the fix that adds the set of an element to a scene, with the import of the set if missing."""
+    """Yield the fix that adds the set of an element to a scene, and if necessary the import of the set."""
     scene = None if site is None else site.tree
     if site is None or not isinstance(scene, tree.Scene):
         return
@@ -91,7 +91,7 @@ def _extended(site: Site | None, element: Element) -> Iterator[Fix]:
 
 
 def _named_set_members(scenario: Scenario) -> Iterator[Element]:
-    """Yield the members of element sets in the variation: naming a whole set adds it to the scene."""
+    """Yield the members of the element sets in a variation. Naming a whole set adds its members to the scene."""
     for column in scenario.columns:
         for written in column.written:
             if isinstance(written, tree.Link) and written.reference.role in _BROUGHT:

@@ -1,6 +1,7 @@
-"""``not-simulated``: a ROS action, topic or listener, which is not available in simulation.
+"""``not-simulated``: a ROS action, topic or listener is not available in simulation.
 
-An information: the model may be meant for a robot. Clauses that depend on it stay unknown in simulation.
+The severity is information, because the model may be meant for a robot. Clauses that depend on it stay unknown in
+simulation.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ _GROUND_TRUTH = "simulation ground truth update-rate: 100 Hz"
 
 
 def not_simulated(_: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report each of them, with the simulation's replacement as a fix."""
+    """Report every element that a simulation cannot provide, and offer the simulated replacement as a quick fix."""
     uri = file.document.uri
     for placed in file.declarations:
         found = _ros(placed.declaration.tree)
@@ -40,7 +41,7 @@ def _simulate(root: tree.Implementation) -> str:
 
 
 def _ros(root: tree.ChunkTree | None) -> tuple[tree.Node, str, str, str] | None:
-    """Return the ROS part of a declaration, its name, the effect in a simulation, and a replacement."""
+    """Return the ROS part of a declaration, its name, its effect in a simulation, and a replacement."""
     match root:
         case tree.Implementation(source=tree.RosAction() as source):
             return source, "ROS action", f"clauses stay unknown; to simulate it, {_simulate(root)}", _CATALOG

@@ -1,4 +1,4 @@
-"""``number-range``: a number outside the range of its quantity, such as a negative seed or an update rate of 0."""
+"""``number-range``: a number is outside the range of its quantity, for example a negative seed."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ CODE = "number-range"
 
 @dataclass(frozen=True, slots=True)
 class _Quantity:
-    """Range of a number; ``above`` excludes the bound ``low`` itself, ``whole`` excludes fractions."""
+    """The range of a number. ``above`` excludes the bound ``low`` itself, and ``whole`` excludes fractions."""
 
     words: str
     low: float = 0.0
@@ -53,7 +53,7 @@ _Measured = tuple[tree.Number | None, _Quantity]
 
 
 def number_range(site: Site) -> Iterator[Diagnostic]:
-    """Report each such number of a declaration, and the reversed bounds of a distance."""
+    """Report each number of a declaration that is out of range, and the reversed bounds of a distance."""
     for number, quantity in _measured(site.placed.declaration):
         text = written_text(site, number)
         message = f"{quantity.words} cannot be {text}: write {quantity.wanted}"
@@ -95,7 +95,10 @@ def _quantities(node: tree.Node) -> Iterator[_Measured]:
 
 
 def _fixes(site: Site, number: tree.Number, quantity: _Quantity) -> tuple[Fix, ...]:
-    """Return the fix that removes the sign, or writes 1 for the number of repetitions; other fixes are uncertain."""
+    """Return the fix that removes the sign, or that writes 1 for the number of repetitions.
+
+    There are no other fixes, because the intended number is uncertain.
+    """
     if number.value < 0 and quantity.allows(-number.value):
         positive = written_text(site, number).lstrip("-")
         return (change(site, f"Change to {positive}", number, positive),)

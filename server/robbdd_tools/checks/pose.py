@@ -1,6 +1,6 @@
-"""``pose``: a position without exactly three numbers, or an invalid orientation.
+"""``pose``: a position does not have exactly three numbers, or an orientation is invalid.
 
-A warning: only a run that places something by it fails.
+This is a warning, because only a run that uses the pose for a placement fails.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def _orientation(site: Site, written: tree.Vector | tree.EulerAngles | tree.Axes
 
 
 def _count(site: Site, sample: tree.Sample) -> int | None:
-    """Return the number of values of a sample; ``None`` if its distribution is unknown."""
+    """Return the number of values in a sample; ``None`` if its distribution is unknown."""
     found = site.follow(sample.distribution)
     declared = None if found is None else found.tree
     return drawn(declared.law) if isinstance(declared, tree.Distribution) else None

@@ -1,7 +1,7 @@
-"""``published-form``: a declaration in the form of the 2025 paper; the fix rewrites it in the current form.
+"""``published-form``: a declaration has the form of the 2025 paper. The fix rewrites it in the current form.
 
-The text is edited in pieces, so that comments stay in place. Data that the published form omits and that cannot be
-derived, such as a template's task, is left to the author.
+The fix edits pieces of the text, so that comments stay in place. Data that the published form omits and that cannot be
+derived is left to the author, for example the task of a template.
 """
 
 from __future__ import annotations
@@ -53,14 +53,14 @@ def published_form(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnosti
 
 
 def _namespace(index: FileIndex, placed: PlacedDeclaration) -> str | None:
-    """Return the implied namespace of a declaration, else that of its file."""
+    """Return the namespace that a declaration implies or, without one, the namespace of its file."""
     symbol = placed.declaration.symbols[0]
     left_out = symbol.namespace == FILE_NAMESPACE
     return namespace_of(index, symbol) if left_out else only_namespace(index.names)
 
 
 def _through_scenes(placed: PlacedDeclaration) -> Iterator[Change]:
-    """Yield the changes of elements named by their scene (``lab_scene.cube``)."""
+    """Yield the changes of references that name an element by its scene (``lab_scene.cube``)."""
     for reference in placed.declaration.references:
         ref = reference.ref
         target = placed.targets.get(ref) if ref.role in ELEMENT_ROLES and "." in ref.path else None
@@ -99,7 +99,7 @@ def _in_scenarios(declaration: Declaration) -> tuple[Change, ...]:
 
 
 def _merged(changes: Iterable[Change]) -> Iterator[Change]:
-    """Join insertions at one place in the given order, also before a replacement that starts there."""
+    """Join insertions at the same place in the given order, and put them before a replacement that starts there."""
     kept: list[Change] = []
     for span, text in sorted(changes, key=lambda change: change[0].start):
         if kept and kept[-1][0].start == kept[-1][0].end == span.start:
@@ -118,7 +118,7 @@ class _Rewriter:
     namespace: str
 
     def declaration(self, root: object) -> Iterator[Change]:
-        """Yield the changes of a declaration; for a story, those outside of its scenarios."""
+        """Yield the changes of a declaration. The changes inside the scenarios of a story are left out."""
         if isinstance(root, _NAMED) and root.namespace is None and self.namespace:
             yield _put(root.name.span.start, self.namespace)
         if isinstance(root, tree.Template):

@@ -1,7 +1,7 @@
 """``python-source``: ``py { module: …, attr: … }`` names a module or an attribute that does not exist.
 
-Modules are found by their files and read as syntax trees; none is imported. A warning: the module may be installed on
-the machine that runs the model.
+Modules are found by their files and read as syntax trees, but never imported. The finding is a warning, because the
+module may be installed on the machine that runs the model.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def _sources(declaration: Declaration) -> tuple[tree.PythonAttribute, ...]:
 
 
 def _problem(source: tree.PythonAttribute, folder: Path) -> tuple[tree.Name, str, list[str]] | None:
-    """Return the wrong name, the message and suggestions; ``None`` if the name exists."""
+    """Return the wrong name, a message and suggestions; ``None`` if the name exists."""
     module, attribute = source.module.text, source.attribute.text
     spec = find_module(module, folder)
     if spec is None:

@@ -1,4 +1,4 @@
-"""``repeated-value``: a variation with two columns or lines for one variable."""
+"""``repeated-value``: a variation has two columns or lines for the same variable."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ SET_WORDS = {"object": "obj set", "workspace": "ws set", "agent": "agn set"}
 
 
 def variables_with_kinds(template: Site, uses: Mapping[str, list[Use]]) -> Iterator[tuple[str, Kinds]]:
-    """Yield the paths and kinds of a template's variables that are not sets, according to some uses."""
+    """Yield the paths and kinds of those variables of a template that are not sets. Some uses determine the kinds."""
     root = template.tree
     paths = (
         [f"{root.name.text}.{entry.name.text}" for entry in root.variables] if isinstance(root, tree.Template) else []
@@ -33,7 +33,10 @@ def variables_with_kinds(template: Site, uses: Mapping[str, list[Use]]) -> Itera
 
 
 def other_variables(site: Site, use: Use, clauses: Clauses, others: Mapping[str, Kinds]) -> Iterator[Fix]:
-    """Yield the fixes that replace a variable by one of the right type that its phrase does not use yet."""
+    """Yield fixes that replace a variable by another one of the right type.
+
+    Variables that the phrase already uses are left out.
+    """
     if use.bound is not None:
         return
     phrase = next((phrase for phrase in clauses.phrases if phrase.span.contains(use.ref.span.start)), None)
@@ -43,9 +46,9 @@ def other_variables(site: Site, use: Use, clauses: Clauses, others: Mapping[str,
 
 
 def other_values(scenario: Scenario, column: Column, node: tree.Node, kinds: Kinds, written: set[str]) -> Iterator[Fix]:
-    """Yield the fixes that replace a value by a scene element of some kinds, or a set by such a set.
+    """Yield fixes that replace a value by an element of the scene, or a set by a set of elements, of the right kinds.
 
-    Values already ``written`` for the variable are left out.
+    Values that are already ``written`` for the variable are left out.
     """
     site, members = scenario.site, scenario.members(kinds)
     link = next((one for one in column.written if isinstance(one, tree.Link) and one.reference is node), None)

@@ -1,4 +1,4 @@
-"""``row-width``: a table row that has more or fewer cells than the table has columns."""
+"""``row-width``: a table row has more or fewer cells than the table has columns."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
 
 def row_width(site: Site) -> Iterator[Diagnostic]:
-    """Report each row of the wrong width; a short one may be completed from an adjacent row, or from the scene."""
+    """Report each row that has the wrong width.
+
+    A fix may complete a short row with values of an adjacent row or of the scene.
+    """
     for scenario in scenarios(site):
         table = scenario.variant.variation
         for row in table.rows if isinstance(table, tree.Table) else ():

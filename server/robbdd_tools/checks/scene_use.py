@@ -1,4 +1,4 @@
-"""The elements of a scene that its scenarios use."""
+"""Determine the elements of a scene that its scenarios use."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ _ELEMENTS = (SymbolKind.OBJECT, SymbolKind.WORKSPACE, SymbolKind.AGENT)
 
 
 def used_elements(scene: Site) -> frozenset[Key] | None:
-    """Return the elements that the loaded scenarios of a scene use, with the objects that carry used workspaces.
+    """Return the elements of a scene that its loaded scenarios use.
 
-    ``None`` without a scenario: the scene's use is then unknown.
+    Objects that carry a used workspace are included. Without a scenario, the use is unknown, and the result is
+    ``None``.
     """
     found: set[Key] = set()
     is_used = False
@@ -63,7 +64,7 @@ def _stories_by_scene(snapshot: Snapshot) -> Mapping[Key, list[tuple[str, int]]]
 
 
 def _named(scenario: Scenario) -> Iterator[Key]:
-    """Yield the elements in values and clauses, named individually or by their sets."""
+    """Yield the elements that values and clauses name, either individually or by their sets."""
     yield from _targets(scenario.site, scenario.variant)
     if scenario.template is not None and isinstance(scenario.template.tree, tree.Template):
         yield from _targets(scenario.template, scenario.template.tree)

@@ -1,4 +1,4 @@
-"""``selection-size``: ``select N`` with more elements than the set has, or with none."""
+"""``selection-size``: ``select N`` selects more elements than the set has, or none."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""``setting``: ``has config`` with an unknown configuration, an invalid value, or an element that lacks it.
+"""``setting``: ``has config`` has an unknown configuration, an invalid value, or an element without the configuration.
 
-A warning: other programs that execute a model may know other configurations; ours refuses to run with it.
+This is a warning, because other programs that execute a model may know other configurations. RobBDD refuses to run such
+a scenario.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ MIN_ALIKE = 0.6
 
 
 def setting(site: Site) -> Iterator[Diagnostic]:
-    """Report unknown names, and invalid values in the variations that contain them."""
+    """Report unknown names. Report invalid values in the variations that contain them."""
     for clauses in clauses_of(site.placed.declaration):
         for use in _uses(clauses):
             if use.name.text not in SETTINGS:
@@ -90,14 +91,14 @@ def _misfits(scenario: Scenario) -> Iterator[Diagnostic]:
 
 
 def _known_uses(scenario: Scenario) -> Iterator[tuple[Site, _Use]]:
-    """Yield the catalog configurations that the clauses of a scenario and its template name."""
+    """Yield the configurations of the catalog that the clauses of a scenario and of its template name."""
     for site, clauses in ((scenario.site, scenario.clauses), (scenario.template, scenario.outer)):
         if site is not None and clauses is not None:
             yield from ((site, use) for use in _uses(clauses) if use.name.text in SETTINGS)
 
 
 def _wrong_targets(scenario: Scenario) -> Iterator[Diagnostic]:
-    """Yield the target elements of a variation that do not have the configuration."""
+    """Yield the target elements in a variation that do not have the configuration."""
     targets: dict[str, list[tuple[Site, tree.Name]]] = {}
     for site, use in _known_uses(scenario):
         variable = site.target(use.target)
@@ -125,7 +126,7 @@ def _kind(element: Element) -> str:
 
 
 def _has(element: Element, name: str) -> bool:
-    """Return whether an element may have a configuration; models of a ``.scenex`` are known only in a run."""
+    """Return whether an element may have a configuration. The models of a ``.scenex`` are known only in a run."""
     match element.kind:
         case "agent":
             return agent_has(name)
@@ -148,7 +149,10 @@ def _within_bounds(site: Site, node: tree.Node, setting: Setting) -> tuple[Fix, 
 
 
 def _texts(site: Site, written: Written, is_set: bool) -> Iterator[tuple[tree.Node, str]]:
-    """Yield each value as the run reads it: the elements of a set variable form one value of several numbers."""
+    """Yield each value as a run reads it.
+
+    For a set variable, the elements of the set are one value of several numbers.
+    """
     if isinstance(written, tree.SetList):
         for values in written.sets:
             yield from _texts(site, values, is_set)

@@ -1,4 +1,4 @@
-"""``single-element``: a behaviour gets a set where it needs one element; only a place may be a set."""
+"""``single-element``: a behaviour gets a set where it needs one element. Only a place may be a set."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CODE = "single-element"
 
 
 def single_element(site: Site) -> Iterator[Diagnostic]:
-    """Report each set variable in a single-element slot of a template's behaviour."""
+    """Report each set variable in a slot of a template's behaviour that needs a single element."""
     for action in _actions(site.placed.declaration):
         behaviour = load_catalog().behaviours[action.word]
         kinds = {slot.name: slot.kind for slot in behaviour.slots}

@@ -1,4 +1,4 @@
-"""Shape findings that repeat a rule's diagnostic."""
+"""Remove the shape findings that repeat the diagnostic of a rule."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ SUPERSEDED = {
 
 
 def without_superseded(shapes: Iterable[Diagnostic], fast: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Remove shape findings at places where a rule already reports the same mistake.
+    """Return the shape findings without those at places where a rule already reports the same mistake.
 
-    Findings that no rule reports stay, so nothing is lost where the two differ.
+    Findings that no rule reports stay, so nothing is lost where shapes and rules differ.
     """
     reported: dict[tuple[str, str], list[Span]] = {}
     for finding in fast:

@@ -1,4 +1,4 @@
-"""Edits of a variation's table: columns and cells with their contents."""
+"""Edits of the table of a variation: its columns, and cells with their contents."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def cell_span(site: Site, cell: tree.Node) -> Span:
 
 
 def columns_added(site: Site, table: tree.Table, names: Sequence[str], cells: Sequence[str]) -> tuple[Edit, ...]:
-    """Return the edits that append columns, each with one value; none if rows differ in width."""
+    """Return the edits that append columns, each filled with one value. If rows differ in width, return none."""
     header = _header_end(site, table)
     if header is None or not _is_even(table):
         return ()
@@ -42,7 +42,7 @@ def columns_added(site: Site, table: tree.Table, names: Sequence[str], cells: Se
 
 
 def column_removed(site: Site, table: tree.Table, number: int) -> tuple[Edit, ...]:
-    """Return the edits that remove one of several columns; none if rows differ in width."""
+    """Return the edits that remove one of several columns. If rows differ in width, return none."""
     header = _header_end(site, table)
     if header is None or not _is_even(table) or len(table.header) == 1:
         return ()
@@ -66,7 +66,7 @@ def _is_even(table: tree.Table) -> bool:
 
 
 def _header_end(site: Site, table: tree.Table) -> int | None:
-    """Return the end of the bar after the last name; ``None`` if there is none."""
+    """Return the end of the bar after the last name in the header; ``None`` if there is none."""
     match = _END.match(site.file.document.text, cell_span(site, table.header[-1]).end)
     return None if match is None else match.end()
 

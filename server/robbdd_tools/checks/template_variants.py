@@ -1,4 +1,4 @@
-"""A scenario variant together with its template, as used by most rules about variants."""
+"""A scenario variant together with its template. Most rules about variants use both."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ VARIABLES = (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """The values of one variable in a variation; ``variable`` is ``None`` for an unknown name."""
+    """The values of one variable in a variation. ``variable`` is ``None`` if its name is unknown."""
 
     ref: tree.Ref
     variable: Definition | None
@@ -56,17 +56,17 @@ class Scenario:
         return {variable_key(variable): variable for variable in found if variable is not None}
 
     def members(self, kinds: Kinds) -> list[Element]:
-        """Return the scene's members of some kinds, sorted; empty while the scene is unknown."""
+        """Return the members of the scene that are of some kinds, sorted; empty while the scene is unknown."""
         found = scene_members(self.site.follow(self.variant.scene)) or frozenset()
         return sorted((member for member in found if member.kind in kinds), key=lambda member: member.key)
 
     def fitting_for(self, variable: Definition) -> list[str]:
-        """Return the values in the scene that a template variable's phrases accept."""
+        """Return the values in the scene that the phrases of a template variable accept."""
         kinds = variable_type(self.site.snapshot, variable, from_values=False).kinds & ELEMENTS
         return [f"<{member.name}>" for member in self.members(kinds)]
 
     def cell_for(self, variable: Definition) -> str | None:
-        """Return a cell with the first matching value of the scene, or with all of them for a set variable."""
+        """Return a cell with the first matching value of the scene. For a set variable, it has all matching values."""
         values = self.fitting_for(variable)
         if not values:
             return None
@@ -75,7 +75,7 @@ class Scenario:
 
 @lru_cache(maxsize=2)
 def scenarios(site: Site) -> tuple[Scenario, ...]:
-    """Return the variants of a story without syntax errors; cached, because every rule needs them."""
+    """Return the variants of a story without syntax errors. They are cached, because every rule needs them."""
     every = clauses_of(site.placed.declaration)
     variants = [(entry.node, entry) for entry in every if isinstance(entry.node, tree.Variant)]
     return tuple(_scenario(site, variant, clauses) for variant, clauses in variants if site.whole(variant))

@@ -1,4 +1,4 @@
-"""``type-conflict``: a variable that is an object in one place and a workspace in another."""
+"""``type-conflict``: a variable has different types in two places, for example object and workspace."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Placed = tuple[Site, Use]
 
 
 def type_conflict(site: Site) -> Iterator[Diagnostic]:
-    """Report phrases and values that use one variable for different kinds, at both places."""
+    """Report phrases and values that use one variable for different kinds. Both places are reported."""
     for clauses in clauses_of(site.placed.declaration):
         yield from _quantified(site, clauses)
         if isinstance(clauses.node, tree.Template):
@@ -58,7 +58,10 @@ def _in_scenario(scenario: Scenario) -> Iterator[Diagnostic]:
 def _between_phrases(
     uses: list[Placed], own: Site, clauses: Clauses, others: Mapping[str, Kinds]
 ) -> Iterator[Diagnostic]:
-    """Report the uses of ``own`` whose kinds conflict with the earlier uses; ``others`` are alternative variables."""
+    """Report the uses in ``own`` whose kinds conflict with earlier uses.
+
+    ``others`` are variables that may replace them.
+    """
     left: Kinds = ANYTHING
     seen: list[Placed] = []
     for site, use in uses:
@@ -80,7 +83,7 @@ def _between_phrases(
 
 
 def _other_place(other: Placed, own: Site, node: tree.Node, words: str) -> Iterator[Diagnostic]:
-    """Link the phrase that determines the type to the contradicting place, if both are in one file."""
+    """Return a link from the phrase that determines the type to the contradicting place, if both are in one file."""
     site, use = other
     if site.uri == own.uri:
         message = f"'{use.ref.path}' is {article(kind_words(use.kinds))} here, but {words}"
@@ -89,7 +92,7 @@ def _other_place(other: Placed, own: Site, node: tree.Node, words: str) -> Itera
 
 
 def _values(scenario: Scenario, column: Column, uses: list[Placed]) -> Iterator[Diagnostic]:
-    """Report each value that a phrase does not accept, once for each named set."""
+    """Report each value that a phrase does not accept. A named set is reported once."""
     values = list(chain.from_iterable(written_elements(scenario.site, written) for written in column.written))
     kinds = narrowed(use for _, use in uses)
     reported: set[tree.Node] = set()
@@ -112,7 +115,7 @@ def _values(scenario: Scenario, column: Column, uses: list[Placed]) -> Iterator[
 
 
 def _quantified(site: Site, clauses: Clauses) -> Iterator[Diagnostic]:
-    """Report phrases that do not accept the elements of a literal set, through the variable that iterates over it."""
+    """Report phrases that do not accept the elements of a literal set over which a quantifier iterates."""
     for use in clauses.uses:
         if use.bound is None:
             continue

@@ -1,4 +1,4 @@
-"""``unused-event``: an event without references in its file and its importers."""
+"""``unused-event``: neither the file of an event nor a file that imports it refers to the event."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``unused-import``: an import that is not used, neither the file nor its own imports."""
+"""``unused-import``: a file uses neither an imported file nor the imports of that file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report unused imports as hints; libraries and imported files re-export their imports."""
+    """Report unused imports as hints. Libraries and imported files are skipped, because others use their imports."""
     if not has_story(file):
         return
     used = used_names(file)
@@ -30,7 +30,7 @@ def unused_import(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic
 
 
 def _is_unused(snapshot: Snapshot, file: FileAnalysis, link: ImportLink, used: frozenset[str]) -> bool:
-    """Return whether no name of an import is used; with an error in it, that is uncertain."""
+    """Return whether a file uses no name of an import. This is uncertain if the imported file has an error."""
     scope = snapshot.scope(link.uri)
     if scope.unread:
         return False

@@ -1,4 +1,4 @@
-"""``unused-set``: a constant set without references in its file and its importers."""
+"""``unused-set``: neither the file of a constant set nor a file that imports it refers to the set."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``unused-task``: a task without references in its file and its importers."""
+"""``unused-task``: neither the file of a task nor a file that imports it refers to the task."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``unused-variable``: a variable that no clause uses; varying it only repeats scenarios."""
+"""``unused-variable``: no clause uses a variable, so varying it only repeats scenarios."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CODE = "unused-variable"
 
 
 def unused_variable(snapshot: Snapshot, file: FileAnalysis) -> Iterator[Diagnostic]:
-    """Report unused template variables, as a warning if scenarios give them values, and quantified ones."""
+    """Report unused variables of templates and quantifiers. If scenarios give them values, the report is a warning."""
     uri = file.document.uri
     candidates: list[tuple[tree.Template, tree.Variable, Span, Span]] = []
     for placed in file.declarations:
@@ -52,7 +52,7 @@ def _path(template: tree.Template, variable: tree.Variable) -> str:
 
 
 def _used_by_stories(file: FileAnalysis) -> tuple[set[str], set[str]]:
-    """Return the variables in the clauses of variants, and all variables that variants name."""
+    """Return the variables in the clauses of variants, and all other variables that variants name."""
     spoken_of: set[str] = set()
     named: set[str] = set()
     for placed in file.declarations:

@@ -1,4 +1,4 @@
-"""The names that a file uses, and whether other files could use its declarations."""
+"""Determine the names that a file uses, and whether other files could use its declarations."""
 
 from __future__ import annotations
 
@@ -29,12 +29,15 @@ def _used_by(declarations: tuple[Declaration, ...]) -> frozenset[str]:
 
 
 def has_story(file: FileAnalysis) -> bool:
-    """Return whether a file has scenarios; a file without is a library for other files."""
+    """Return whether a file has scenarios. A file without scenarios is a library for other files."""
     return any(isinstance(placed.declaration.tree, tree.Story) for placed in file.declarations)
 
 
 def unused_declarations(snapshot: Snapshot, file: FileAnalysis, kind: SymbolKind) -> Iterator[Definition]:
-    """Yield the declarations of a kind that are unused in their file, if it has scenarios, and in its importers."""
+    """Yield the declarations of a kind that neither the file nor the files that import it use.
+
+    A file without scenarios has none, because it is a library.
+    """
     if not has_story(file):
         return
     used = used_names(file)
@@ -48,7 +51,7 @@ def unused_declarations(snapshot: Snapshot, file: FileAnalysis, kind: SymbolKind
 
 
 def unused(file: FileAnalysis, definition: Definition, code: str) -> Diagnostic:
-    """Return the hint that a declaration is unused, with the fix that removes it."""
+    """Return the hint that a declaration is unused, with the fix that removes the declaration."""
     words = f"{definition.kind} '{definition.symbol.path}'"
     fix = removal(file.document, f"Remove {words}", definition.extent)
     message = f"the {words} is never used: use it, or remove it"

@@ -59,8 +59,8 @@ class Begun:
 class Answer:
     """The findings about a file and its imports, or the internal error that prevented them.
 
-    For a surveyed file, ``reached`` are the files that the validation read or missed, and ``documents`` are the texts
-    to which the findings refer.
+    For a surveyed file, ``reached`` are the files that it imports, found or missing, and the files that import it.
+    ``documents`` are the texts to which the findings refer.
     """
 
     revision: int

@@ -132,7 +132,7 @@ class RunFollower:
         return scenario
 
     def _fault(self, index: int | None, fault: Fault) -> None:
-        """Store an error in users' code with the scenario that it stopped, or with all of them."""
+        """Store an error in users' code with the scenario that it stopped, or with all of them if it concerns all."""
         if index is None:
             self._shared_fault = fault.id
         for stopped in range(len(self._results.scenarios)) if index is None else (index,):

@@ -1,1 +1,1 @@
-"""Load, check, plan, run and judge models: shared by the command line, the language server, pytest and notebooks."""
+"""Load, check, plan, run and judge models, for the command line, the language server, pytest and notebooks."""

@@ -1,4 +1,4 @@
-"""Diagnostics for use outside the core: files, lines and columns instead of offsets."""
+"""Diagnostics for users outside the core, with files, lines and columns instead of offsets."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ class Place:
 
     @property
     def path(self) -> Path | None:
-        """The file, ``None`` for a text without a file."""
+        """The path of the file, or ``None`` for a text without a file."""
         return uri_to_path(self.uri)
 
     @property
     def file(self) -> str:
-        """The file relative to the working directory if it is below it, else its full path or URI."""
+        """The file as text: relative to the working directory if it is below it, otherwise its full path or URI."""
         path = self.path
         if path is None:
             return self.uri
@@ -41,7 +41,7 @@ class Place:
         return f"{self.file}:{self.line}:{self.column}"
 
     def as_json(self) -> dict[str, Any]:
-        """Return file and range in the documented JSON form."""
+        """Return the file and the range in the documented JSON form."""
         start = {"line": self.line, "column": self.column}
         end = {"line": self.end_line, "column": self.end_column}
         return {"file": self.file, "range": {"start": start, "end": end}}
@@ -57,7 +57,7 @@ class RelatedPlace:
 
 @dataclass(frozen=True, slots=True)
 class TextEdit:
-    """Replace the text at ``place`` by ``text``."""
+    """A change of a text: ``text`` replaces the range ``place``."""
 
     place: Place
     text: str
@@ -65,7 +65,7 @@ class TextEdit:
 
 @dataclass(frozen=True, slots=True)
 class QuickFix:
-    """A change that removes a finding; ``new_files`` are pairs of URI and text."""
+    """A change that removes a finding. ``new_files`` are pairs of the URI and the text of a file to create."""
 
     title: str
     edits: tuple[TextEdit, ...]
@@ -74,7 +74,7 @@ class QuickFix:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One diagnostic: ``code`` is stable and has a page in ``docs/diagnostics``."""
+    """One diagnostic. ``code`` never changes between versions and has a page in ``docs/diagnostics``."""
 
     place: Place
     severity: Severity
@@ -85,14 +85,14 @@ class Finding:
 
     @property
     def is_error(self) -> bool:
-        """Whether the model cannot be run because of it."""
+        """Whether the finding is an error, so that the model cannot be run."""
         return self.severity is Severity.ERROR
 
     def __str__(self) -> str:
         return f"{self.place}: {self.severity.name.lower()}: {self.message} [{self.code}]"
 
     def as_json(self) -> dict[str, Any]:
-        """Return the object of ``docs/schemas/diagnostic.schema.json``."""
+        """Return the finding as an object of ``docs/schemas/diagnostic.schema.json``."""
         return {
             **self.place.as_json(),
             "severity": self.severity.name.lower(),
@@ -109,14 +109,14 @@ def findings(snapshot: Snapshot, diagnostics: Iterable[Diagnostic]) -> tuple[Fin
 
 
 class Places:
-    """Converts offsets to places; reads each file that is not a model (shapes, settings) once."""
+    """Converts offsets to places. Each file that is not a model (shapes, settings) is read once."""
 
     def __init__(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
         self._others: dict[str, Document] = {}
 
     def of(self, uri: str, span: Span) -> Place:
-        """Return a range of a file."""
+        """Return the place of a span in a file."""
         document = self._document(uri)
         start, end = document.position(span.start), document.position(span.end)
         return Place(uri, start.line + 1, start.column + 1, end.line + 1, end.column + 1)

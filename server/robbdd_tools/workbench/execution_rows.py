@@ -14,11 +14,14 @@ from robbdd_tools.monitor.verdict import Cause, Outcome
 class ClauseResult:
     """The verdict on one clause of one execution.
 
-    ``role`` is ``given``, ``when`` or ``then``. ``margin`` is the robustness in ``unit`` (SI; positive: holds),
-    ``None`` without a measurable margin or when unknown. ``at`` (s, simulated) is the instant of the violation,
-    ``worst_at`` that of the smallest margin. ``reason`` says why it is violated or unknown, ``vacuous`` why it could
-    not have been violated. ``cause`` is the type of an unknown verdict's reason. ``operand`` is the number (from 0, in
-    the order of the sentence) of the fluent that decides it.
+    - ``role``: ``given``, ``when`` or ``then``.
+    - ``margin``: the robustness in ``unit`` (SI); positive if the clause holds; ``None`` if unknown or not measurable.
+    - ``at``: the instant of the violation (s, simulated).
+    - ``worst_at``: the instant of the smallest margin (s, simulated).
+    - ``reason``: why the clause is violated or unknown.
+    - ``cause``: the type of the reason of an unknown verdict.
+    - ``vacuous``: why the clause could not have been violated.
+    - ``operand``: the number (from 0, in the order of the sentence) of the fluent that decides the verdict.
     """
 
     name: str
@@ -40,11 +43,13 @@ class ClauseResult:
 class ExecutionResult:
     """The result of one execution of a scenario.
 
-    ``index`` is its position in the run (from 0), ``variation`` the number of the scenario in its variant and
-    ``repetition`` that of the execution (both from 1). ``values`` maps variables to CURIEs, literals or lists of them.
-    ``execution`` is the CURIE of the ``.bddx`` execution, empty without one. ``duration`` (s) is simulated time,
-    ``None`` for an execution that did not finish. ``substitution`` is the catalog behaviour that was executed in place
-    of the model's implementation, ``None`` for an execution as the model states it.
+    - ``index``: the position of the execution in the run (from 0).
+    - ``variation``: the number of the scenario in its variant (from 1).
+    - ``repetition``: the number of the repetition of the scenario (from 1).
+    - ``values``: maps variables to CURIEs, literals or lists of them.
+    - ``execution``: the CURIE of the ``.bddx`` execution; empty without one.
+    - ``duration``: simulated time in s; ``None`` if the execution did not finish.
+    - ``substitution``: the catalog behaviour that was executed instead of the model's implementation, or ``None``.
     """
 
     index: int
@@ -63,7 +68,7 @@ class ExecutionResult:
     substitution: Substitution | None = None
 
     def rows(self) -> Iterator[dict[str, Any]]:
-        """Yield one flat dictionary per clause; the values of variables are columns called ``value.NAME``."""
+        """Yield one flat dictionary for each clause. The values of variables are in columns called ``value.NAME``."""
         own: dict[str, Any] = {
             "index": self.index,
             "scenario": self.name,
@@ -92,7 +97,10 @@ class ExecutionResult:
 
 
 def execution_result(index: int, entry: Mapping[str, Any]) -> ExecutionResult:
-    """Return an entry of ``scenarios`` in ``docs/schemas/run.schema.json``, at its position, as an object."""
+    """Return an entry of ``scenarios`` in ``docs/schemas/run.schema.json`` as an object.
+
+    ``index`` is the position of the entry.
+    """
     return ExecutionResult(
         index,
         entry["name"],
@@ -112,7 +120,7 @@ def execution_result(index: int, entry: Mapping[str, Any]) -> ExecutionResult:
 
 
 def execution_results(document: Mapping[str, Any]) -> tuple[ExecutionResult, ...]:
-    """Return all ``scenarios`` of a document of ``docs/schemas/run.schema.json``."""
+    """Return all ``scenarios`` of a document that follows ``docs/schemas/run.schema.json``."""
     return tuple(execution_result(index, entry) for index, entry in enumerate(document["scenarios"]))
 
 

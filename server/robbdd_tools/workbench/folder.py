@@ -1,4 +1,4 @@
-"""Storage of a run: the project's store, another store, a separate folder, or none."""
+"""Choose where a run is stored: in the project's store, in another store, in a separate folder, or not at all."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Keeping:
-    """Storage of a run.
+    """Where a run is stored.
 
-    ``folder`` is a separate folder. Without it, the run goes to ``store`` (by default the project's), or to a temporary
-    folder if ``keep`` is false.
+    If ``folder`` is given, the run is stored there. Otherwise it is stored in ``store``, which is the project's store
+    by default. If ``keep`` is false, a temporary folder is used instead.
     """
 
     folder: Path | None = None
@@ -31,7 +31,7 @@ class Keeping:
 
 @dataclass(frozen=True, slots=True)
 class RunFolder:
-    """A fresh run folder; ``remark`` is a note for the user, ``remove`` deletes a temporary folder."""
+    """A new run folder. ``remark`` is a note for the user, and ``remove`` deletes a temporary folder."""
 
     place: StoredRun
     remark: str = ""
@@ -39,9 +39,9 @@ class RunFolder:
 
 
 def new_folder(model: Path, keeping: Keeping) -> RunFolder:
-    """Create the folder of a new run of a model; a temporary one if the store cannot be written.
+    """Create the folder of a new run of a model. Raises ``OSError``.
 
-    Raises ``OSError``.
+    If the store cannot be written, the folder is a temporary one.
     """
     if keeping.folder is not None:
         place = begin_in(keeping.folder)

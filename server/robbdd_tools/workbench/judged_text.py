@@ -1,4 +1,4 @@
-"""Digests of the judged text, kept in the run folder: they show later whether the text has changed."""
+"""Digests of the text that a run judged. They are stored in the run folder to detect later changes of the text."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FILE = "text.json"
 
 @dataclass(frozen=True, slots=True)
 class JudgedText:
-    """The text of one model of a run: its ``name`` in the manifest, its URI, its digests."""
+    """The text of one model in a run: its ``name`` in the manifest, its URI and its digests."""
 
     name: str
     uri: str
@@ -33,19 +33,22 @@ class JudgedText:
 
 @dataclass(frozen=True, slots=True)
 class JudgedTexts:
-    """The texts of a run; ``some_repetitions`` if it executed only some repetitions of its scenarios."""
+    """The texts that a run judged.
+
+    ``some_repetitions`` is true if the run executed only some repetitions of its scenarios.
+    """
 
     texts: tuple[JudgedText, ...]
     some_repetitions: bool = False
 
     def named(self) -> Mapping[str, JudgedText]:
-        """Return the texts by their names in the manifest."""
+        """Map the name of each model in the manifest to its text."""
         return {text.name: text for text in self.texts}
 
 
 @dataclass(frozen=True, slots=True)
 class _Stored:
-    """A text in JSON: ``place`` is a path relative to the run folder, or the URI of a text without a file."""
+    """The JSON form of a text. ``place`` is a path relative to the run folder, or the URI of a text without a file."""
 
     name: str
     place: str
@@ -56,7 +59,7 @@ class _Stored:
 
 
 def judged_texts(files: Iterable[tuple[str, Snapshot, str]], *, some_repetitions: bool = False) -> JudgedTexts:
-    """Return the texts of models, each given with its name, a snapshot and its URI."""
+    """Return the texts of models. Each model is given by its name, a snapshot and its URI."""
     texts = (JudgedText(name, uri, digests_of(snapshot, uri)) for name, snapshot, uri in files)
     return JudgedTexts(tuple(texts), some_repetitions)
 

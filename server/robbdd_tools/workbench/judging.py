@@ -42,29 +42,29 @@ class NothingToJudge(RobbddError):
 class Judged:
     """The verdicts of a model's clauses on the executions of a stored run.
 
-    ``results`` are in the order of the model's plan and have the ``index`` of the execution in the run, so that
-    ``run.trace(result)`` is its trace; they are not stored. ``ending`` says why clauses were left open (they are
-    unknown), empty when all were judged.
+    ``results`` are in the order of the model's plan and are not stored. Each result has the ``index`` of its execution
+    in the run, so ``run.trace(result)`` is its trace. ``ending`` is the reason why clauses were left open, which makes
+    them unknown; it is empty if all clauses were judged.
     """
 
     results: tuple[ExecutionResult, ...]
     ending: str
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return one flat dictionary per clause of each execution: ``pandas.DataFrame(judged.rows())``."""
+        """Return one flat dictionary for each clause of each execution, for ``pandas.DataFrame(judged.rows())``."""
         return rows_of(self.results)
 
 
 def judge(run: Run | PastRun, model: Model) -> Judged:
     """Judge the executions of a stored run by the model's current clauses, without simulating.
 
-    An execution of the run belongs to the scenario of the model with the same variant, values, execution and
-    repetition; executions of other scenarios are left out. A clause whose trace is missing, or whose scene or behaviour
-    differs from the run's, is unknown. Blocks until all is judged: in an asyncio program, call it with
+    An execution of the run is judged by the scenario of the model that has the same variant, values, execution and
+    repetition. Executions without such a scenario are left out. A clause is unknown if its trace is missing, or if its
+    scene or behaviour differs from the run's. The call blocks until everything is judged. In an asyncio program, use
     ``asyncio.to_thread``.
 
-    Raises ``ModelErrors``, ``NothingToRun``, ``NothingToJudge`` when no finished execution belongs to the model,
-    ``NoSuchRun`` when the run is damaged or was not kept, and ``UserCodeRefused``.
+    Raises ``ModelErrors``, ``NothingToRun`` and ``UserCodeRefused``. Raises ``NothingToJudge`` if no finished execution
+    belongs to the model, and ``NoSuchRun`` if the run is damaged or was not kept.
     """
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
         judgement = Judgement(run.place, model, Path(folder))
@@ -78,13 +78,13 @@ def judge(run: Run | PastRun, model: Model) -> Judged:
 
 
 class Judgement:
-    """The judgement of a stored run by a model; consume ``messages`` once, then read ``progress``.
+    """Judges a stored run by a model. Consume ``messages`` once, then read ``progress``.
 
-    Scenarios are matched by variant, values, execution and repetition.
+    Executions and scenarios are matched by variant, values, execution and repetition.
     """
 
     def __init__(self, place: StoredRun, model: Model, folder: Path) -> None:
-        """Prepare in an empty ``folder``.
+        """Prepare the judgement in an empty ``folder``.
 
         Raises ``NoSuchRun``, ``NothingToJudge``, ``UserCodeRefused``, and the errors of ``Model.scenarios``.
         """
@@ -98,13 +98,13 @@ class Judgement:
         """Why clauses were left open; empty when all were judged."""
 
     def cancel(self, reason: str = CANCELLED) -> None:
-        """End the judgement; may be called from any thread."""
+        """End the judgement. This may be called from any thread."""
         self._reason = reason
         if self._agent is not None:
             self._agent.terminate()
 
     def messages(self) -> Iterator[RunMessage]:
-        """Yield the judging process's messages, each after ``progress`` has applied it."""
+        """Yield the messages of the judging process. Each one is yielded after ``progress`` has applied it."""
         self._agent = agent = Agent(self._folder, module=JUDGE, arguments=[str(self._place.folder.absolute())])
         complaint, present = "", None
         try:
@@ -128,7 +128,7 @@ class Judgement:
 
 
 def _possible(messages: Iterable[RunMessage], manifest: Manifest) -> Iterator[RunMessage]:
-    """Yield the messages; one that the judging process cannot have sent becomes a log message."""
+    """Yield messages. A message that the judging process cannot have sent is replaced by a log message."""
     present = None
     for message in messages:
         present = message.index if isinstance(message, ScenarioStarted) else present

@@ -32,7 +32,7 @@ class NotAModel(RobbddError):
 
 
 class ModelErrors(RobbddError):
-    """A model has errors; ``findings`` are these, at least one."""
+    """A model has errors. ``findings`` are its errors; there is at least one."""
 
     def __init__(self, found: tuple[Finding, ...]) -> None:
         super().__init__("\n".join(map(str, found)))
@@ -45,7 +45,7 @@ class NothingToRun(RobbddError):
 
 @dataclass(frozen=True, eq=False)
 class ModelFile:
-    """One model of a snapshot; ``name`` is its name in reports: the path as given by the user, or its URI."""
+    """One model of a snapshot. ``name`` is its name in reports: the path as given by the user, or its URI."""
 
     snapshot: Snapshot
     uri: str
@@ -53,7 +53,7 @@ class ModelFile:
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """All diagnostics of the file and its imports, shapes included."""
+        """All diagnostics of the file and its imports, including those of shapes."""
         return tuple(all_diagnostics(self.snapshot, self.uri))
 
     @cached_property
@@ -74,13 +74,16 @@ class ModelFile:
         return placed_model(self.graph, self.snapshot)
 
     def place(self, iri: str) -> Place | None:
-        """Return where an element is declared, ``None`` for one of another model; raises ``ModelErrors``."""
+        """Return the place where an element is declared, or ``None`` if this model does not declare it.
+
+        Raises ``ModelErrors``.
+        """
         location = self.graph.sources.node(iri)
         return None if location is None else Places(self.snapshot).of(location.uri, location.span)
 
     @cached_property
     def digest(self) -> str:
-        """The SHA-256 of the graph; raises ``ModelErrors``."""
+        """The SHA-256 of the model's graph. Raises ``ModelErrors``."""
         from robbdd_tools.graph.write.digest import graph_digest
 
         return graph_digest(self.graph)
@@ -93,13 +96,16 @@ class ModelFile:
 
     @property
     def has_scenarios(self) -> bool:
-        """Whether there is something to run; raises ``ModelErrors``."""
+        """Whether the model has scenarios to run. Raises ``ModelErrors``."""
         return any(story.variants for story in self.acceptance.stories)
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """The models loaded together from ``path`` (a file, a folder, or the name of a text), or from several ``paths``."""
+    """The models that were loaded together.
+
+    They were loaded from ``path``, which is a file, a folder or the name of a text, or from several ``paths``.
+    """
 
     path: Path
     files: Sequence[ModelFile]
@@ -122,12 +128,15 @@ class Model:
 
     @property
     def is_valid(self) -> bool:
-        """Whether there is no error, so that the model can be run."""
+        """Whether there is no error among the findings, so that the model can be run."""
         return not any(finding.is_error for finding in self.diagnostics)
 
     @cached_property
     def runnable(self) -> tuple[ModelFile, ...]:
-        """The models with scenarios, those with executions first; raises ``ModelErrors`` and ``NothingToRun``."""
+        """The models that have scenarios; those that have executions are first.
+
+        Raises ``ModelErrors`` and ``NothingToRun``.
+        """
         errors = tuple(finding for finding in self.diagnostics if finding.is_error)
         if errors:
             raise ModelErrors(errors)
@@ -143,15 +152,16 @@ class Model:
 
     @property
     def digest(self) -> str:
-        """The digest of all runnable graphs; raises the errors of ``runnable``."""
+        """The digest of the graphs of all runnable models. Raises the same errors as ``runnable``."""
         from robbdd_tools.graph.write.digest import joint_digest
 
         return joint_digest(file.digest for file in self.runnable)
 
     def graph(self, form: str = "ttl") -> str:
-        """Return the knowledge graph of the only file as ``ttl``, ``json-ld``, ``json-ld-expanded``, ``nt`` or ``xml``.
+        """Return the knowledge graph of the only file as text.
 
-        Raises ``ModelErrors``, and ``ValueError`` for several files.
+        ``form`` is ``ttl``, ``json-ld``, ``json-ld-expanded``, ``nt`` or ``xml``. Raises ``ModelErrors``, and
+        ``ValueError`` if there are several files.
         """
         from robbdd_tools.graph.rdf.serialize import serialize
 

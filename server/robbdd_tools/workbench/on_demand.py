@@ -26,15 +26,16 @@ if TYPE_CHECKING:
 
 
 class CannotRecord(RobbddError):
-    """Results can no longer be stored; the message gives the reason."""
+    """Results can no longer be stored. The message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Executed:
-    """One execution: its result, and errors and output of users' code.
+    """The result of one execution.
 
-    ``faults`` are errors in users' code that left clauses unknown, ``output`` the lines that this code printed, and
-    ``log`` the warnings and errors of the agent.
+    - ``faults``: the errors in users' code that left clauses unknown.
+    - ``output``: the lines that users' code printed.
+    - ``log``: the warnings and errors of the agent.
     """
 
     result: ExecutionResult
@@ -46,9 +47,9 @@ class Executed:
 class OnDemand:
     """Executes scenarios of a prepared run one at a time, in one agent process that is reused.
 
-    Use it as a context manager; leaving it ends the agent. ``begin`` begins a run, ``join`` joins one that another
-    process has begun; ``end_run`` ends it. ``first_agent`` is the number of the first agent, different for each process
-    that executes scenarios of the run.
+    Use it as a context manager; leaving the context ends the agent. ``begin`` begins a run, ``join`` joins a run that
+    another process has begun, and ``end_run`` ends it. ``first_agent`` is the number of the first agent; it must differ
+    for each process that executes scenarios of the run.
     """
 
     def __init__(self, place: StoredRun, recording: Recording, timeout: float | None = None, first_agent: int = 1):
@@ -73,9 +74,10 @@ class OnDemand:
         first_agent: int = 1,
         processes: int = 1,
     ) -> Self:
-        """Begin the run of a plan in a run folder created by the caller; raises the errors of ``begin_recording``.
+        """Begin the run of a plan in a run folder that the caller has created.
 
-        ``processes`` is the number of processes that will execute scenarios of the run.
+        Raises the errors of ``begin_recording``. ``processes`` is the number of processes that will execute scenarios
+        of the run.
         """
         policy = Policy.of(jobs=processes, timeout=timeout)
         recording = begin_recording(plan, place, policy, repeat=repeat, models=models)
@@ -83,19 +85,19 @@ class OnDemand:
 
     @classmethod
     def join(cls, place: StoredRun, *, timeout: float | None = None, first_agent: int = 1) -> Self:
-        """Join a run that has begun; raises ``NoSuchRun`` and ``OSError``."""
+        """Join a run that another process has begun. Raises ``NoSuchRun`` and ``OSError``."""
         return cls(place, Recording(place, place.manifest()), timeout, first_agent)
 
     @property
     def manifest(self) -> Manifest:
-        """The scenarios of the run; ``execute`` takes their positions."""
+        """The manifest of the run. ``execute`` takes the positions of its scenarios."""
         return self._recording.manifest
 
     def execute(self, index: int) -> Executed:
-        """Execute a scenario and return its result after it is stored.
+        """Execute a scenario and return its result after it is stored. Raises ``CannotRecord``.
 
-        Clauses without a verdict, such as those of an agent that died, are unknown. A scenario that was already
-        executed is executed again, and its result replaced. Raises ``CannotRecord``.
+        Clauses without a verdict are unknown, for example because the agent died. If the scenario was already executed,
+        it is executed again and its result is replaced.
         """
         faults: list[Fault] = []
         output: list[str] = []
@@ -137,7 +139,7 @@ class OnDemand:
         return Executed(result, tuple(faults), tuple(output), tuple(log))
 
     def close(self) -> None:
-        """End the agent and release the database; the run stays open."""
+        """End the agent and release the database. The run itself does not end."""
         self._scheduler.close()
         self._recording.close()
 
@@ -153,7 +155,7 @@ class OnDemand:
             self._listener(message)
 
     def _leave_unknown(self, index: int) -> None:
-        """Judge the clauses *unknown* that have no verdict because the scenario was not executed."""
+        """Set the verdicts of clauses to *unknown* because their scenario was not executed."""
         scenario = self._results.scenarios[index]
         if scenario.finished is not None:
             return
@@ -164,9 +166,10 @@ class OnDemand:
 
 
 def end_run(place: StoredRun, ending: str) -> RunResults:
-    """End a run and return its results; ``ending`` is why scenarios that were not executed are unknown.
+    """End a run and return its results. Raises ``NoSuchRun`` and ``OSError``.
 
-    The run can be resumed unless all were executed. Raises ``NoSuchRun`` and ``OSError``.
+    ``ending`` is the reason why scenarios that were not executed are unknown. If there are such scenarios, the run can
+    be resumed.
     """
     recording = Recording(place, place.manifest())
     try:

@@ -1,4 +1,4 @@
-"""The only planner: which scenarios of which models a run executes, with which seeds, how often."""
+"""Plan a run: which scenarios of which models it executes, with which seeds, and how often. No other module plans."""
 
 from __future__ import annotations
 
@@ -30,15 +30,16 @@ MODELS_CHANGED = "the model no longer has these scenarios"
 
 
 class NothingSelected(SelectionError):
-    """The selection is valid but empty."""
+    """The selection is valid, but it contains no scenario."""
 
 
 @dataclass(frozen=True, slots=True)
 class Listed:
-    """Scenarios of one variant (its IRI).
+    """Scenarios of one variant (its IRI) in a list.
 
-    Without ``numbers`` (from 1), all of them; without ``execution`` (IRI), by any execution or none; without
-    ``repetitions`` (from 1), all.
+    - ``numbers``: the numbers of the scenarios (from 1); without them, all scenarios.
+    - ``execution``: the IRI of the execution that executes them; without it, any execution or none.
+    - ``repetitions``: the numbers of the repetitions (from 1); without them, all repetitions.
     """
 
     variant: str
@@ -47,11 +48,11 @@ class Listed:
     repetitions: frozenset[int] | None = None
 
     def admits(self, number: int) -> bool:
-        """Whether it lists a scenario of its variant."""
+        """Return whether the scenario with this number of the variant is listed."""
         return self.numbers is None or number in self.numbers
 
     def admits_spec(self, spec: ScenarioSpec) -> bool:
-        """Whether it lists an execution of its variant."""
+        """Return whether a specified execution is listed. It must be an execution of the variant."""
         by = None if spec.execution is None else spec.execution.iri
         return (
             self.admits(spec.variation)
@@ -69,37 +70,41 @@ class Choice:
             self._entries.setdefault(entry.variant, []).append(entry)
 
     def entries(self, variant: str) -> Sequence[Listed]:
-        """Return the entries of a variant."""
+        """Return the entries of the list for a variant."""
         return self._entries.get(variant, ())
 
     def every(self) -> Iterable[Listed]:
-        """Yield all entries."""
+        """Yield all entries of the list."""
         for entries in self._entries.values():
             yield from entries
 
     def admits(self, variant: str, number: int) -> bool:
-        """Whether a scenario is listed, by any execution."""
+        """Return whether a scenario is listed, no matter by which execution."""
         return any(entry.admits(number) for entry in self.entries(variant))
 
     def admits_spec(self, spec: ScenarioSpec) -> bool:
-        """Whether an execution is listed."""
+        """Return whether a specified execution of a scenario is listed."""
         return any(entry.admits_spec(spec) for entry in self.entries(spec.variant))
 
     def admits_execution(self, execution: Execution) -> bool:
-        """Whether any scenario of an execution is listed."""
+        """Return whether any scenario of an execution is listed."""
         return any(entry.execution in (None, execution.iri) for entry in self.entries(execution.variant))
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """A user's selection; the empty selection takes everything.
+    """A user's selection. An empty selection selects everything.
 
-    ``names`` are variants or executions by local name, CURIE or IRI. At most one of ``first``, ``sample`` and
-    ``pairwise`` reduces the scenarios that satisfy ``where``. A scenario must be listed in each of ``choices`` and
-    satisfy ``only``. ``seed`` is the seed of the sample and, unless the run has its own, of the run; ``default_seed``
-    is used if neither the user nor an execution of a model gives one. ``substitutions`` maps behaviour implementations
-    (local name, CURIE or IRI) to the catalog behaviours to execute instead; ``default_substitutions`` does the same but
-    ignores implementations that the models lack.
+    - ``names``: variants or executions, by local name, CURIE or IRI.
+    - ``where``: a condition on the values of a scenario.
+    - ``first``, ``sample`` and ``pairwise``: at most one of them reduces the scenarios that satisfy ``where``.
+    - ``choices``: lists of scenarios. A scenario must be in each list.
+    - ``only``: a condition that a scenario must satisfy, too.
+    - ``seed``: the seed of the sample and, unless the run has its own, of the run.
+    - ``default_seed``: the seed if neither the user nor an execution of a model gives one.
+    - ``substitutions``: maps implementations of behaviours (local name, CURIE or IRI) to the catalog behaviours to
+      execute instead.
+    - ``default_substitutions``: like ``substitutions``, but implementations that the models lack are ignored.
     """
 
     names: Sequence[str] = ()
@@ -115,18 +120,21 @@ class Selection:
     default_substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def wanted(self) -> Wanted:
-        """Return the part of the selection that applies to variations."""
+        """Return the part of the selection that concerns the values of scenarios."""
         seed = self.default_seed if self.seed is None else self.seed
         return Wanted(self.where, self.first, self.sample, self.pairwise, seed)
 
     def admits_spec(self, spec: ScenarioSpec) -> bool:
-        """Whether an execution is selected by ``choices`` and ``only``."""
+        """Return whether a specified execution satisfies ``choices`` and ``only``."""
         return all(choice.admits_spec(spec) for choice in self.choices) and (self.only is None or self.only(spec))
 
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """Coverage of a covering array: a variant's CURIE, its scenarios, the covered and the possible combinations."""
+    """The coverage of a covering array.
+
+    It has the CURIE of the variant and the numbers of scenarios, covered combinations and possible combinations.
+    """
 
     variant: str
     scenarios: int
@@ -140,10 +148,10 @@ class Coverage:
 
 @dataclass(frozen=True)
 class Plan:
-    """Selection of scenarios from some models.
+    """A selection of scenarios from some models.
 
-    ``name`` is their common name in reports, ``path`` their file or folder, ``None`` for a text without a file.
-    ``models`` are the files and folders if they are several.
+    ``name`` is the common name of the models in reports. ``path`` is their file or folder; ``None`` for a text without
+    a file. If there are several files and folders, ``models`` contains them.
     """
 
     name: str
@@ -156,26 +164,26 @@ class Plan:
 
     @classmethod
     def of(cls, model: Model, selection: Selection) -> Plan:
-        """Return the plan of a model; raises ``ModelErrors``, ``NothingToRun`` and ``SelectionError``."""
+        """Return the plan of a model. Raises ``ModelErrors``, ``NothingToRun`` and ``SelectionError``."""
         plan = cls.of_files(str(model.path), model.path, model.runnable, selection)
         return replace(plan, models=tuple(model.paths) if len(model.paths) > 1 else ())
 
     @classmethod
     def of_files(cls, name: str, path: Path | None, files: tuple[ModelFile, ...], selection: Selection) -> Plan:
-        """Return the plan of sound models with scenarios; raises ``SelectionError``."""
+        """Return the plan of models that have scenarios and no errors. Raises ``SelectionError``."""
         planner = _Planner(files, selection)
         return cls(name, path, files, selection, tuple(planner.requests()), tuple(planner.covers))
 
     @cached_property
     def digest(self) -> str:
-        """The joint digest of the models' graphs."""
+        """The common digest of the graphs of all models."""
         from robbdd_tools.graph.write.digest import joint_digest
 
         return joint_digest(file.digest for file in self.files)
 
     @cached_property
     def texts(self) -> JudgedTexts:
-        """The texts of the models, read at the first access."""
+        """The texts of the models. They are read at the first access."""
         listed = (entry for choice in self.selection.choices for entry in choice.every())
         files = ((file.name, file.snapshot, file.uri) for file in self.files)
         return judged_texts(files, some_repetitions=any(entry.repetitions is not None for entry in listed))
@@ -200,11 +208,12 @@ class Plan:
         stop_on_failure: bool = False,
         keeping: Keeping | None = None,
     ) -> Run:
-        """Return a run of the plan, to be used as a context manager.
+        """Return a run of the plan, to be used as a context manager. Raises ``OSError`` and ``NothingSelected``.
 
-        ``seed`` and ``repeat`` replace those of the model; ``jobs`` is the number of agent processes (default: the
-        number of cores), ``timeout`` the wall time limit of one scenario in s (0: none). ``keeping`` says where the run
-        is kept, by default in the store of the model's project. Raises ``OSError`` and ``NothingSelected``.
+        - ``seed`` and ``repeat``: replace those of the model.
+        - ``jobs``: the number of agent processes; by default, the number of cores.
+        - ``timeout``: the limit of wall time for one scenario in s; 0 for no limit.
+        - ``keeping``: where the run is stored; by default, in the store of the model's project.
         """
         from robbdd_tools.workbench.folder import Keeping, new_folder
         from robbdd_tools.workbench.run import Run
@@ -216,10 +225,10 @@ class Plan:
     def prepare(
         self, folder: Path, *, seed: int | None = None, repeat: int | None = None, traces: bool = False
     ) -> Manifest:
-        """Write everything that agents need into ``folder``; raises ``OSError`` and ``NothingSelected``.
+        """Write everything that agents need into ``folder``. Raises ``OSError`` and ``NothingSelected``.
 
-        ``seed`` replaces the seeds of the selection and of executions, ``repeat`` their number of repetitions;
-        ``traces`` keeps the traces.
+        ``seed`` replaces the seeds of the selection and of executions. ``repeat`` replaces their number of repetitions.
+        If ``traces`` is true, the run keeps its traces.
         """
         chosen = self.selection.seed if seed is None else seed
         requests = [_with(request, chosen, repeat) for request in self.requests]
@@ -231,7 +240,7 @@ class Plan:
 
 
 def _with(request: RunRequest, seed: int | None, repeat: int | None) -> RunRequest:
-    """Return a request with a seed, which also replaces those of executions, and a number of repetitions."""
+    """Return a request with another seed and number of repetitions. The seed also replaces the seeds of executions."""
     if seed is not None:
         executions = tuple(replace(execution, seed=None) for execution in request.chosen_executions())
         request = replace(request, seed=seed, executions=executions)
@@ -239,7 +248,7 @@ def _with(request: RunRequest, seed: int | None, repeat: int | None) -> RunReque
 
 
 class _Planner:
-    """Selects among models in order; each variant and execution is taken from the first model that has it."""
+    """Selects scenarios from models in order. Each variant and execution is taken from the first model that has it."""
 
     def __init__(self, files: Sequence[ModelFile], selection: Selection) -> None:
         self._files = files
@@ -248,7 +257,7 @@ class _Planner:
         self.covers: list[Coverage] = []
 
     def requests(self) -> list[RunRequest]:
-        """Return a request for each model with something selected; raises ``SelectionError``."""
+        """Return a request for each model from which something is selected. Raises ``SelectionError``."""
         self._refuse_unknown_names()
         refuse_unknown((file.acceptance for file in self._files), self._selection.substitutions)
         found: list[RunRequest] = []

@@ -40,7 +40,7 @@ class CannotReplay(RobbddError):
 
 @dataclass(frozen=True, slots=True)
 class ReplayedTrace:
-    """Comparison of one execution's traces: ``difference`` is empty if they are bit-identical."""
+    """The comparison of an execution's trace with its replay. ``difference`` is empty if they are bit-identical."""
 
     index: int
     name: str
@@ -49,11 +49,12 @@ class ReplayedTrace:
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """Comparison of a replay's traces with those of its run.
+    """The comparison of a replay's traces with those of its run.
 
-    ``without_trace`` names finished scenarios that could not be replayed because the run kept no trace of them.
-    ``simulator`` is name and version of the replay's simulator. ``ending`` says why scenarios were left open, empty
-    when all were simulated.
+    - ``without_trace``: the names of finished scenarios that could not be replayed, because the run kept no trace of
+      them.
+    - ``simulator``: the name and the version of the simulator of the replay.
+    - ``ending``: why scenarios were left open; empty if all were simulated.
     """
 
     traces: tuple[ReplayedTrace, ...]
@@ -63,22 +64,24 @@ class Replayed:
 
     @property
     def is_identical(self) -> bool:
-        """Whether all traces of the run are bit-identical."""
+        """Whether all traces of the run are bit-identical to their replays."""
         return not self.ending and not self.without_trace and not any(trace.difference for trace in self.traces)
 
 
 def replay(
     run: Run | PastRun, *names: str, jobs: int | None = None, timeout: float | None = None, force: bool = False
 ) -> Replayed:
-    """Simulate the finished executions of a run again and compare their traces bit by bit.
+    """Simulate the finished executions of a run again, and compare their traces bit by bit.
 
-    ``names`` selects scenarios or variants by local name (all without any). ``jobs`` is the number of agent processes
-    (default: the number of cores), ``timeout`` the wall time limit of one scenario in s (0: none). ``force`` simulates
-    with the run's current files, even if they have changed. Blocks until all is simulated: in an asyncio program, call
-    it with ``asyncio.to_thread``.
+    - ``names``: the local names of the scenarios or variants to replay; without names, all are replayed.
+    - ``jobs``: the number of agent processes; by default, the number of cores.
+    - ``timeout``: the limit of wall time for one scenario in s; 0 for no limit.
+    - ``force``: simulate with the current files, even if they have changed since the run.
 
-    Raises ``CannotReplay`` when the model or its files have changed or no trace was kept, ``NoSuchRun`` when the run is
-    damaged or was not kept, ``UserCodeRefused`` and ``OSError``.
+    The call blocks until everything is simulated. In an asyncio program, use ``asyncio.to_thread``.
+
+    Raises ``CannotReplay`` if the model or its files have changed or no trace was kept. Raises ``NoSuchRun`` if the run
+    is damaged or was not kept. Raises ``UserCodeRefused`` and ``OSError``.
     """
     policy = Policy.of(jobs=jobs, timeout=timeout)
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
@@ -90,16 +93,16 @@ def replay(
 
 
 class Replay:
-    """The replay of a stored run; consume ``messages`` once, then call ``traces``.
+    """The replay of a stored run. Consume ``messages`` once, then call ``traces``.
 
-    ``names`` selects scenarios or variants, all without any; ``force`` simulates with the current files, even if they
-    have changed. ``folder`` is an empty folder to simulate in.
+    ``folder`` is an empty folder to simulate in. ``names`` selects scenarios or variants; without names, all are
+    replayed. If ``force`` is true, the current files are used even if they have changed since the run.
     """
 
     def __init__(
         self, place: StoredRun, folder: Path, policy: Policy, names: Collection[str] = (), *, force: bool = False
     ) -> None:
-        """Prepare a replay; raises ``CannotReplay``, ``UserCodeRefused``, ``NoSuchRun`` and ``OSError``."""
+        """Prepare a replay. Raises ``CannotReplay``, ``UserCodeRefused``, ``NoSuchRun`` and ``OSError``."""
         reason = "" if force else refusal(place, model_now(place))
         if reason:
             raise CannotReplay(reason)
@@ -130,12 +133,12 @@ class Replay:
         return len(self._indices)
 
     def cancel(self, reason: str = CANCELLED) -> None:
-        """End the replay; may be called from any thread."""
+        """End the replay. This may be called from any thread."""
         self._reason = self._reason or reason
         self._scheduler.cancel()
 
     def messages(self) -> Iterator[RunMessage]:
-        """Yield the messages of the simulation in the manifest's order. Raises ``OSError``."""
+        """Yield the messages of the simulation in the order of the manifest. Raises ``OSError``."""
         for message in self._scheduler.messages():
             if isinstance(message, RunStarted):
                 self.simulator = message.simulator
@@ -144,7 +147,7 @@ class Replay:
         self.ending = self._reason or self._scheduler.ending
 
     def traces(self) -> list[ReplayedTrace]:
-        """Compare the traces; raises ``CannotReplay`` when they cannot be read."""
+        """Compare the traces. Raises ``CannotReplay`` if they cannot be read."""
         done = run_module(COMPARE, str(self._place.folder.absolute()), str(self._folder.absolute()))
         if done.returncode:
             raise CannotReplay(f"the traces cannot be compared: {(done.stderr.strip().splitlines() or [''])[-1]}")
@@ -178,5 +181,5 @@ def _copy(source: str | Path, target: str | Path) -> None:
 
 
 def _links(folder: str, names: list[str]) -> list[str]:
-    """Return the symbolic links in a folder, to be skipped: a run folder that we wrote has none."""
+    """Return the symbolic links in a folder. They are skipped, because no run folder written by RobBDD contains one."""
     return [name for name in names if (Path(folder) / name).is_symlink()]

@@ -1,4 +1,4 @@
-"""Select the failed scenarios of a stored run for another run."""
+"""Select the scenarios that failed in a stored run, so that another run executes them again."""
 
 from __future__ import annotations
 
@@ -17,15 +17,17 @@ from robbdd_tools.workbench.substitution import substitutions_of
 
 
 class NothingFailed(RobbddError):
-    """Every scenario of the last run holds."""
+    """There is nothing to execute again, because every scenario of the last run holds."""
 
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """Executions that did not hold, and the options to repeat them.
+    """The executions that did not hold, and the options with which to execute them again.
 
-    ``seed`` is the seed given by the user, ``repeat`` the number of repetitions; ``None`` without one. ``default_seed``
-    is used for scenarios without their own. ``substitutions`` are those of the run.
+    - ``seed``: the seed that the user gave; ``None`` without one.
+    - ``repeat``: the number of repetitions; ``None`` for the number that the model states.
+    - ``default_seed``: the seed of scenarios that have no seed of their own.
+    - ``substitutions``: the substitutions of the run.
     """
 
     choice: Choice
@@ -36,7 +38,7 @@ class Failed:
 
 
 def last_run(store: RunStore, model: Path) -> StoredRun:
-    """Return the last stored run of a model that is not in progress; raises ``NoSuchRun``."""
+    """Return the last stored run of a model that has ended. Raises ``NoSuchRun``."""
     for place in reversed(store.runs()):
         with suppress(NoSuchRun):
             if place.record().path == shown_path(model) and place.status().state != RUNNING:
@@ -45,7 +47,7 @@ def last_run(store: RunStore, model: Path) -> StoredRun:
 
 
 def failed_in(place: StoredRun) -> Failed:
-    """Return the executions of a run that did not hold; raises ``NothingFailed`` and ``NoSuchRun``."""
+    """Return the executions of a run that did not hold. Raises ``NothingFailed`` and ``NoSuchRun``."""
     results, specs = place.results(), place.manifest().scenarios
     entries = zip(specs, results["scenarios"], strict=False)
     failed = [spec for spec, entry in entries if entry["verdict"] != Outcome.HOLDS]

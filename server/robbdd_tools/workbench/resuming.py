@@ -1,4 +1,4 @@
-"""Resume a run that did not finish: the same seeds, the same results as an uninterrupted run."""
+"""Resume a run that did not finish. It uses the same seeds and has the same results as an uninterrupted run."""
 
 from __future__ import annotations
 
@@ -35,9 +35,10 @@ class CannotResume(RobbddError):
 
 
 def unfinished_run(store: RunStore, word: str = LATEST, path: Path | None = None) -> StoredRun:
-    """Return the run that ``word`` names, else the latest unfinished one, of the model at ``path`` if given.
+    """Return the run to resume. Raises ``NoSuchRun``.
 
-    Raises ``NoSuchRun``.
+    This is the run that ``word`` names or, without a word, the latest unfinished run. With ``path``, it must be a run
+    of the model at this path.
     """
     if word != LATEST:
         place = store.find(word)
@@ -55,9 +56,9 @@ def unfinished_run(store: RunStore, word: str = LATEST, path: Path | None = None
 
 
 def resume(place: StoredRun, policy: Callable[[RunStatus], Policy] | None = None) -> Run:
-    """Resume a run; ``policy`` derives jobs, timeout and stop rule from the stored run (default: unchanged).
+    """Resume a run. Raises ``CannotResume``, ``NoSuchRun`` and ``OSError``.
 
-    Raises ``CannotResume``, ``NoSuchRun`` and ``OSError``.
+    ``policy`` returns the new policy, given that of the stored run. By default, the policy stays unchanged.
     """
     lock = acquire(place.folder / LOCK, LOCK_PATIENCE)
     if lock is None:
@@ -70,7 +71,7 @@ def resume(place: StoredRun, policy: Callable[[RunStatus], Policy] | None = None
 
 
 def stored_policy(status: RunStatus) -> Policy:
-    """Return a stored run's policy; one that stopped at its first failure continues past it."""
+    """Return the policy of a stored run. A run that stopped at its first failure continues after that failure."""
     return Policy(timeout=status.timeout, stop_on_failure=status.stop_on_failure and status.state != STOPPED)
 
 

@@ -1,4 +1,4 @@
-"""One run: agents execute a prepared folder; each finished execution is stored, then shown."""
+"""Execute one run. Agents execute a prepared folder, and each finished execution is stored before it is shown."""
 
 from __future__ import annotations
 
@@ -33,12 +33,13 @@ Listener = Callable[["RunMessage"], None]
 
 
 class Run(Recorded):
-    """A run in progress; use it as a context manager, synchronous or asynchronous.
+    """A run in progress. Use it as a context manager, synchronous or asynchronous.
 
-    Consume it once, in one of three ways: iterate over it (results as executions finish), over ``messages`` (messages
-    in the manifest's order), or call ``wait``. ``cancel`` may be called from any thread. Leaving the context cancels
-    open executions and keeps finished ones. ``ending`` then says why executions were left open (empty for a complete
-    run), ``problem`` why the run could not continue, such as a full disk.
+    Consume it once, in one of three ways: iterate over it to get results as executions finish, iterate over
+    ``messages`` to get messages in the order of the manifest, or call ``wait``. ``cancel`` may be called from any
+    thread. Leaving the context cancels open executions and keeps finished ones. Then ``ending`` is the reason why
+    executions were left open; it is empty for a complete run. ``problem`` is the reason why the run could not continue,
+    for example a full disk.
     """
 
     def __init__(
@@ -77,7 +78,7 @@ class Run(Recorded):
         repeat: int | None = None,
         on_close: Callable[[], None] = lambda: None,
     ) -> Self:
-        """Prepare the run of a plan in a run folder, which is removed on failure.
+        """Prepare the run of a plan in a run folder. If this fails, the folder is removed.
 
         Raises ``OSError``, ``NothingSelected`` and ``UserCodeRefused``.
         """
@@ -96,16 +97,22 @@ class Run(Recorded):
         return self._manifest
 
     def listen(self, listener: Listener) -> None:
-        """Call ``listener`` with every message on arrival, in the thread that consumes the run."""
+        """Call ``listener`` with every message on arrival. It is called in the thread that consumes the run."""
         self._listeners.append(listener)
 
     def cancel(self, reason: str = CANCELLED) -> None:
-        """End the run within half a second; finished executions are kept, open clauses get ``reason``."""
+        """End the run within half a second.
+
+        Finished executions are kept, and open clauses are unknown for ``reason``.
+        """
         self._reason = self._reason or reason
         self._scheduler.cancel()
 
     def messages(self) -> Iterator[RunMessage]:
-        """Yield the messages of the run in the manifest's order, each after ``progress`` has applied it."""
+        """Yield the messages of the run in the order of the manifest.
+
+        Each is yielded after ``progress`` has applied it.
+        """
         try:
             for message in self._scheduler.messages():
                 if self._recording.is_new(message):
@@ -123,7 +130,7 @@ class Run(Recorded):
             self._conclude()
 
     def wait(self) -> Self:
-        """Execute everything; return the run."""
+        """Execute all scenarios, and return the run."""
         for _ in self.messages():
             pass
         return self
@@ -154,14 +161,17 @@ class Run(Recorded):
             yield result
 
     async def __aiter__(self) -> AsyncIterator[ExecutionResult]:
-        """Yield results as ``__iter__`` does, without blocking the event loop."""
+        """Yield results as ``__iter__`` does, but without blocking the event loop."""
         results = iter(self)
         while (result := await asyncio.to_thread(next, results, None)) is not None:
             yield result
 
     @property
     def results(self) -> tuple[ExecutionResult, ...]:
-        """The results of all executions in the manifest's order; executes those not yet executed."""
+        """The results of all executions in the order of the manifest.
+
+        Scenarios that are not yet executed are executed now.
+        """
         if self._thread is not None:
             self._thread.join()
         elif not self._closed and not self.ending and not self.progress.complete:
@@ -197,7 +207,7 @@ class Run(Recorded):
                 listener(message)
 
     def _conclude(self) -> None:
-        """Record the end of the run; ``progress`` becomes the stored results."""
+        """Record the end of the run. The stored results replace ``progress``."""
         try:
             self.progress = self._recording.end(self.ending, interrupted=bool(self._reason))
         except OSError as error:
@@ -209,12 +219,12 @@ class Run(Recorded):
 
 
 def begin_run(plan: Plan, place: StoredRun, *, repeat: int | None = None, jobs: int | None = None) -> Run:
-    """Prepare the run of a plan in a run folder created by the caller; raises the errors of ``Run.begin``."""
+    """Prepare the run of a plan in a run folder that the caller has created. Raises the errors of ``Run.begin``."""
     return Run.begin(plan, place, Policy.of(jobs=jobs), repeat=repeat)
 
 
 def check_user_code(plan: Plan) -> None:
-    """Raise ``UserCodeRefused`` if a plan executes users' code without permission.
+    """Raise ``UserCodeRefused`` if a plan would execute users' code that is not permitted.
 
     Raises ``OSError`` and ``NothingSelected`` as well.
     """
@@ -231,9 +241,9 @@ def begin_recording(
     repeat: int | None = None,
     models: Sequence[Path] = (),
 ) -> Recording:
-    """Write everything that agents need into a run folder, and the beginning of the run into its database.
+    """Write everything that agents need into a run folder, and record the beginning of the run in its database.
 
-    ``models`` are the model files if they are not all models in the plan's folder. Raises ``OSError``,
+    ``models`` are the model files, unless they are all models in the plan's folder. Raises ``OSError``,
     ``NothingSelected`` and ``UserCodeRefused``.
     """
     manifest = plan.prepare(place.folder, seed=seed, repeat=repeat, traces=place.kept)
@@ -254,7 +264,7 @@ def begin_recording(
 
 
 def _record(plan: Plan, folder: Path, manifest: Manifest, user_seed: int | None) -> RunRecord:
-    """Return the record of a run; a model without a file is recorded by name."""
+    """Return the record of a run. A model without a file is recorded by its name."""
     path = plan.path
     shown, start = (plan.name, plan.name) if path is None else (shown_path(path), relative_model_path(path, folder))
     files = digests(manifest, folder)

@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 
 class Recorded(ABC):
-    """A run with a folder: one in progress or a stored one."""
+    """A run with a folder, either in progress or stored."""
 
     def __init__(self, place: StoredRun) -> None:
         self.place = place
 
     @property
     def number(self) -> int:
-        """The number in the project's store, 0 for a run in a separate folder."""
+        """The number of the run in the project's store; 0 for a run in a separate folder."""
         return self.place.number
 
     @property
@@ -36,16 +36,16 @@ class Recorded(ABC):
     @property
     @abstractmethod
     def results(self) -> tuple[ExecutionResult, ...]:
-        """The results of all executions in the manifest's order."""
+        """The results of all executions in the order of the manifest."""
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return one flat dictionary per clause of each execution: ``pandas.DataFrame(run.rows())``."""
+        """Return one flat dictionary for each clause of each execution, for ``pandas.DataFrame(run.rows())``."""
         return rows_of(self.results)
 
     def trace(self, result: ExecutionResult | int) -> Trace:
-        """Return the trace of an execution (its result or index): times, positions, orientations and events as arrays.
+        """Return the trace of an execution as arrays: times, positions, orientations and events.
 
-        Raises ``UnreadableTrace`` if none was kept.
+        The execution is given by its result or by its index. Raises ``UnreadableTrace`` if no trace was kept.
         """
         from robbdd_tools.traces.mcap_file import read_trace
 
@@ -68,22 +68,22 @@ class PastRun(Recorded):
 
     @property
     def results(self) -> tuple[ExecutionResult, ...]:
-        """The results of all executions in the manifest's order; unfinished ones are unknown."""
+        """The results of all executions in the order of the manifest. Unfinished executions are unknown."""
         return execution_results(self.place.results())
 
 
 def runs(path: str | os.PathLike[str] = ".", *, store: str | os.PathLike[str] | None = None) -> tuple[PastRun, ...]:
-    """Return the stored runs of a path's project, oldest first; ``store`` is another folder of runs."""
+    """Return the stored runs of the project that contains a path, oldest first. ``store`` is another folder of runs."""
     return tuple(map(PastRun, store_at(Path(path), store).runs()))
 
 
 def find_run(
     word: str = LATEST, path: str | os.PathLike[str] = ".", *, store: str | os.PathLike[str] | None = None
 ) -> PastRun:
-    """Return a stored run by number, ``latest`` or folder; raises ``NoSuchRun``."""
+    """Return the stored run that ``word`` names by its number, by ``latest`` or by its folder. Raises ``NoSuchRun``."""
     return PastRun(store_at(Path(path), store).find(word))
 
 
 def store_at(path: Path, store: str | os.PathLike[str] | None) -> RunStore:
-    """Return the store of a path's project, or the one in the folder ``store``."""
+    """Return the store in the folder ``store`` or, without one, the store of the project that contains a path."""
     return store_beside(path) if store is None else RunStore(Path(store))

@@ -1,7 +1,7 @@
-"""Substitute catalog behaviours for behaviour implementations that a simulation does not have.
+"""Substitute catalog behaviours for implementations of behaviours that a simulation does not have.
 
-A substitution maps a behaviour implementation of a ``.bddx`` (local name, CURIE or IRI) to the name of a catalog
-behaviour. Where several name the same implementation, the last one counts.
+A substitution maps an implementation in a ``.bddx`` (local name, CURIE or IRI) to the name of a catalog behaviour. If
+several substitutions name the same implementation, the last one is used.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def parse_substitution(text: str) -> tuple[str, str]:
 
 
 def refuse_unknown(models: Iterable[AcceptanceModel], substitutions: Mapping[str, str]) -> None:
-    """Raise ``SelectionError`` for an implementation that no model has, or a behaviour that the catalog lacks."""
+    """Raise ``SelectionError`` if no model has an implementation, or if the catalog lacks a behaviour."""
     known: set[str] = set()
     local: set[str] = set()
     for model in models:
@@ -49,9 +49,10 @@ def refuse_unknown(models: Iterable[AcceptanceModel], substitutions: Mapping[str
 
 
 def substitute(model: AcceptanceModel, substitutions: Mapping[str, str]) -> AcceptanceModel:
-    """Return a model whose executions use the substituted behaviours; names that it lacks are ignored.
+    """Return a model whose executions use the substituted behaviours. Raises ``SelectionError``.
 
-    Raises ``SelectionError`` for a behaviour that the catalog lacks, or that does not execute those of a scenario.
+    Names that the model lacks are ignored. The error is raised if the catalog lacks a behaviour, or if a behaviour does
+    not execute the behaviours of a scenario.
     """
     if not substitutions:
         return model
@@ -60,7 +61,7 @@ def substitute(model: AcceptanceModel, substitutions: Mapping[str, str]) -> Acce
 
 
 def substitutions_of(scenarios: Iterable[ScenarioSpec]) -> dict[str, str]:
-    """Return the substitutions of planned scenarios: IRI of the implementation to catalog behaviour."""
+    """Map the IRI of each implementation that planned scenarios replace to the catalog behaviour."""
     executed = (spec.execution.implementation for spec in scenarios if spec.execution is not None)
     return {one.iri: one.name for one in executed if one.substitution is not None}
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def model_now(place: StoredRun) -> Model | str:
-    """Return the current model of a stored run, or why it cannot be run; raises ``NoSuchRun``."""
+    """Return the current model of a stored run, or the reason why it cannot be run. Raises ``NoSuchRun``."""
     shown, paths = place.record().path, place.models()
     if not all(path.exists() for path in paths):
         return f"the model of the run, {shown}, is gone"
@@ -27,7 +27,7 @@ def model_now(place: StoredRun) -> Model | str:
 
 
 def refusal(place: StoredRun, model: Model | str) -> str:
-    """Return what changed since the run and what to do; empty without a change. Raises ``NoSuchRun``."""
+    """Return what has changed since the run and what to do; empty if nothing has changed. Raises ``NoSuchRun``."""
     record = place.record()
     others = [os.path.relpath(path) for path in changed(record.files, place.folder)]
     if others:
