@@ -121,7 +121,7 @@ def _modelled(instance: Site) -> frozenset[Key]:
 
 
 def place_of(scene: Site, element: Element) -> Span:
-    """Return the name of an element in the scene's file, else the scene entry that includes it."""
+    """Return the place of an element's name, or the scene entry that includes it if the name is in another file."""
     root = scene.tree
     assert isinstance(root, tree.Scene)
     uri, path = element.key

@@ -1,1 +1,1 @@
-"""Judge clauses on a trace, recorded by a simulation or read from a file, without a simulator."""
+"""Judge clauses on a trace, which was recorded by a simulation or read from a file. No simulator is needed."""

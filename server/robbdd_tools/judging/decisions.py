@@ -1,4 +1,4 @@
-"""Judge clauses on a trace: fluents by the monitor, junctions by strong Kleene logic."""
+"""Judge clauses on a trace. The monitor judges fluents, and strong Kleene logic combines them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SETS = (Kind.OBJECT_SET, Kind.WORKSPACE_SET)
 
 
 def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[str]) -> Verdict:
-    """Judge a clause on a trace; ``events`` are the events with an emitter in the scenario."""
+    """Judge a clause on a trace. ``events`` are the events that have an emitter in the scenario."""
     if trace.unreached:
         return unknown(trace.unreached, Cause.UNREACHED)
     numbers = count()
@@ -49,7 +49,7 @@ def decide(clause: Clause, trace: Trace, regions: Regions, events: AbstractSet[s
 
 
 def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:
-    """Return the range of each fluent's margin over a whole trace, where known."""
+    """Return the range of the margin of each fluent over a whole trace, if known."""
     found: list[Range] = []
     for fluent in fluents_of(clause):
         slots = fluent.predicate.slots
@@ -64,12 +64,15 @@ def ranges(clause: Clause, trace: Trace, regions: Regions) -> tuple[Range, ...]:
 
 
 def is_closed(clause: Clause, trace: Trace, events: AbstractSet[str]) -> bool:
-    """Return whether the verdict on a clause is final: a longer trace cannot change it."""
+    """Return whether the verdict on a clause is final, so that a longer trace cannot change it."""
     return all(_closed(fluent, trace, events) for fluent in fluents_of(clause))
 
 
 def alternatives(fluent: Fluent) -> Iterator[Iterator[Arguments]]:
-    """Yield the alternatives under which a fluent holds, each with the arguments that must all satisfy it."""
+    """Yield the alternatives of a fluent. The fluent holds if one alternative does.
+
+    An alternative is a list of arguments, all of which must satisfy the predicate.
+    """
     slots = fluent.predicate.slots
     some = [slot for slot in slots if isinstance(fluent.arguments[slot.name], AnyOf)]
     return (_instances(slots, chosen) for chosen in _choices(fluent.arguments, some))
@@ -113,7 +116,10 @@ def _choices(arguments: Mapping[str, Filler], some: list[Slot]) -> Iterator[Mapp
 
 
 def _instances(slots: tuple[Slot, ...], arguments: Mapping[str, Filler]) -> Iterator[Arguments]:
-    """Yield arguments in evaluator form; a set in a single-element slot is expanded to its elements."""
+    """Yield the arguments of a fluent in the form that the evaluator needs.
+
+    A set in a slot for a single element is expanded to its elements.
+    """
     options = [_options(slot.kind, arguments[slot.name]) for slot in slots]
     for values in product(*options):
         yield {slot.name: value for slot, value in zip(slots, values, strict=True)}

@@ -1,4 +1,4 @@
-"""Margins of a scenario's clauses over time, stored as JSON with its trace."""
+"""Record the margins of a scenario's clauses over time. They are stored as JSON with the trace of the scenario."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 
 
 def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False) -> Iterator[Curve]:
-    """Yield each fluent's curve: over a set, the worst element's, or the best one's where any element suffices."""
+    """Yield the curve of each fluent.
+
+    For a fluent over a set, it is the curve of the worst element or, if any element suffices, of the best one.
+    """
     match clause:
         case Fluent():
             yield _curve(clause, trace, regions, negated)
@@ -41,10 +44,10 @@ def curves(clause: Clause, trace: Trace, regions: Regions, negated: bool = False
 def behaviour_curves(
     call: BehaviourCall, trace: Trace, emitters: Mapping[str, str], node: str = "", iteration: int = 0
 ) -> tuple[Curve, ...]:
-    """Return the duration of a behaviour, without a margin; ``emitters`` maps events to their emitters.
+    """Return the duration of a behaviour as a curve without a margin. ``emitters`` maps events to their emitters.
 
-    ``node`` is the node of the behaviour tree that executes it, if any; ``iteration`` is 0 for a behaviour that is
-    executed once.
+    ``node`` is the node of the behaviour tree that executes the behaviour, if any. ``iteration`` is 0 for a behaviour
+    that is executed once.
     """
     limits = call.behaviour.events[0], call.behaviour.events[-1]
     if node:
@@ -55,9 +58,9 @@ def behaviour_curves(
 
 
 def write_curves(path: Path, scenario: tuple[str, int], by_line: Mapping[int, tuple[Curve, ...]], trace: Trace) -> None:
-    """Write curves by the feature lines of their clauses, with the events; raises ``OSError``.
+    """Write the curves of clauses by their feature lines, together with the events. Raises ``OSError``.
 
-    ``scenario`` is the IRI of its variant with its number.
+    ``scenario`` consists of the IRI of the scenario's variant and the number of the scenario.
     """
     document = {
         "scenario": scenario,

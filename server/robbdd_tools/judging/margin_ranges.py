@@ -1,4 +1,7 @@
-"""Find clauses that prove little in an execution: margin ranges, and clauses that held from the start."""
+"""Find the clauses that prove little in an execution.
+
+Their margin did not vary, or they held from the start.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,10 @@ BEGIN = "the behaviour begins"
 def margin_ranges(
     index: int, clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: Trace, regions: Regions
 ) -> MarginRanges | None:
-    """Return the message on a clause of scenario number ``index``, ``None`` if the trace has no information on it."""
+    """Return the message with the margin ranges of a clause in scenario number ``index``.
+
+    Returns ``None`` if the trace has no information on the clause.
+    """
     if trace.unreached:
         return None
     found = ranges(clause, trace, regions)
@@ -35,10 +41,11 @@ def margin_ranges(
 
 
 def _held_before(clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: Trace, regions: Regions) -> bool | None:
-    """Return whether a Then clause holds and its predicates already held when its scope's first behaviour began.
+    """Return whether a Then clause holds and its predicates already held before the behaviour.
 
-    ``None`` where this is meaningless: for other clauses, for intervals, which require a state to persist, and for
-    predicates that are set up, or measured in windows only.
+    The second instant is the beginning of the first behaviour in the clause's scope. The result is ``None`` where the
+    question is meaningless: for other clauses, for intervals, which require a state to persist, and for predicates that
+    are set up or measured in windows only.
     """
     fluents = list(fluents_of(clause))
     if stated.role != "then" or not fluents:
@@ -57,7 +64,7 @@ def _held_before(clause: Clause, stated: ClauseSpec, spec: ScenarioSpec, trace: 
 
 
 def _beginning(stated: ClauseSpec, spec: ScenarioSpec, trace: Trace) -> float | None:
-    """Return when the first behaviour of a clause's scope began, s."""
+    """Return the time (s) at which the first behaviour in a clause's scope began."""
     if spec.node:
         emitting = emitter(spec.node, START)
     else:

@@ -1,4 +1,4 @@
-"""Simulated observations of an element's position, with a provider's rate, latency and noise."""
+"""Simulate the observations of an element's position, with the rate, latency and noise of a provider."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ SOURCES = {"topic": "a ROS topic", "entity-state": "ROS entity states", "transfo
 
 
 class Unobserved(Exception):
-    """There is nothing to judge on; the message gives the reason."""
+    """There is no observation on which to judge. The message gives the reason."""
 
 
 class Stream:
     """The observations of one element that are known at each sample of a window.
 
-    The provider observes at the times k / rate; an observation is known after the latency, with noise on each axis that
-    depends only on the seed, the observation and k. ``positions`` (n, 3) m are the last known ones, ``stamps`` (n,) s
-    the times of observation. Raises ``Unobserved`` if the simulation has no such provider or no observation is known
-    yet.
+    The provider observes at the times k / rate. An observation is known after the latency. Each axis has noise that
+    depends only on the seed, the observation and k. ``positions`` (n, 3) m are the last known positions, and ``stamps``
+    (n,) s are the times at which they were observed. Raises ``Unobserved`` if the simulation has no such provider, or
+    if no observation is known yet.
     """
 
     def __init__(self, observation: Observation, target: str, evidence: Evidence, seed: int) -> None:
@@ -48,7 +48,10 @@ class Stream:
 
 
 def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:
-    """Return positions (n, 3) m at the last samples at or before some times; a workspace has its first region's."""
+    """Return the true positions (n, 3) m at the last samples at or before some times.
+
+    The position of a workspace is that of its first region.
+    """
     regions = dict(zip(evidence.workspaces, map(evidence.regions, evidence.workspaces), strict=True)).get(target)
     if not regions:
         return evidence.position_at(target, stamps)
@@ -57,6 +60,6 @@ def _truth(evidence: Evidence, target: str, stamps: FloatArray) -> FloatArray:
 
 
 def _noise(seed: int, name: str, count: int) -> FloatArray:
-    """Return normally distributed numbers (count, 3); a longer array starts with the shorter one."""
+    """Return normally distributed numbers (count, 3). A longer array begins with the numbers of a shorter one."""
     digest = hashlib.sha256(f"{seed} {name}".encode()).digest()
     return np.random.default_rng(int.from_bytes(digest[:8], "big")).standard_normal((count, 3))

@@ -1,4 +1,4 @@
-"""Parse sentences that a person has written into a feature; every pattern is derived from the catalog."""
+"""Parse sentences that a person has written into a feature. All patterns are derived from the catalog."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _OPAQUE = re.compile(rf'"{QUOTED}"|\\.')
 
 
 def sentence_pattern(sentence: str) -> str:
-    """Return the regular expression of a catalog sentence, one named group per slot."""
+    """Return the regular expression of a catalog sentence, with one named group for each slot."""
     parts = re.split(r"\{(\w+)\}", sentence)
     pieces = [re.escape(text) for text in parts[::2]]
     groups = [f"(?P<{name}>{QUOTED})" for name in parts[1::2]]
@@ -50,12 +50,15 @@ def sentence_pattern(sentence: str) -> str:
 
 
 def fluent_pattern(predicate: Predicate) -> str:
-    """Return the regular expression of a step that states a fluent of this predicate."""
+    """Return the regular expression of a step that states a fluent with this predicate."""
     return f"{sentence_pattern(predicate.sentence)} {TIME}"
 
 
 def read_step(role: str, text: str) -> Statement | None:
-    """Parse the sentence of a step; ``None`` for a When step that is neither in the catalog nor an event."""
+    """Return the statement of a step's sentence.
+
+    Returns ``None`` for a When step that contains neither a behaviour of the catalog nor an event.
+    """
     if role != "when":
         return read_clause(text)
     if (match := re.fullmatch(OCCURS, text)) is not None:
@@ -89,7 +92,7 @@ def read_clause(text: str) -> Clause:
 
 
 def unescaped(text: str) -> str:
-    """Return a string as the user wrote it from its escaped form in a step."""
+    """Return the string that a step contains in escaped form, as the user wrote it."""
     return _ESCAPE.sub(lambda match: chr(int(match[1], 16)) if match[1] else _NAMED.get(match[2], match[2]), text)
 
 
@@ -130,7 +133,7 @@ def _time(match: re.Match[str]) -> TimeConstraint:
 
 
 def _balanced(text: str) -> bool:
-    """Return whether no parenthesis outside quotes is closed before it is opened."""
+    """Return whether every closing parenthesis outside of quotes has an opening one before it."""
     depth = 0
     for char in _outside_quotes(text):
         depth += (char == "(") - (char == ")")
@@ -153,5 +156,5 @@ def _split(text: str, separator: str) -> list[str]:
 
 
 def _outside_quotes(text: str) -> str:
-    """Blank out double-quoted text and escaped characters, keeping the length."""
+    """Return a text in which spaces replace quoted text and escaped characters, so that its length stays the same."""
     return _OPAQUE.sub(lambda match: "_" * len(match[0]), text)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def with_policies(clause: Clause, spec: ScenarioSpec) -> Clause:
-    """Return a clause whose fluents are judged by the policies of the scenario's execution, if any apply."""
+    """Return a clause whose fluents are judged by the policies of the scenario's execution, if any policy applies."""
     policies = {} if spec.execution is None else {policy.clause: policy for policy in spec.execution.policies}
     return _attached(clause, policies, spec) if policies else clause
 
@@ -54,7 +54,7 @@ def _predicate(policy: Policy, spec: ScenarioSpec, arguments: Mapping[str, Any])
 class Judge:
     """Judges the windows of one clause of one scenario by a policy.
 
-    ``own`` are the values of the clause's slots and quantified variables.
+    ``own`` are the values of the clause's slots and of the variables of its quantifiers.
     """
 
     policy: Policy
@@ -64,7 +64,8 @@ class Judge:
     def margins(self, evidence: Evidence, _arguments: Arguments) -> FloatArray:
         """Return the margin at each sample of a window, shape (n,).
 
-        Raises ``Unobserved`` if a simulation cannot provide the observations, ``UserCodeError`` if users' code fails.
+        Raises ``Unobserved`` if a simulation cannot provide the observations, and ``UserCodeError`` if users' code
+        fails.
         """
         rule = self.policy.rule
         if rule.kind == "topic":
@@ -96,7 +97,7 @@ class Judge:
 
 
 class Observed:
-    """The observed evidence of a window: observed positions instead of true ones."""
+    """The evidence of a window with observed positions instead of true ones."""
 
     def __init__(self, evidence: Evidence, streams: Mapping[str, Stream]) -> None:
         self._evidence = evidence
@@ -104,22 +105,25 @@ class Observed:
 
     @property
     def times(self) -> FloatArray:
-        """Simulated time of each sample, s, shape (n,)."""
+        """The simulated time of each sample, s, shape (n,)."""
         return self._evidence.times
 
     def position(self, name: str) -> FloatArray:
-        """Last observed position of an element at each sample, m, shape (n, 3); raises ``KeyError`` for others."""
+        """Return the last observed position of an element at each sample, m, shape (n, 3).
+
+        Raises ``KeyError`` for an element that is not observed.
+        """
         return self._streams[name].positions
 
     def stamps(self, name: str) -> FloatArray:
-        """Time of each of these observations, s, shape (n,); raises ``KeyError``."""
+        """Return the time at which each of these positions was observed, s, shape (n,). Raises ``KeyError``."""
         return self._streams[name].stamps
 
 
 def distance_margins(rule: Rule, one: Stream, other: Stream) -> FloatArray:
-    """Return the margin (m) of a distance at each sample, shape (n,).
+    """Return the margin (m) of the distance between two elements at each sample, shape (n,).
 
-    Raises ``Unobserved`` if the two observations are too far apart in time.
+    Raises ``Unobserved`` if the observations of the elements are too far apart in time.
     """
     apart = np.abs(one.stamps - other.stamps)
     if rule.max_time_offset is not None and (worst := float(apart.max())) > rule.max_time_offset + 1e-9:
@@ -139,7 +143,10 @@ def distance_margins(rule: Rule, one: Stream, other: Stream) -> FloatArray:
 
 
 def _as_margins(name: str, evaluate: object, answer: Any, count: int) -> FloatArray:
-    """Return the user's answer as margins, broadcast to all samples: numbers unchanged, true and false as 1 and -1."""
+    """Return the answer of users' code as margins for all samples.
+
+    Numbers are unchanged, true is 1, and false is -1.
+    """
     values = np.asarray(answer)
     if values.dtype == bool:
         values = np.where(values, 1.0, -1.0)

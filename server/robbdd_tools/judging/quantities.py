@@ -1,4 +1,4 @@
-"""Find the fluents of a clause that need a quantity measured on demand, and their elements."""
+"""Find the fluents of a clause that need a quantity that is measured on demand, and the elements in them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The clauses of a scenario in judgeable form: with its policies and the iterations of ``for all``."""
+"""Prepare the clauses of a scenario for judgement, with its policies and the iterations of ``for all``."""
 
 from __future__ import annotations
 
@@ -17,25 +17,35 @@ if TYPE_CHECKING:
 
 
 def statement_of(known: ClauseSpec) -> Statement | None:
-    """Return the statement of a manifest clause; parse its sentence if an earlier version stored nothing else."""
+    """Return the statement of a clause in the manifest.
+
+    If an earlier version stored the sentence only, the sentence is parsed.
+    """
     return known.statement or _with_iris(read_step(known.role, known.sentence), known)
 
 
 def stated_by_step(role: str, text: str, known: ClauseSpec | None) -> Statement | None:
-    """Return the statement of a step: that of the clause ``known`` of its line, or of its sentence if edited."""
+    """Return the statement of a step.
+
+    This is the statement of ``known``, the clause of the step's line. If the sentence was edited, the sentence is
+    parsed.
+    """
     if known is None:
         return read_step(role, text)
     return statement_of(known) if known.sentence == text else _with_iris(read_step(role, text), known)
 
 
 def judged_clause(clause: Clause, known: ClauseSpec | None, spec: ScenarioSpec) -> Clause:
-    """Return a clause with the policies of the scenario's execution and the events of its iterations."""
+    """Return a clause with the policies of the scenario's execution and the events of the clause's iterations."""
     found = with_policies(clause, spec)
     return found if known is None else _in_iterations(found, known)
 
 
 def clause_of(known: ClauseSpec, spec: ScenarioSpec) -> Clause:
-    """Return a Given or Then clause of the manifest in judgeable form; raises ``TypeError`` for a When clause."""
+    """Return a Given or Then clause of the manifest in the form needed to judge it.
+
+    Raises ``TypeError`` for a When clause.
+    """
     statement = statement_of(known)
     if statement is None or isinstance(statement, BehaviourCall | EventOccurrence):
         raise TypeError(f"{known.sentence} is a When clause")
@@ -49,12 +59,12 @@ def behaviour_calls(spec: ScenarioSpec) -> list[BehaviourCall]:
 
 
 def iteration_of(known: ClauseSpec | None) -> int:
-    """Return the iteration in which a When clause expects its event, 0 for any."""
+    """Return the iteration in which a When clause expects its event; 0 for any iteration."""
     return known.iterations[0] if known is not None and known.iterations else 0
 
 
 def _with_iris(statement: Statement | None, known: ClauseSpec) -> Statement | None:
-    """Add the IRIs of ``known`` to the fluents and texts of a parsed sentence, in order."""
+    """Return the statement of a parsed sentence in which the fluents and texts have the IRIs of ``known``, in order."""
     if statement is None or isinstance(statement, BehaviourCall | EventOccurrence):
         return statement
     return _named(statement, iter(known.parts or (known.iri,)))

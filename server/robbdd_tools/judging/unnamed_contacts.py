@@ -1,4 +1,4 @@
-"""Contacts of an execution that no clause names."""
+"""Find the contacts in an execution that no clause names."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def unnamed_contacts(clauses: Iterable[Clause], trace: Trace, regions: Regions) -> tuple[Contact, ...]:
-    """Return the agents' contacts in a trace, except with targets of *does not collide* in ``clauses``."""
+    """Return the agents' contacts in a trace, except those with targets of *does not collide* in ``clauses``."""
     named: set[tuple[str, str]] = set()
     for fluent in (fluent for clause in clauses for fluent in fluents_of(clause)):
         if fluent.predicate.name != DOES_NOT_COLLIDE.name:

@@ -46,7 +46,7 @@ class Protocol(LanguageServerProtocol):
 
     @property
     def exit_code(self) -> int:
-        """The process's exit code: 0 if the client has requested ``shutdown``, else 1 (specification)."""
+        """The exit code of the process, as specified: 0 if the client has requested ``shutdown``, otherwise 1."""
         return 0 if self._shutdown else 1
 
     def handle_message(self, message: Any) -> None:

@@ -1,1 +1,4 @@
-"""Traces, time windows, verdicts and robustness: numpy and the standard library, no simulator, no behave."""
+"""Traces, time windows, verdicts and robustness.
+
+Only numpy and the standard library are used, no simulator or behave.
+"""

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A contact of an agent (or of ``part``, the object in its grip, if not empty) with something else.
+    """A contact of an agent with something else.
 
-    ``time`` (s) is the first sample after it began, ``peak`` (N) its largest force, ``peak_time`` (s) the first sample
-    after the peak, ``impulse`` (N s) the force integrated over the whole contact.
+    If ``part`` is not empty, the object ``part`` in its grip has the contact. - ``time``: the first sample after the
+    contact began (s).
+    - ``peak``: the largest force (N).
+    - ``peak_time``: the first sample after the largest force (s).
+    - ``impulse``: the force integrated over the whole contact (N s).
     """
 
     agent: str

@@ -28,10 +28,11 @@ DIGIT = 10**-DIGITS
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """The margin of one fluent.
+    """The margin of one fluent over time.
 
-    ``start`` and ``end`` (s) are its window, ``None`` if it has none, for the ``reason`` given. ``margins`` are in the
-    SI unit ``unit`` at ``times`` (s); both are empty without a recording. ``negated``: the clause negates the fluent.
+    - ``start`` and ``end``: the window of the fluent (s); ``None`` if it has none, because of ``reason``.
+    - ``margins``: the margins in the SI unit ``unit`` at ``times`` (s). Both are empty without a recording.
+    - ``negated``: true if the clause negates the fluent.
     """
 
     start: float | None = None
@@ -44,9 +45,9 @@ class Curve:
 
 
 def curve(found: Curve, constraint: TimeConstraint, trace: Trace, margins: Margins) -> Curve:
-    """Return a curve with its window and points.
+    """Return the curve of a fluent, with its window and its points.
 
-    It extends beyond the window only if the margin does not depend on the window's start.
+    The points extend beyond the window only if the margin does not depend on the start of the window.
     """
     whole = margins(Window(0, len(trace.times) - 1)) if len(trace.times) else None
     selected = window(constraint, trace)

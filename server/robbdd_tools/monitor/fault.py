@@ -23,12 +23,14 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """An exception raised by users' code, an invalid return value, or the end of the process in it.
+    """An error in users' code: an exception, an invalid return value, or the end of the process in that code.
 
-    ``exception`` is the type's name, empty without an exception, and ``message`` its text; ``code`` is the called
-    code (``module:attribute`` or a step's sentence); ``frames`` are the calls outside of this package, outermost
-    first. ``origin`` is the IRI of the behaviour, policy, tree or model that names the code, empty for steps.
-    ``digest`` is the SHA-256 of the file that ``place`` is in, empty if it cannot be read.
+    - ``exception``: the name of the exception's type; empty without an exception.
+    - ``message``: the text of the error.
+    - ``code``: the called code, which is ``module:attribute`` or the sentence of a step.
+    - ``frames``: the calls outside of this package, outermost first.
+    - ``origin``: the IRI of the behaviour, policy, tree or model that names the code; empty for steps.
+    - ``digest``: the SHA-256 of the file that contains ``place``; empty if it cannot be read.
     """
 
     exception: str
@@ -40,24 +42,27 @@ class Fault:
 
     @property
     def place(self) -> Frame | None:
-        """The innermost call in the user's own files, or in any file if none is the user's."""
+        """The innermost call in the user's own files; if there is none, the innermost call in any file."""
         own = [frame for frame in self.frames if frame.own]
         return (own or list(self.frames) or [None])[-1]
 
     @property
     def id(self) -> str:
-        """Identifier of an error: equal across scenarios and processes, whatever values its message contains."""
+        """The identifier of the error.
+
+        It is equal in all scenarios and processes, whatever values the message contains.
+        """
         calls = [f"{frame.file}:{frame.line}" for frame in self.frames]
         return hashlib.sha256("\0".join((self.exception, self.code, self.origin, *calls)).encode()).hexdigest()[:12]
 
     @property
     def summary(self) -> str:
-        """Exception and message in one line."""
+        """The exception and the message in one line."""
         return ": ".join(part for part in (self.exception, " ".join(self.message.split())) if part)
 
     @property
     def words(self) -> str:
-        """The failure, its type and its place in one line."""
+        """The message, the type and the place of the error in one line."""
         place = self.place
         where = "" if place is None else f" ({place.file}:{place.line})"
         return f"{self.code} failed: {self.summary}{where}"

@@ -25,7 +25,7 @@ Regions = Mapping[str, Sequence[tuple[str, "Region"]]]
 
 @dataclass(frozen=True)
 class WindowEvidence:
-    """The samples of one window, as ``catalog.api.Evidence``."""
+    """The samples of one window, in the form of ``catalog.api.Evidence``."""
 
     trace: Trace
     window: Window
@@ -37,22 +37,21 @@ class WindowEvidence:
 
     @property
     def times(self) -> FloatArray:
-        """Sample times, s, shape (n,)."""
+        """The times of the samples, s, shape (n,)."""
         return self.trace.times[self._rows]
 
     def position(self, name: str) -> FloatArray:
-        """Positions, m, world frame, shape (n, 3); raises ``KeyError``."""
+        """Return the positions of an element, m, world frame, shape (n, 3). Raises ``KeyError``."""
         return self.trace.positions[self._rows, self.trace.column(name)]
 
     def orientation(self, name: str) -> FloatArray:
-        """Unit quaternions (w, x, y, z), shape (n, 4); raises ``KeyError``."""
+        """Return the orientations of an element as unit quaternions (w, x, y, z), shape (n, 4). Raises ``KeyError``."""
         return self.trace.orientations[self._rows, self.trace.column(name)]
 
     def velocity(self, name: str) -> FloatArray:
-        """Mean velocity since the previous sample (at the first sample: until the next), m/s, (n, 3); raises
-        ``KeyError``.
+        """Return the mean velocity of an element since the previous sample, m/s, shape (n, 3). Raises ``KeyError``.
 
-        NaN in a trace of one sample.
+        At the first sample, it is the mean velocity until the next sample. In a trace of one sample, it is NaN.
         """
         path, times = self.trace.positions[:, self.trace.column(name)], self.trace.times
         if len(times) < 2:
@@ -61,22 +60,28 @@ class WindowEvidence:
         return np.concatenate([steps[:1], steps])[self._rows]
 
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Positions at the last samples at or before each of ``times``, m, shape (n, 3); raises ``KeyError``."""
+        """Return the positions at the last sample at or before each of ``times``, m, shape (n, 3).
+
+        Raises ``KeyError``.
+        """
         return self.trace.positions[self._rows_at(times), self.trace.column(name)]
 
     def orientation_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Orientations at the last samples at or before each of ``times``, shape (n, 4); raises ``KeyError``."""
+        """Return the orientations at the last sample at or before each of ``times``, shape (n, 4).
+
+        Raises ``KeyError``.
+        """
         return self.trace.orientations[self._rows_at(times), self.trace.column(name)]
 
     def _rows_at(self, times: FloatArray) -> NDArray[np.intp]:
         return np.maximum(np.searchsorted(self.trace.times, times + TOLERANCE, side="right") - 1, 0)
 
     def outline(self, name: str) -> Outline:
-        """Extent of an object around its position; raises ``KeyError``."""
+        """Return the extent of an object around its position. Raises ``KeyError``."""
         return self.trace.outlines[name]
 
     def force(self, agent: str, name: str) -> FloatArray:
-        """Largest force since the previous sample, N, shape (n,); raises ``KeyError``."""
+        """Return the largest contact force since the previous sample, N, shape (n,). Raises ``KeyError``."""
         trace, pair = self.trace, (agent, name)
         if pair in trace.forces:
             return trace.forces[pair][self._rows]
@@ -85,32 +90,32 @@ class WindowEvidence:
         raise KeyError(f"contact forces of {agent} on {name}")
 
     def is_immovable(self, name: str) -> bool:
-        """Whether a hit does not push an element: a fixed object, or an agent."""
+        """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""
         return name in self.trace.immovable
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
-        """Regions of a workspace; raises ``KeyError`` if it has none in the scene."""
+        """Return the regions of a workspace. Raises ``KeyError`` if the workspace has none in the scene."""
         return self.regions_of[workspace]
 
     def contents(self, workspace: str) -> Sequence[str]:
-        """Names of the workspaces composed into this one, at any depth."""
+        """Return the names of the workspaces inside a workspace, at any depth."""
         return self.trace.contents.get(workspace, ())
 
     @property
     def workspaces(self) -> Sequence[str]:
-        """Names of the workspaces that have regions."""
+        """Return the names of the workspaces that have regions."""
         return tuple(self.regions_of)
 
     def gripped(self, agent: str, name: str) -> FloatArray:
-        """1.0 where ``agent`` grips ``name``, shape (n,); raises ``KeyError``."""
+        """Return 1.0 at each sample where ``agent`` grips ``name``, else 0.0, shape (n,). Raises ``KeyError``."""
         return self.trace.grips[agent][self._rows, self.trace.column(name)]
 
     def reach(self, agent: str, name: str) -> FloatArray:
-        """Reach margins, rad, shape (n,), NaN where none was sampled; raises ``KeyError``."""
+        """Return the reach margins, rad, shape (n,), with NaN where none was sampled. Raises ``KeyError``."""
         return self._of_pair(self.trace.reaches, agent, name)[self._rows]
 
     def setting(self, target: str, name: str) -> str:
-        """Return a configuration value as read back from the world; raises ``KeyError``."""
+        """Return the value of a configuration as it was read from the simulated world. Raises ``KeyError``."""
         return self._of_pair(self.trace.settings, target, name)
 
     @staticmethod
@@ -148,8 +153,9 @@ def judge(
 def margin_range(predicate: Predicate, arguments: Arguments, trace: Trace, regions: Regions) -> Range | None:
     """Return the range of a predicate's margin over all samples of a trace.
 
-    ``None`` without evaluator or record, with fewer than two samples, for quantities measured only within windows, and
-    for conditions that are set up instead of observed: the trace then cannot show that the margin could vary.
+    Returns ``None`` if the trace cannot show that the margin could vary. This is so without an evaluator or a record,
+    with fewer than two samples, for quantities that are measured only within windows, and for conditions that are set
+    up instead of observed.
     """
     if predicate.evaluate is None or predicate.quantities or predicate.set_up or len(trace.times) < 2:
         return None

@@ -1,4 +1,7 @@
-"""The iteration number of last occurrences; separate from traces, so that an editor need not load numpy."""
+"""The iteration number that denotes the last occurrence of an event.
+
+It is separate from traces, so that an editor need not load numpy.
+"""
 
 LAST = -1
 """The last iteration: a behaviour tree may execute a node again, so that its number is not known."""

@@ -1,7 +1,7 @@
-"""Policies, their observations and the sources of these, as plain data: how a clause is observed.
+"""Observation policies as plain data: the observations that a clause is judged by, and their sources.
 
-Names are IRIs in the graph's data and CURIEs in a run. Python code is named ``module:attribute``; nothing here imports
-it.
+Names are IRIs in the data of the graph and CURIEs in a run. Python code is named ``module:attribute``, and this module
+never imports it.
 """
 
 from __future__ import annotations
@@ -13,9 +13,12 @@ from dataclasses import dataclass
 class Provider:
     """A source of observations.
 
-    ``kind`` is ``ground-truth``, ``entity-state``, ``transforms`` or ``topic``; ``rate`` in Hz. ``noise`` (m) is the
-    standard deviation of a position by axis and ``latency`` (s) the age of an observation; both apply to ground truth.
-    ``source`` is the topic or the reference frame, ``type`` the topic's message type.
+    - ``kind``: ``ground-truth``, ``entity-state``, ``transforms`` or ``topic``.
+    - ``rate``: the rate of observations in Hz.
+    - ``noise``: the standard deviation of a position on each axis in m, for ground truth.
+    - ``latency``: the age of an observation in s, for ground truth.
+    - ``source``: the topic or the reference frame.
+    - ``type``: the message type of the topic.
     """
 
     iri: str
@@ -29,9 +32,9 @@ class Provider:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """The observed part of a scene: variables and elements, in written order.
+    """The observed part of a scene: its variables and elements, in written order.
 
-    ``mapped`` maps names in a message to elements; ``entity_mapper`` and ``time_extractor`` are code.
+    ``mapped`` maps names in a message to elements. ``entity_mapper`` and ``time_extractor`` are names of Python code.
     """
 
     iri: str
@@ -44,11 +47,13 @@ class Observation:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """How observations are turned into a verdict.
+    """The rule that turns observations into a verdict.
 
-    ``kind`` is ``distance`` (``form`` is ``less-than``, ``greater-than``, ``between`` or ``equals``; ``bounds`` in m:
-    one bound, two, or value and tolerance; ``max_time_offset`` in s between two observations), ``python`` (``name`` is
-    the code) or ``topic`` (``name`` is the topic of verdicts).
+    - ``kind``: ``distance``, ``python`` or ``topic``.
+    - ``name``: the Python code, or the topic of verdicts.
+    - ``form``: how a distance is compared: ``less-than``, ``greater-than``, ``between`` or ``equals``.
+    - ``bounds``: the bounds of the distance in m: one bound, two bounds, or a value and a tolerance.
+    - ``max_time_offset``: the largest permitted time between two observations in s.
     """
 
     kind: str
@@ -60,9 +65,9 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """The rule that judges a clause, and its observations; ``horizon`` in s, ``None`` if not given.
+    """The rule that judges a clause, and its observations. ``horizon`` is in s; ``None`` if not given.
 
-    ``origin`` is the policy's source position, ``file:line:column``; empty for a graph without source text.
+    ``origin`` is the source position of the policy, ``file:line:column``; empty for a graph without source text.
     """
 
     iri: str

@@ -63,9 +63,10 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class NoWindow:
-    """The constraint has no window: ``reason`` says why; ``open``: a longer trace may still close it.
+    """A constraint has no window; ``reason`` says why.
 
-    ``empty``: the window is closed and contains no sample.
+    ``open`` is true if a longer trace may still have the window. ``empty`` is true if the window is closed but contains
+    no sample.
     """
 
     reason: str
@@ -74,13 +75,13 @@ class NoWindow:
 
 
 def window(constraint: TimeConstraint, trace: Trace) -> Window | NoWindow:
-    """Select the samples of a constraint.
+    """Return the samples of a trace that a time constraint selects. ``docs/semantics.md`` defines them.
 
-    docs/semantics.md is its definition.
+    Let ``t_e`` be the time of the selected occurrence of an event, and ``h`` the horizon.
 
-    With ``t_e`` the time of the selected occurrence of an event and ``h`` the horizon: ``before``: the last sample in
-    ``[0, t_e]``, or all in ``[t_e - h, t_e]``; ``after``: the first sample in ``[t_e, ∞)``, or all in
-    ``[t_e, t_e + h]``; ``from a until b``: all in ``[t_a, t_b]``.
+    - ``before`` selects the last sample in ``[0, t_e]`` or, with a horizon, all samples in ``[t_e - h, t_e]``.
+    - ``after`` selects the first sample in ``[t_e, ∞)`` or, with a horizon, all samples in ``[t_e, t_e + h]``.
+    - ``from a until b`` selects all samples in ``[t_a, t_b]``.
     """
     for event, iteration in occurrences(constraint):
         if iteration == LAST and event in trace.pending:
@@ -107,10 +108,11 @@ def occurrences(constraint: TimeConstraint) -> tuple[tuple[str, int], ...]:
 
 
 def in_iterations(constraint: TimeConstraint, role: str, iterations: tuple[int, ...]) -> TimeConstraint:
-    """Return a constraint with the occurrences that a clause refers to (docs/semantics.md, "Occurrences").
+    """Return a time constraint with the occurrences of events to which a clause refers.
 
-    ``iterations`` are the first and the last iteration of the clause's scope, empty without a loop. An interval spans
-    the scope; otherwise a Given or When clause (``role``) refers to its first iteration, a Then clause to its last.
+    ``iterations`` are the first and the last iteration of the clause's scope; empty if the clause is not in a loop. An
+    interval extends over the whole scope. Any other constraint of a Given or When clause (``role``) refers to the first
+    iteration, and that of a Then clause to the last one (see "Occurrences" in ``docs/semantics.md``).
     """
     if not iterations:
         return constraint
@@ -170,7 +172,7 @@ def _missing(trace: Trace, event: str, iteration: int) -> NoWindow:
 
 
 def never_occurred(trace: Trace, event: str, iteration: int = 0) -> str:
-    """Return why a clause is unknown if an event that it needs is missing."""
+    """Return the reason why a clause is unknown because an event that it needs has not occurred."""
     executions = trace.executions.get(event, 0)
     where = f" in iteration {iteration}" if iteration > 0 else ""
     if iteration == LAST and executions > 1:

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class EventStamp:
-    """An event's name (CURIE) and the simulated time (s) at which it occurred.
+    """The name of an event (CURIE) and the simulated time (s) at which it occurred.
 
-    ``iteration`` counts the behaviours that the scenario executes, from 1; 0 for an event outside of them. In a
-    behaviour tree it counts the executions of the event's emitter.
+    ``iteration`` is the number (from 1) of the scenario's behaviour during which the event occurred; 0 for an event
+    outside of them. In a behaviour tree, it is the number of the execution of the event's emitter.
     """
 
     name: str
@@ -42,19 +42,25 @@ class Sample:
 class Trace:
     """A finite sequence of samples and events.
 
-    ``names`` are the recorded bodies (objects by name, an agent's tool by the agent's name); ``times`` (n,) s,
-    increasing; ``positions`` (n, len(names), 3) m in the world frame; ``orientations`` (n, len(names), 4) unit
-    quaternions (w, x, y, z); ``grips`` maps an agent to an (n, len(names)) array with 1 where its gripping faces hold
-    that body. ``finished``: nothing will be appended; ``remark`` is the execution's final message about a failure
-    ("gripper lost env:cube1 at 3.42 s"). ``reaches`` maps agent and object to reach margins (n,) rad, NaN where none
-    was sampled; ``settings`` maps an element and the name of a configuration to its value. ``forces`` maps an agent and
-    a touched element to the largest contact force (N) in any physics step since the previous sample (n,), ``impulses``
-    to the impulse (N s) since then; for the agents in ``watched`` all touched elements are included. ``contacts`` lists
-    those contacts. ``immovable`` are the elements that a hit does not push: fixed objects, and agents. ``outlines`` is
-    the extent of objects around their position. ``unreached`` is the reason if the scenario, a part of a behaviour
-    tree, never began: it is then not judged. ``contents`` maps a workspace to those composed into it, at any depth.
-    ``executions`` maps events of a behaviour tree to the number of executions of their emitter, ``pending`` are those
-    that could occur again if the execution went on.
+    - ``names``: the recorded bodies. The body of an object has its name, and the tool of an agent has the agent's name.
+    - ``times``: (n,) s, increasing.
+    - ``positions``: (n, len(names), 3) m in the world frame.
+    - ``orientations``: (n, len(names), 4) unit quaternions (w, x, y, z).
+    - ``grips``: maps an agent to an (n, len(names)) array with 1 where its gripping faces hold the body.
+    - ``finished``: true if nothing will be appended.
+    - ``remark``: the final message of the execution about a failure ("gripper lost env:cube1 at 3.42 s").
+    - ``reaches``: maps an agent and an object to reach margins (n,) rad, with NaN where none was sampled.
+    - ``settings``: maps an element and the name of a configuration to its value.
+    - ``forces``: maps an agent and a touched element to the largest contact force (N) in any physics step since the
+      previous sample (n,). For the agents in ``watched``, all touched elements are included.
+    - ``impulses``: like ``forces``, for the impulse (N s) since the previous sample.
+    - ``contacts``: the list of these contacts.
+    - ``immovable``: the elements that do not move when they are hit: fixed objects, and agents.
+    - ``outlines``: the extent of each object around its position.
+    - ``unreached``: the reason if the scenario is a part of a behaviour tree that never began; then it is not judged.
+    - ``contents``: maps a workspace to the workspaces inside it, at any depth.
+    - ``executions``: maps events of a behaviour tree to the number of executions of their emitter.
+    - ``pending``: the events that could occur again if the execution continued.
     """
 
     names: tuple[str, ...]
@@ -80,7 +86,7 @@ class Trace:
 
     @property
     def end(self) -> float:
-        """Time of the last sample, s; 0 if there is none."""
+        """The time of the last sample, s; 0 if there is none."""
         return float(self.times[-1]) if len(self.times) else 0.0
 
     @cached_property
@@ -88,13 +94,13 @@ class Trace:
         return {name: index for index, name in enumerate(self.names)}
 
     def column(self, name: str) -> int:
-        """Return the index of a body in ``names``; raises ``KeyError`` if the trace lacks it."""
+        """Return the index of a body in ``names``. Raises ``KeyError`` if the trace does not contain it."""
         return self._index[name]
 
     def event_time(self, name: str, iteration: int = 0) -> float | None:
-        """Return when an event first occurred, or ``None``.
+        """Return the time of the first occurrence of an event, or ``None``.
 
-        With an ``iteration``, which may be ``LAST``, only occurrences of that iteration and outside of all iterations
+        With an ``iteration``, which may be ``LAST``, only occurrences in that iteration and outside of all iterations
         count.
         """
         iteration = self.executions.get(name, 0) if iteration == LAST else iteration
@@ -111,7 +117,7 @@ class Trace:
         return int(np.searchsorted(self.times, time, side="right")) - 1
 
     def sample(self, index: int) -> Sample:
-        """Return one world state."""
+        """Return the state of the world at the sample with this index."""
         positions: list[list[float]] = self.positions[index].tolist()
         orientations: list[list[float]] = self.orientations[index].tolist()
         return Sample(

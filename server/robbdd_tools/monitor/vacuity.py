@@ -1,4 +1,7 @@
-"""Range of a predicate's margin: a constant margin could not have failed (docs/semantics.md)."""
+"""The range of a predicate's margin.
+
+If the margin is constant, the clause could not have failed (docs/semantics.md).
+"""
 
 from __future__ import annotations
 

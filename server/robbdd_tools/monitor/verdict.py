@@ -22,7 +22,7 @@ class Outcome(StrEnum):
 
 
 class Cause(StrEnum):
-    """Why a clause is unknown; the verdict's reason says it in words."""
+    """The type of the reason why a clause is unknown. The verdict's ``reason`` says it in words."""
 
     CANCELLED = "cancelled"
     """The run was cancelled before the clause was judged."""
@@ -66,12 +66,15 @@ class Cause(StrEnum):
 class Verdict:
     """The judgement of one clause on one trace.
 
-    ``robustness`` is the signed margin in ``unit`` (positive: holds), ``None`` when unknown. ``at`` (s) is the instant
-    of violation (the first sample with a negative margin), or of the smallest margin when it holds, ``None`` when
-    unknown; ``worst_at`` (s) is always that of the smallest margin. ``reason`` says in words why it is violated or
-    unknown, ``cause`` is the type of an unknown verdict's reason; ``vacuous`` says why it could not have been violated,
-    empty if it could. ``fault`` is the error in users' code that prevented the evidence. ``operand`` is the number
-    (from 0, in the order of the sentence) of the fluent that decides the clause.
+    - ``robustness``: the signed margin in ``unit``; positive if the clause holds; ``None`` if unknown.
+    - ``at``: the instant (s) of the violation, which is the first sample with a negative margin. If the clause holds,
+      it is the instant of the smallest margin; if it is unknown, ``None``.
+    - ``worst_at``: the instant (s) of the smallest margin, also for a violation.
+    - ``reason``: why the clause is violated or unknown, in words.
+    - ``cause``: the type of the reason of an unknown verdict.
+    - ``vacuous``: why the clause could not have been violated; empty if it could.
+    - ``fault``: the error in users' code that prevented the evidence.
+    - ``operand``: the number (from 0, in the order of the sentence) of the fluent that decides the clause.
     """
 
     outcome: Outcome
@@ -92,7 +95,10 @@ def unknown(reason: str, cause: Cause, vacuous: str = "", fault: Fault | None = 
 
 
 def negation(verdict: Verdict) -> Verdict:
-    """Strong Kleene negation; the margin changes its sign, the instant is that of the smallest margin."""
+    """Return the strong Kleene negation of a verdict.
+
+    The margin changes its sign, and the instant is that of the smallest margin.
+    """
     if verdict.robustness is None:
         return verdict
     outcome = Outcome.VIOLATED if verdict.outcome is Outcome.HOLDS else Outcome.HOLDS
@@ -100,12 +106,18 @@ def negation(verdict: Verdict) -> Verdict:
 
 
 def conjunction(verdicts: Iterable[Verdict]) -> Verdict:
-    """Strong Kleene *and*: violated wins over unknown, unknown over holds; the margin is the smallest."""
+    """Return the strong Kleene *and* of verdicts, with the smallest margin.
+
+    Violated takes precedence over unknown, and unknown over holds.
+    """
     return _combine(list(verdicts), decisive=Outcome.VIOLATED, sign=1.0)
 
 
 def disjunction(verdicts: Iterable[Verdict]) -> Verdict:
-    """Strong Kleene *or*: holds wins over unknown, unknown over violated; the margin is the largest."""
+    """Return the strong Kleene *or* of verdicts, with the largest margin.
+
+    Holds takes precedence over unknown, and unknown over violated.
+    """
     return _combine(list(verdicts), decisive=Outcome.HOLDS, sign=-1.0)
 
 

@@ -1,1 +1,1 @@
-"""Symbols, scopes, imports and references across files; Project (mutable) and Snapshot (immutable)."""
+"""Symbols, scopes, imports and references across files. A ``Project`` is mutable, a ``Snapshot`` is immutable."""

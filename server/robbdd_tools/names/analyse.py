@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
 
 class Definitions(Mapping[str, Definition]):
-    """The declarations of a file itself, by qualified name (the first one of each); made on access."""
+    """The declarations of a file itself, by qualified name; only the first declaration of each name.
+
+    They are made when they are accessed.
+    """
 
     def __init__(self, scope: Scope) -> None:
         self._scope = scope
@@ -34,7 +37,7 @@ class Definitions(Mapping[str, Definition]):
         return path in self._names
 
     def __iter__(self) -> Iterator[str]:
-        """Yield the names in text order, whatever edits were made."""
+        """Yield the names in text order, whatever edits preceded."""
         return iter(sorted(self._names, key=lambda path: self._names[path][0].place))
 
     def __len__(self) -> int:
@@ -43,7 +46,7 @@ class Definitions(Mapping[str, Definition]):
 
 @dataclass(frozen=True, slots=True)
 class Resolved:
-    """A file's analysis, with data that its successor may reuse."""
+    """The analysis of a file, with data that the analysis of its next revision may reuse."""
 
     scope: Scope
     resolutions: tuple[Resolution, ...]
@@ -53,7 +56,11 @@ class Resolved:
 def analyse(
     scope: Scope, imports: tuple[ImportLink, ...], broken: list[Diagnostic], before: Resolved | None
 ) -> Resolved:
-    """Analyse a scope's own file; ``broken`` are the findings on its import lines."""
+    """Analyse the file to which a scope belongs.
+
+    ``imports`` are its imports, and ``broken`` are the diagnostics on its import lines. ``before`` is the analysis of
+    its previous revision.
+    """
     index = scope.own
     known = () if before is None else before.resolutions
     resolutions = resolve_file(scope, before and before.scope, known)

@@ -1,4 +1,4 @@
-"""Analysis of one file in one revision: declarations in place, targets of references, diagnostics."""
+"""The analysis of one file in one revision: its declarations, the targets of its references, and its diagnostics."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PlacedDeclaration:
-    """A declaration at its offset in a document, with the definitions of its references.
+    """A declaration at its offset in a document.
 
-    ``targets`` lacks references that resolve to nothing.
+    ``targets`` maps its references to their definitions, without the references that cannot be resolved.
     """
 
     declaration: Declaration
@@ -30,12 +30,12 @@ class PlacedDeclaration:
 
     @property
     def span(self) -> Span:
-        """The chunk's absolute span."""
+        """The absolute span of the declaration's text."""
         return Span(self.offset, self.offset + len(self.declaration.text))
 
     @property
     def parts(self) -> tuple[PlacedDeclaration, ...]:
-        """Its parts at their places in the document; the declaration itself if it has no parts."""
+        """The parts of the declaration at their places in the document; the declaration itself if it has no parts."""
         inner = self.declaration.parts
         if not inner:
             return (self,)
@@ -47,7 +47,7 @@ class PlacedDeclaration:
 
 @dataclass(frozen=True, slots=True)
 class ImportLink:
-    """An import: the span of its path, the imported file, and why it cannot be used, if so."""
+    """An import: the span of its path, the imported file and, if it cannot be used, the reason."""
 
     span: Span
     uri: str
@@ -65,7 +65,7 @@ class FileAnalysis:
     diagnostics: tuple[Diagnostic, ...]
 
     def parts(self, within: Span | None = None) -> Iterator[PlacedDeclaration]:
-        """Yield the declarations, or their parts, that touch a span of the document (``None``: all)."""
+        """Yield the declarations, or their parts, that touch a span of the document. ``None`` is the whole document."""
         for placed in self.declarations:
             if within is None or (placed.offset <= within.end and within.start <= placed.span.end):
                 for part in placed.parts:

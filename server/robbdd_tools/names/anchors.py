@@ -1,4 +1,4 @@
-"""Diagnostics with positions relative to declarations, so that they stay valid when the declarations move."""
+"""Diagnostics whose positions are relative to declarations, so that they stay valid when the declarations move."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Anchor:
-    """The declaration that a span is relative to; ``None`` in a file without declarations."""
+    """The declaration to which a span is relative. It is ``None`` in a file without declarations."""
 
     uri: str
     declaration: Declaration | None
@@ -27,7 +27,7 @@ class Anchor:
 
 @dataclass(frozen=True, slots=True)
 class Anchored:
-    """A diagnostic with spans relative to its anchors, in the order diagnostic, related places, edits."""
+    """A diagnostic with relative spans. The anchors are in the order diagnostic, related places, edits."""
 
     diagnostic: Diagnostic
     anchors: tuple[Anchor, ...]
@@ -40,7 +40,7 @@ class Anchors:
     snapshot: Snapshot
 
     def loosened(self, diagnostic: Diagnostic, uri: str, own: PlacedDeclaration) -> Anchored:
-        """Return a diagnostic about the declaration ``own`` with relative spans."""
+        """Return a diagnostic about the declaration ``own`` with relative instead of absolute spans."""
         anchors: list[Anchor] = []
 
         def loosen(file: str, span: Span) -> Span:

@@ -19,7 +19,7 @@ MAX_NESTED = 100
 
 @dataclass(frozen=True, slots=True)
 class PlacedClause:
-    """A clause, a group of clauses or a quantifier: its whole span (absolute), and its name or kind."""
+    """A clause, a group of clauses or a quantifier: its whole absolute span, and its name or, without one, its kind."""
 
     iri: str
     name: str
@@ -27,7 +27,10 @@ class PlacedClause:
 
 
 def clauses_in(snapshot: Snapshot, uri: str) -> Iterator[PlacedClause]:
-    """Yield the clauses of the templates and variants of a file, nested clauses after their parents."""
+    """Yield the clauses of the templates and variants of a file.
+
+    Nested clauses are after the clauses that contain them.
+    """
     file = snapshot.file(uri)
     for placed in file.declarations if file is not None else ():
         template = placed.declaration.tree
@@ -46,7 +49,7 @@ def clauses_in(snapshot: Snapshot, uri: str) -> Iterator[PlacedClause]:
 
 @dataclass(frozen=True, slots=True)
 class _Walk:
-    """Walks the clauses of one owner; the paths are those of ``graph.write.clauses``."""
+    """Finds the clauses of one owner. Paths of clauses are the same as in ``graph.write.clauses``."""
 
     namespace: str
     owner: str

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """A declared name: ``span`` and ``extent`` are absolute in the document ``uri``.
+    """A declared name. ``span`` and ``extent`` are absolute in the document ``uri``.
 
     ``iri`` is ``None`` while the namespace of the declaration is unknown.
     """
@@ -25,5 +25,5 @@ class Definition:
 
     @property
     def kind(self) -> SymbolKind:
-        """Kind of the name."""
+        """The kind of the declared name."""
         return self.symbol.kind

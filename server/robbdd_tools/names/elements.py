@@ -1,4 +1,4 @@
-"""The contents of sets and scenes, read from their trees without building a graph."""
+"""The contents of sets and scenes. They are read from syntax trees, without building a graph."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """One member of a set: ``kind`` is ``object``, ``workspace``, ``agent``, ``number`` or ``string``.
+    """One member of a set. ``kind`` is ``object``, ``workspace``, ``agent``, ``number`` or ``string``.
 
-    ``key`` identifies equal members: document and qualified name of an element, the value of a literal.
+    Equal members have the same ``key``: the document and the qualified name of an element, or the value of a literal.
     """
 
     kind: str
@@ -31,7 +31,7 @@ class Element:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Site:
-    """A declaration in its file; compared by identity."""
+    """A declaration in its file. Sites are compared by identity."""
 
     snapshot: Snapshot
     file: FileAnalysis
@@ -39,20 +39,20 @@ class Site:
 
     @property
     def uri(self) -> str:
-        """The declaration's document."""
+        """The URI of the declaration's document."""
         return self.file.document.uri
 
     @property
     def tree(self) -> tree.ChunkTree | None:
-        """Its tree, ``None`` if it is broken."""
+        """The syntax tree of the declaration; ``None`` if it is broken."""
         return self.placed.declaration.tree
 
     def span(self, node: tree.Node) -> Span:
-        """Return the absolute span of a node of its tree."""
+        """Return the absolute span of a node in the syntax tree."""
         return node.span.shifted(self.placed.offset)
 
     def target(self, ref: tree.Ref) -> Definition | None:
-        """Return the definition of one of its references."""
+        """Return the definition of one of the declaration's references."""
         return self.placed.targets.get(ref)
 
     def whole(self, node: tree.Node) -> bool:
@@ -60,7 +60,7 @@ class Site:
         return not any(node.span.start <= fault.span.start <= node.span.end for fault in self.placed.declaration.faults)
 
     def follow(self, ref: tree.Ref) -> Site | None:
-        """Return the declaration that contains the target of a reference."""
+        """Return the declaration that contains the target of one of the declaration's references."""
         definition = self.target(ref)
         return None if definition is None else site_of(self.snapshot, definition)
 
@@ -75,14 +75,14 @@ def site_of(snapshot: Snapshot, definition: Definition) -> Site | None:
 
 
 def story_sites(snapshot: Snapshot, file: FileAnalysis, within: Span | None = None) -> Iterator[Site]:
-    """Yield the stories of a file, or of a part of it; a story with parts is yielded scenario by scenario."""
+    """Yield the stories of a file, or of a part of it. A story that has parts is yielded scenario by scenario."""
     for part in file.parts(within):
         if isinstance(part.declaration.tree, tree.Story | tree.Variant):
             yield Site(snapshot, file, part)
 
 
 def element_of(site: Site, value: tree.Value) -> Element | None:
-    """Return the element or literal of a value in a declaration; ``None`` for an unknown name."""
+    """Return the element or the literal that a value in a declaration denotes; ``None`` for an unknown name."""
     match value:
         case tree.Number():
             return Element("number", str(value.value), ("", str(value.value)))
@@ -96,7 +96,10 @@ def element_of(site: Site, value: tree.Value) -> Element | None:
 
 
 def elements_of(site: Site | None) -> tuple[Element, ...] | None:
-    """Return the members of a set in written order; ``None`` if it is not a set or not completely known."""
+    """Return the members of a set in written order.
+
+    Returns ``None`` if the declaration is not a set, or if its members are not completely known.
+    """
     declared = None if site is None else site.tree
     if site is None or declared is None or not site.whole(declared):
         return None
@@ -121,9 +124,9 @@ def _members(uri: str, kind: str, owner: str, names: list[str]) -> tuple[Element
 
 
 def scene_members(site: Site | None) -> frozenset[Element] | None:
-    """Return the members of a scene; ``None`` if it is not a scene or not completely known.
+    """Return the members of a scene, or ``None`` if it is not a scene or its members are not completely known.
 
-    A composition contributes its workspace and its entries; a nested one, only its workspace.
+    A composition adds its workspace and its entries. A nested composition adds only its workspace.
     """
     scene = None if site is None else site.tree
     if site is None or not isinstance(scene, tree.Scene) or not site.whole(scene):

@@ -1,4 +1,4 @@
-"""Resolve import paths, and define which kinds of file may import which."""
+"""Resolve the paths of imports, and define which kinds of file may import which other kinds."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ _ADDRESSES = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*://|file:|//|\\\\")
 
 
 def import_uri(importer: str, path: str) -> str:
-    """Return the URI of an import's path: relative to its file, or ``package:path`` inside a package.
+    """Return the URI of an import's path, which is relative to the importing file or has the form ``package:path``.
 
-    A file of a package that is not installed has a URI that ``missing_package`` recognises; a network path, a URL or a
-    path with backslashes has one that ``not_a_path`` recognises: nothing is read from there.
+    If the package is not installed, the URI is one that ``missing_package`` recognises. For a network path, a URL or a
+    path with backslashes, the URI is one that ``not_a_path`` recognises, and nothing is read from there.
     """
     if _ADDRESSES.match(path) or BACKSLASH in path:
         return f"{_ADDRESS}{quote(path)}"
@@ -51,7 +51,7 @@ def import_uri(importer: str, path: str) -> str:
 
 @lru_cache(maxsize=10_000)
 def import_path(importer: str, imported: str) -> str | None:
-    """Return the path that imports a file, relative to its importer; ``None`` if there is none."""
+    """Return the path by which one file imports another, relative to the importing file; ``None`` if there is none."""
     here, there = urlsplit(importer), urlsplit(imported)
     if (here.scheme, here.netloc) != (there.scheme, there.netloc) or not there.path.startswith("/"):
         return None
@@ -59,7 +59,7 @@ def import_path(importer: str, imported: str) -> str | None:
 
 
 def missing_package(uri: str) -> str | None:
-    """Return the message for an import of a package that is not installed; ``None`` for any other import."""
+    """Return an error message if the imported package is not installed; ``None`` for any other import."""
     if not uri.startswith(_PACKAGE):
         return None
     package, _, inside = uri.removeprefix(_PACKAGE).partition("/")
@@ -70,7 +70,7 @@ def missing_package(uri: str) -> str | None:
 
 
 def not_a_path(uri: str) -> str | None:
-    """Return the message for an import that is not a path valid on every system; ``None`` if it is."""
+    """Return an error message if an import is not a path that is valid on every system; ``None`` if it is."""
     if not uri.startswith(_ADDRESS):
         return None
     written = unquote(uri.removeprefix(_ADDRESS))
@@ -80,8 +80,10 @@ def not_a_path(uri: str) -> str | None:
 
 
 def not_importable(importer: str, imported: str) -> str | None:
-    """Return the message for a file kind that must not import ``imported`` (``""``: not a model file); ``None`` if it
-    may."""
+    """Return an error message if the kind of a file must not import ``imported``; ``None`` if it may.
+
+    ``importer`` and ``imported`` are languages; ``imported`` is ``""`` if the file is not a model file.
+    """
     kinds = IMPORTABLE.get(importer, ())
     if imported in kinds:
         return None
@@ -107,7 +109,7 @@ def reached_from(edges: Mapping[str, Iterable[str]], starts: Iterable[str]) -> f
 
 
 def components(edges: Mapping[str, Sequence[str]]) -> dict[str, int]:
-    """Number the strongly connected components of a graph (Tarjan's algorithm, without recursion)."""
+    """Number the strongly connected components of a graph by Tarjan's algorithm without recursion."""
     order: dict[str, int] = {}
     low: dict[str, int] = {}
     found: dict[str, int] = {}

@@ -1,4 +1,4 @@
-"""Index of a single file: its declarations, the names it declares and the files it imports."""
+"""The index of a single file: its declarations, the names that it declares, and the files that it imports."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ImportPath:
-    """The path of an import as written (absolute ``span`` without quotes) and its URI."""
+    """The path of an import as written, with its URI. ``span`` is absolute and excludes the quotes."""
 
     span: Span
     text: str
@@ -40,7 +40,7 @@ class Declared:
 
 @dataclass(frozen=True, eq=False)
 class FileIndex:
-    """The contents of a file without its imports; a function of its document only."""
+    """The contents of a file without its imports. They depend on the document of the file only."""
 
     document: Document
     chunks: tuple[Chunk, ...]
@@ -54,20 +54,20 @@ class FileIndex:
             yield self.at(entry)
 
     def at(self, entry: Entry) -> Declared:
-        """Return the declaration of an entry of the name table."""
+        """Return the declaration to which an entry of the name table belongs."""
         placed = self.declarations[entry.declaration]
         return Declared(placed.declaration.symbols[entry.symbol], placed.offset)
 
 
 @lru_cache(maxsize=20_000)
 def language_of(uri: str) -> str:
-    """Return the language of a file by its extension; ``""`` for other files."""
+    """Return the language of a file according to its extension; ``""`` for other files."""
     ending = PurePosixPath(uri).suffix.removeprefix(".").lower()
     return ending if ending in LANGUAGES else ""
 
 
 def index_file(document: Document, previous: FileIndex | None = None) -> FileIndex:
-    """Split and parse a document; parts unchanged since the ``previous`` revision are reused."""
+    """Split and parse a document. Parts that have not changed since the ``previous`` revision are reused."""
     language = language_of(document.uri)
     if not language:
         chunks: tuple[Chunk, ...] = ()
@@ -85,7 +85,7 @@ def index_file(document: Document, previous: FileIndex | None = None) -> FileInd
 
 
 def imports_of(document: Document) -> tuple[ImportPath, ...]:
-    """Return the imports of a file without parsing anything else in it."""
+    """Return the imports of a file. Nothing else in the file is parsed."""
     language = language_of(document.uri)
     chunks = (
         chunk for chunk in (split(language, document.text) if language else ()) if chunk.text.startswith("import")

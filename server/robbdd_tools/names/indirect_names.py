@@ -1,9 +1,11 @@
-"""Names that resolve through another name: parts of trees, clauses of a variant, elements of a scene.
+"""Resolve names through another name: parts of trees, clauses of a variant, and elements of a scene.
 
-``ktree inst … arm of <gen3>`` makes every part of the template a part of the instance (``arm.base.origin``); ``tree
-<arm>`` inside a tree makes it ``cell.arm.base.origin``; a clause of a variant may be named without its user story; and
-an element of a scene by the scene (``lab_scene.cube``). All of these are declared under another path, which this module
-finds.
+- ``ktree inst … arm of <gen3>`` makes every part of the template a part of the instance (``arm.base.origin``).
+- ``tree <arm>`` inside a tree makes that part ``cell.arm.base.origin``.
+- A clause of a variant may be named without its user story.
+- An element of a scene may be named by the scene (``lab_scene.cube``).
+
+All these names are declared under another path, which this module finds.
 """
 
 from __future__ import annotations
@@ -45,7 +47,7 @@ def paths_through(standing_for: Callable[[str], Iterable[str]], paths: Iterable[
 def instance_parts(
     files: Sequence[FileIndex], kinds: Iterable[SymbolKind]
 ) -> Iterator[tuple[str, FileIndex, Declared]]:
-    """Yield each part of each tree instance under its written name, with its declaration in the template."""
+    """Yield the name of each part of each tree instance, with the declaration of the part in the template."""
     wanted = _PARTS.intersection(kinds)
     if not wanted:
         return
@@ -107,7 +109,10 @@ def _of_declaration(declaration: Declaration) -> Iterator[tuple[str, str]]:
 
 
 def _composed(composition: tree.Composition) -> Iterator[tuple[str, str]]:
-    """Yield alias and target of the elements of a composition and of the compositions in it, as named in a scene."""
+    """Yield the alias and the target of each element of a composition and of the compositions in it.
+
+    The alias is the name of the element in a scene.
+    """
     held = [entry.reference for entry in composition.entries]
     for ref in (composition.workspace, *held):
         if ref.role == "Composition":

@@ -1,4 +1,7 @@
-"""The definition of each part of a written name: in ``<places.tray_ws>`` the set, then its element."""
+"""Find the definition of each part of a written name.
+
+For example, the parts of ``<places.tray_ws>`` are a set and its element.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ Part = tuple[Span, "Definition"]
 
 
 def parts_of(snapshot: Snapshot, uri: str, placed: PlacedDeclaration, reference: Reference) -> Iterator[Part]:
-    """Yield the parts of a resolved reference, each with its absolute span and definition."""
+    """Yield each part of a resolved reference, with its absolute span and its definition."""
     target = placed.targets[reference.ref]
     written = reference.ref.path.split(".")
     above = _owners(snapshot, target, len(written) - 1)
@@ -42,7 +45,7 @@ def find_path(scope: Scope, paths: tuple[str, ...]) -> Definition | None:
 
 
 def _owners(snapshot: Snapshot, target: Definition, number: int) -> list[Definition | None]:
-    """Return the nearest ``number`` declarations around another one, outermost first."""
+    """Return the ``number`` nearest declarations that contain a target, outermost first."""
     file = snapshot.file(target.uri)
     path = target.symbol.path.split(".")
     ends = range(len(path) - number, len(path))
@@ -50,7 +53,7 @@ def _owners(snapshot: Snapshot, target: Definition, number: int) -> list[Definit
 
 
 def _owners_through(scope: Scope, reference: Reference, target: Definition) -> list[Definition | None]:
-    """Return the definitions of the parts before the last one if one of them resolves through another name."""
+    """Return the definitions of all parts but the last, if one of them resolves through another name."""
     written = reference.ref.path.split(".")
     for full in candidates(reference):
         if target.symbol.path in paths_through(scope.standing_for, (full,)):

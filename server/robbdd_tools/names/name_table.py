@@ -1,4 +1,4 @@
-"""Table of the names that a file declares, by path; kept while the text around the names is edited."""
+"""The table of the names that a file declares, by path. The table stays the same while no name is edited."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A declared name: its kind, the index of its declaration in the file, and its index in the declaration."""
+    """A declared name.
+
+    It has a kind, the index of its declaration in the file, and the index of the name in the declaration.
+    """
 
     kind: SymbolKind
     declaration: int
@@ -21,15 +24,15 @@ class Entry:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Sort key of entries in text order."""
+        """The sort key that puts entries into text order."""
         return (self.declaration, self.symbol)
 
 
 @dataclass(frozen=True, eq=False)
 class NameTable:
-    """The names of one file, each with all its declarations in text order.
+    """The names of one file. Each name has all its declarations in text order.
 
-    Tables are compared by identity: an edit that neither adds, removes nor reorders a name keeps the object.
+    Tables are compared by identity. An edit that neither adds, removes nor reorders a name keeps the object.
     """
 
     entries: Mapping[str, tuple[Entry, ...]]
@@ -37,7 +40,7 @@ class NameTable:
 
     @cached_property
     def of_kind(self) -> Mapping[SymbolKind, Mapping[str, Entry]]:
-        """The names of each kind, each with its first declaration of that kind."""
+        """The names of each kind, each with the first declaration of that kind."""
         found: dict[SymbolKind, dict[str, Entry]] = {}
         for path, entries in self.entries.items():
             for entry in entries:
@@ -46,7 +49,7 @@ class NameTable:
 
     @cached_property
     def repeated(self) -> tuple[str, ...]:
-        """The paths declared more than once."""
+        """The paths that are declared more than once."""
         return tuple(path for path, entries in self.entries.items() if len(entries) > 1)
 
 
@@ -58,7 +61,10 @@ def make_table(declarations: Sequence[Declaration]) -> NameTable:
 
 
 def update_table(old: NameTable, before: Sequence[Declaration], after: Sequence[Declaration]) -> NameTable:
-    """Return the table of ``after``, given that of ``before``; the same object if no name changed."""
+    """Return the table of the declarations ``after``, given the table ``old`` of the declarations ``before``.
+
+    If no name has changed, the same object is returned.
+    """
     if len(before) != len(after):
         return make_table(after)
     changed = [position for position, declaration in enumerate(after) if declaration is not before[position]]
@@ -103,6 +109,9 @@ def _kinds(entries: tuple[Entry, ...]) -> tuple[SymbolKind, ...]:
 
 
 def _names(declaration: Declaration) -> list[tuple[str, SymbolKind]]:
-    """Return the names that a declaration declares; its parts need not be moved to their places for this."""
+    """Return the names that a declaration declares.
+
+    The parts of a declaration need not be moved to their places for this.
+    """
     every = [part.declaration for part in declaration.parts] or [declaration]
     return [(symbol.path, symbol.kind) for one in every for symbol in one.symbols]

@@ -1,7 +1,7 @@
-"""Namespaces of declarations without an explicit one.
+"""Determine the namespace of declarations that do not state one.
 
-It is the only namespace of their file. In a file of several namespaces, events and tasks take the namespace of the
-templates that use them, if these agree.
+This is the only namespace of their file. If the file has several namespaces, events and tasks have the namespace of the
+templates that use them, provided that these templates agree.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def only_namespace(names: NameTable) -> str | None:
-    """Return the name of a file's namespace; ``None`` when it declares none, or several."""
+    """Return the name of the only namespace of a file; ``None`` if the file declares none or several."""
     declared = _namespaces(names)
     return declared[0] if len(declared) == 1 else None
 
@@ -33,7 +33,7 @@ def _namespaces(names: NameTable) -> tuple[str, ...]:
 
 
 def namespace_of(file: FileIndex, symbol: Symbol) -> str | None:
-    """Return the name of the namespace of a symbol of a file; ``None`` if it has none or it is ambiguous."""
+    """Return the name of the namespace of a symbol; ``None`` if it has none or if it is ambiguous."""
     if symbol.namespace != FILE_NAMESPACE:
         return symbol.namespace
     return only_namespace(file.names) or _by_use(file).get((symbol.kind, symbol.path))
@@ -44,7 +44,7 @@ _USED = {"Event": SymbolKind.EVENT, "Task": SymbolKind.TASK}
 
 @kept_with_key
 def _by_use(file: FileIndex) -> Mapping[tuple[SymbolKind, str], str]:
-    """Map the events and tasks used by the file's templates to the namespace of these templates, if they agree."""
+    """Map the events and tasks that templates of the file use to the namespace of these templates, if they agree."""
     found: dict[tuple[SymbolKind, str], set[str]] = {}
     for placed in file.declarations:
         declaration = placed.declaration
@@ -57,7 +57,7 @@ def _by_use(file: FileIndex) -> Mapping[tuple[SymbolKind, str], str]:
 
 
 def without_namespace(file: FileIndex) -> Iterator[Diagnostic]:
-    """Yield an error for each declaration whose namespace is neither written nor implied by its file or its users."""
+    """Yield an error for each declaration whose namespace is neither written nor implied."""
     if only_namespace(file.names) is not None:
         return
     for placed in file.declarations:

@@ -1,4 +1,4 @@
-"""Diagnostics of names: unknown, of the wrong kind, declared twice."""
+"""Diagnostics of names that are unknown, of the wrong kind, or declared twice."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def unresolved(scope: Scope, resolution: Resolution, offset: int) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for each unresolved reference of a declaration (at ``offset``)."""
+    """Yield a diagnostic for each unresolved reference in a declaration, which is at ``offset``."""
     for problem in resolution.unresolved:
         if problem.other is not None:
             yield _wrong_kind(scope, problem, offset)
@@ -33,7 +33,7 @@ def unresolved(scope: Scope, resolution: Resolution, offset: int) -> Iterator[Di
 
 
 def repeated(scope: Scope) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for each repeated declaration in the scope's own file."""
+    """Yield a diagnostic for each repeated declaration in the file to which the scope belongs."""
     file = scope.own
     uri = file.document.uri
     for path in file.names.repeated:
@@ -50,7 +50,7 @@ def repeated(scope: Scope) -> Iterator[Diagnostic]:
 
 
 def _renamed(file: FileIndex, path: str, place: Span) -> Iterator[Fix]:
-    """Yield a fix that renames the second declaration; references to the name mean the first one."""
+    """Yield a fix that renames the second declaration. References by this name denote the first declaration."""
     name = path.rpartition(".")[2]
     free = free_name(name, file.names.entries)
     if file.document.text[place.start : place.end] == name:
@@ -64,13 +64,13 @@ def free_name(name: str, paths: Iterable[str]) -> str:
 
 
 def _same_variable(first: Declared, second: Declared) -> bool:
-    """Return whether two quantifiers of one declaration use the same variable name, which is allowed."""
+    """Return whether two quantifiers of one declaration use the same variable name. This is allowed."""
     variable = first.symbol.kind is second.symbol.kind is SymbolKind.VARIABLE
     return variable and first.offset == second.offset and second.symbol.span == second.symbol.extent
 
 
 def _could_be_unread(scope: Scope, reference: Reference) -> bool:
-    """Return whether an unreadable import may declare the name; its own error is then sufficient."""
+    """Return whether an import that cannot be read may declare the name. Then the error of the import is sufficient."""
     kinds = ROLE_KINDS[reference.ref.role]
     return any(may_declare(language_of(uri), kinds) for uri in scope.unread)
 

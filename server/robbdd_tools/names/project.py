@@ -1,4 +1,4 @@
-"""The set of open files: a mutable Project that returns immutable Snapshots."""
+"""The set of files in use. A ``Project`` is mutable and returns immutable ``Snapshot`` objects."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from robbdd_tools.names.scope import Scope
 
 @dataclass
 class Project:
-    """Open documents over files on disk; after every change the next snapshot is a new revision."""
+    """Open documents, and files on disk. After every change, the next snapshot is a new revision."""
 
     revision: int = 0
     _open: dict[str, Source] = field(default_factory=dict[str, Source])
@@ -28,12 +28,12 @@ class Project:
     _joined: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
     def join(self, uri: str, others: Sequence[str]) -> None:
-        """Read other graph files as parts of the graph file ``uri``."""
+        """Treat other graph files as parts of the graph file ``uri``."""
         self._joined[uri] = tuple(others)
         self.revision += 1
 
     def open(self, uri: str, version: int, text: str) -> None:
-        """Set the text of a document that is open in an editor (also on every change)."""
+        """Set the text of a document that is open in an editor. This is done when it is opened and on every change."""
         refused = too_large(uri.rsplit("/", 1)[-1], len(text))
         known = self._open.get(uri)
         previous = known if isinstance(known, FileIndex) else None
@@ -41,7 +41,7 @@ class Project:
         self.revision += 1
 
     def close(self, uri: str) -> None:
-        """Fall back to the file on disk."""
+        """Use the file on disk instead of the text of the closed document."""
         self._open.pop(uri, None)
         self.refresh(uri)
 
@@ -51,12 +51,12 @@ class Project:
         self.revision += 1
 
     def texts(self) -> dict[str, tuple[int, str]]:
-        """Return version and text of every open document."""
+        """Return the version and the text of every open document."""
         documents = (source.document for source in self._open.values() if isinstance(source, FileIndex))
         return {document.uri: (document.version, document.text) for document in documents}
 
     def replace(self, texts: Mapping[str, tuple[int, str]]) -> None:
-        """Make exactly these documents the open ones, and reread every other file."""
+        """Make exactly these documents the open ones, and read all other files again."""
         for uri in [uri for uri in self._open if uri not in texts]:
             del self._open[uri]
         for uri, (version, text) in texts.items():
@@ -66,11 +66,14 @@ class Project:
         self._disk.clear()
 
     def has(self, uri: str) -> bool:
-        """Return whether a file was loaded, directly or as an import."""
+        """Return whether a file has been loaded, directly or as an import."""
         return uri in self._open or uri in self._disk
 
     def load(self, uri: str) -> Source:
-        """Return a file: the editor's text if open, otherwise the one on disk; cached until ``refresh``."""
+        """Return a file: the text in the editor if it is open, otherwise the file on disk.
+
+        A file on disk is cached until ``refresh``.
+        """
         if uri in self._open:
             return self._open[uri]
         if uri not in self._disk:
@@ -100,7 +103,7 @@ def _read(uri: str) -> Source:
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """One revision of all files. Analyses are made on first access; access never changes a result."""
+    """One revision of all files. Analyses are made at the first access, which never changes a result."""
 
     revision: int
     sources: Mapping[str, Source]
@@ -132,12 +135,15 @@ class Snapshot:
         return kept.analysis
 
     def document(self, uri: str) -> Document:
-        """Return the document of a file; an empty one for an unreadable file, so that positions in it are its start."""
+        """Return the document of a file.
+
+        It is empty for an unreadable file, so that all positions in it are its start.
+        """
         source = self.sources.get(uri)
         return source.document if isinstance(source, FileIndex) else Document(uri, 0, "")
 
     def unreadable(self, uri: str) -> Unreadable | None:
-        """Return why a file cannot be read, ``None`` if it can."""
+        """Return the reason why a file cannot be read; ``None`` if it can be read."""
         source = self.sources.get(uri)
         return source if isinstance(source, Unreadable) else None
 
@@ -150,7 +156,7 @@ class Snapshot:
         return self._scopes[uri]
 
     def closure(self, uri: str) -> tuple[FileAnalysis, ...]:
-        """Return the analyses of a file and of all its imports, itself first, nearest imports first."""
+        """Return the analyses of a file and of all its imports: first the file itself, then the nearest imports."""
         found = map(self.file, self.reachability.walk(uri))
         return tuple(analysis for analysis in found if analysis is not None)
 
@@ -164,7 +170,7 @@ class Snapshot:
 
     @cached_property
     def _users(self) -> dict[str, list[str]]:
-        """The files that import a file directly."""
+        """The files that import each file directly."""
         users: dict[str, list[str]] = {}
         for name, source in self.sources.items():
             for link in source.imports if isinstance(source, FileIndex) else ():
@@ -173,13 +179,13 @@ class Snapshot:
 
     @cached_property
     def _faults(self) -> dict[str, list[Related]]:
-        """Syntax errors and unusable imports by file."""
+        """The syntax errors and unusable imports of each file."""
         files = (source for source in self.sources.values() if isinstance(source, FileIndex))
         return {index.document.uri: faults for index in files if (faults := self._faults_of(index))}
 
     @cached_property
     def _leading_to_faults(self) -> frozenset[str]:
-        """The files with faults and those that import one, directly or indirectly."""
+        """The files that have faults, and the files that import such a file directly or indirectly."""
         return reached_from(self._users, self._faults)
 
     @cached_property
@@ -216,7 +222,7 @@ class Snapshot:
         return source.reason if isinstance(source, Unreadable) else None
 
     def _broken_imports(self, index: FileIndex, imports: tuple[ImportLink, ...]) -> list[Diagnostic]:
-        """Report on each import line the faults of the files that it imports, with their own places."""
+        """Report the faults of imported files on the import lines. The places of the faults are linked."""
         found: list[Diagnostic] = []
         for link in imports:
             if link.problem is not None:

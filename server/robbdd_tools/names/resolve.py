@@ -1,4 +1,4 @@
-"""Resolve references, and resolve them again only if an edit can have changed the result."""
+"""Resolve references. They are resolved again only if an edit may have changed the result."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Unresolved:
-    """A reference without a matching target; ``other`` is a declaration of the name with another kind."""
+    """A reference without a matching target. ``other`` is a declaration of the same name that has another kind."""
 
     reference: Reference
     other: Target | None
@@ -44,11 +44,12 @@ class Unresolved:
 
 @dataclass(frozen=True, eq=False, slots=True, weakref_slot=True)
 class Resolution:
-    """The targets of the references of one declaration; ``looked_up`` are all paths that the result depends on.
+    """The targets of the references in one declaration.
 
-    It stays the same object as long as no edit can have changed it. ``through_others``: it also depends on names that
-    resolve through other names, which ``looked_up`` does not cover. For a declaration in parts it combines ``parts``,
-    the resolutions of its parts; only these have ``looked_up``.
+    ``looked_up`` are all paths on which the result depends. ``through_others`` is true if the result also depends on
+    names that resolve through other names, which ``looked_up`` does not contain. The resolution of a declaration in
+    parts combines the resolutions of its ``parts``, and only these have ``looked_up``. A resolution stays the same
+    object as long as no edit may have changed it.
     """
 
     declaration: Declaration
@@ -60,7 +61,7 @@ class Resolution:
 
 
 class _InParts(Mapping["Ref", Target]):
-    """The targets of the references of a declaration in parts."""
+    """The targets of the references in a declaration that has parts."""
 
     __slots__ = ("_offsets", "_parts")
 
@@ -84,9 +85,9 @@ class _InParts(Mapping["Ref", Target]):
 
 
 class Targets(Mapping["Ref", Definition]):
-    """The definitions of the references of one declaration, made on access.
+    """The definitions of the references in one declaration. They are made when they are accessed.
 
-    ``made`` caches those of all declarations of a file: many refer to the same few names.
+    ``made`` caches the definitions for all declarations of a file, because many of them refer to the same few names.
     """
 
     __slots__ = ("_made", "_scope", "_targets", "resolution")
@@ -114,11 +115,11 @@ class Targets(Mapping["Ref", Definition]):
         return len(self._targets)
 
     def parts(self) -> tuple[Targets, ...]:
-        """Return the definitions of the references of each part of the declaration."""
+        """Return the definitions of the references in each part of the declaration."""
         return tuple(Targets(self._scope, part, self._made) for part in self.resolution.parts)
 
     def declarations(self) -> Iterator[tuple[str, int]]:
-        """Yield for each reference the document of its target's declaration and its position there."""
+        """Yield for each reference the document that declares its target, and the position of the declaration there."""
         for target in self._targets.values():
             file = self._scope.file(target.file)
             yield file.document.uri, file.names.entries[target.path][target.number].declaration
@@ -131,7 +132,10 @@ def define(scope: Scope, target: Target) -> Definition:
 
 
 def resolve_file(scope: Scope, before: Scope | None, known: tuple[Resolution, ...]) -> tuple[Resolution, ...]:
-    """Resolve all declarations of a scope's own file, given the resolutions in the scope ``before``."""
+    """Resolve all declarations of the file to which a scope belongs.
+
+    ``before`` is the scope of the previous revision, and ``known`` are the resolutions in it.
+    """
     declarations = [placed.declaration for placed in scope.own.declarations]
     kept = _still_valid(scope, before, known)
     whole = {entry.declaration: entry for entry in known if entry.parts}
@@ -146,7 +150,7 @@ def resolve_file(scope: Scope, before: Scope | None, known: tuple[Resolution, ..
 def _put_together(
     scope: Scope, declaration: Declaration, kept: Mapping[Declaration, Resolution], before: Resolution | None
 ) -> Resolution:
-    """Return the resolution of a declaration in parts; ``before`` itself if no part changed."""
+    """Return the resolution of a declaration that has parts. If no part has changed, this is ``before`` itself."""
     parts = tuple(kept.get(part.declaration) or _resolve(scope, part.declaration) for part in declaration.parts)
     if before is not None and before.parts == parts:
         return before
@@ -202,7 +206,7 @@ def _resolve(scope: Scope, declaration: Declaration) -> Resolution:
 
 
 def candidates(reference: Reference) -> tuple[str, ...]:
-    """Return the qualified names that a reference may denote, innermost scope first."""
+    """Return the qualified names that a reference may denote, those of the innermost scope first."""
     path = reference.ref.path
     return (*[f"{scope}.{path}" for scope in reference.scopes], path)
 
@@ -212,12 +216,12 @@ _Lookups = dict[tuple[str, str, tuple[str, ...]], tuple[tuple[str, ...], Target 
 
 @lru_cache(maxsize=CACHED_TABLES)
 def _known_lookups(_: tuple[NameTable, ...]) -> _Lookups:
-    """Return the lookup cache of some tables, by role, path and scopes; valid as long as no name changes."""
+    """Return the cache of lookups in some tables, by role, path and scopes. It is valid as long as no name changes."""
     return {}
 
 
 def _lookup_in_scene(scope: Scope, role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
-    """Return the element with a name in a scene; none if several have it."""
+    """Return the element of a scene with one of some names. If several elements have it, return none."""
     found = [_lookup(scope, role, (path,)) for path in paths_through(scope.standing_for, paths)]
     fitting = {target for target, _ in found if target is not None}
     others = (other for _, other in found if other is not None)
@@ -225,7 +229,7 @@ def _lookup_in_scene(scope: Scope, role: str, paths: tuple[str, ...]) -> tuple[T
 
 
 def _lookup(scope: Scope, role: str, paths: tuple[str, ...]) -> tuple[Target | None, Target | None]:
-    """Return the nearest declaration of a matching kind, else the nearest of another kind."""
+    """Return the nearest declaration of a matching kind. If there is none, return the nearest one of another kind."""
     kinds = ROLE_KINDS[role]
     other: Target | None = None
     for path in paths:

@@ -1,4 +1,4 @@
-"""The kinds of target of each reference rule in the grammar."""
+"""The kinds of target that each reference rule of the grammar accepts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The names that a file can use: its own and, through its imports, those of other files."""
+"""The names that a file can use: its own names and, through its imports, the names of other files."""
 
 from __future__ import annotations
 
@@ -74,12 +74,12 @@ class Scope:
 
     @property
     def uris(self) -> list[str]:
-        """The files' URIs, in order."""
+        """The URIs of the files, in order."""
         return [file.document.uri for file in self.files]
 
     @property
     def tables(self) -> tuple[NameTable, ...]:
-        """The files' name tables: identical as long as no name is added, removed or reordered."""
+        """The name tables of the files. They stay identical as long as no name is added, removed or reordered."""
         return tuple(file.names for file in self.files)
 
     def file(self, uri: str) -> FileIndex:
@@ -122,13 +122,16 @@ class Scope:
             yield from ((file, declared) for declared in file.declared(path))
 
     def define(self, file: FileIndex, declared: Declared) -> Definition:
-        """Return a declaration of a file in this scope as a definition."""
+        """Return a declaration in one of the files as a definition."""
         symbol = declared.symbol
         span, extent = symbol.span.shifted(declared.offset), symbol.extent.shifted(declared.offset)
         return Definition(file.document.uri, symbol, span, extent, self._iri(file, declared))
 
     def visible(self, kinds: Iterable[SymbolKind], scopes: tuple[str, ...]) -> dict[str, tuple[FileIndex, Declared]]:
-        """Return every name of some kinds as written at a place, nearest declaration first."""
+        """Return every name of some kinds, in the form in which it can be written in ``scopes``.
+
+        If several declarations have the name, the nearest one is used.
+        """
         wanted = dict.fromkeys(kinds)
         names: dict[str, tuple[FileIndex, Declared]] = {}
         for position, file in enumerate(self.files):
@@ -149,7 +152,7 @@ class Scope:
         return None if start is None else start + local_name(declared.symbol)
 
     def namespace_iri(self, file: FileIndex, namespace: str | None) -> str | None:
-        """Return the IRI prefix of a file's declarations in a namespace, ``None`` if unknown."""
+        """Return the IRI prefix of declarations of a file in a namespace, or ``None`` if it is unknown."""
         if namespace is None:
             return None
         # A declaration's namespace is looked up from its own file; the nearest one outside is a file it imports.

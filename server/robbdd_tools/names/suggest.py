@@ -20,9 +20,10 @@ MIN_ALIKE = 60.0
 def closest(
     tables: tuple[NameTable, ...], kinds: tuple[SymbolKind, ...], scopes: tuple[str, ...], path: str
 ) -> tuple[tuple[str, ...], bool]:
-    """Return the nearest names of some kinds, as written at a place, and whether any name of these kinds is known.
+    """Return the known names most similar to a written one, and whether any name of these kinds is known.
 
-    The result depends on the tables only (compared by identity), so it is cached while no name changes.
+    The names have the form in which they can be written in ``scopes``. The result depends on the tables only, which are
+    compared by identity. So it is cached while no name changes.
     """
     kept = _known_answers(tables)
     key = (kinds, scopes, path)

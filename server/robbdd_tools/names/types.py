@@ -1,7 +1,7 @@
-"""Types of variables, inferred from clauses and values because the language has no type declarations.
+"""Infer the types of variables from clauses and values, because the language has no type declarations.
 
-A type is a set of kinds that a variable, or each element of its set, may have. A phrase narrows it to the kinds of its
-slot; values in variants narrow it further where the phrases leave it open.
+A type is a set of kinds that a variable, or each element of its set, may have. A phrase narrows the type to the kinds
+of its slot. If phrases leave the type open, values in variants narrow it further.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ _ORDER = ("object", "workspace", "agent", "number", "string")
 
 @dataclass(frozen=True, slots=True)
 class VariableType:
-    """Kinds that a variable may have; with ``is_set``, the kinds of each element of its set."""
+    """The kinds that a variable may have. If ``is_set`` is true, they are the kinds of each element of its set."""
 
     kinds: Kinds
     is_set: bool
 
     @property
     def is_known(self) -> bool:
-        """Return whether anything narrows the type."""
+        """Return whether any phrase or value narrows the type."""
         return bool(self.kinds) and self.kinds != ANYTHING
 
     def __str__(self) -> str:
@@ -42,7 +42,7 @@ class VariableType:
 
 
 def kind_words(kinds: Kinds) -> str:
-    """Return kinds in words: ``object or workspace``; ``anything`` if none is excluded."""
+    """Return kinds as text, for example ``object or workspace``, or ``anything`` if no kind is excluded."""
     if kinds == ANYTHING:
         return "anything"
     return " or ".join(kind for kind in _ORDER if kind in kinds)
@@ -54,14 +54,14 @@ def narrowed(uses: Iterable[Use]) -> Kinds:
 
 
 def variable_of(site: Site, use: Use) -> Definition | None:
-    """Return the variable that a use narrows: for a quantified variable, its set variable."""
+    """Return the variable that a use narrows. For the variable of a quantifier, this is the variable of its set."""
     found = site.target(use.bound.in_set if use.bound is not None else use.ref)
     variable = found is not None and found.kind in (SymbolKind.VARIABLE, SymbolKind.SET_VARIABLE)
     return found if variable else None
 
 
 def variable_key(definition: Definition) -> str:
-    """Return the identity of a variable: templates of one namespace share variables of the same name."""
+    """Return a key that identifies a variable. Templates of one namespace share variables of the same name."""
     return definition.iri or f"{definition.uri} {definition.symbol.path}"
 
 
@@ -79,7 +79,7 @@ Written = tree.Value | tree.Link | tree.ValueList | tree.Selection | tree.SetLis
 
 
 def written_elements(site: Site, written: Written) -> Iterator[tuple[tree.Node, Element]]:
-    """Yield each element in a cell or a line, with the node to mark."""
+    """Yield each element in a cell or a line, with the syntax node at which to report it."""
     match written:
         case tree.Number() | tree.Text() | tree.Ref():
             element = element_of(site, written)
@@ -100,7 +100,7 @@ def written_elements(site: Site, written: Written) -> Iterator[tuple[tree.Node, 
 
 
 def columns_of(variation: tree.Table | tree.Product) -> Iterator[tuple[tree.Ref, tuple[Written, ...]]]:
-    """Yield each column or line of a variation: its variable and its written values."""
+    """Yield the variable and the written values of each column or line of a variation."""
     if isinstance(variation, tree.Product):
         for line in variation.assignments:
             yield line.variable, (line.choices,)
@@ -112,7 +112,7 @@ def columns_of(variation: tree.Table | tree.Product) -> Iterator[tuple[tree.Ref,
 def variable_type(snapshot: Snapshot, definition: Definition, *, from_values: bool = True) -> VariableType:
     """Return the type of a variable, derived from its template and from the known variants.
 
-    Without ``from_values`` only the template counts; no value in a variant may violate that.
+    If ``from_values`` is false, only the template is used. No value in a variant may violate the resulting type.
     """
     is_set = definition.kind is SymbolKind.SET_VARIABLE
     site = site_of(snapshot, definition)
@@ -135,7 +135,7 @@ def _owner(site: Site, definition: Definition) -> Clauses | None:
 
 
 def _bound_uses(site: Site, owner: Clauses, definition: Definition) -> Kinds | None:
-    """Return the kinds of a quantified variable; ``None`` if the variable is not quantified."""
+    """Return the kinds of a quantifier's variable; ``None`` if the variable does not belong to a quantifier."""
     bounds = [bound for bound in owner.bounds if site.span(bound.variable) == definition.span]
     if not bounds:
         return None
@@ -163,7 +163,10 @@ def _narrowed_by_variants(snapshot: Snapshot, definition: Definition, kinds: Kin
 
 
 def _variants(snapshot: Snapshot, definition: Definition) -> Iterator[tuple[Site, tree.Variant, Clauses]]:
-    """Yield the variants of the template that declares a variable, in its own file and in those that import it."""
+    """Yield the variants of the template that declares a variable.
+
+    They are in the file of the template and in the files that import it.
+    """
     template = definition.symbol.path.partition(".")[0]
     for uri in (definition.uri, *snapshot.importers(definition.uri)):
         file = snapshot.file(uri)

@@ -1,4 +1,4 @@
-"""Uses of variables and events in the clauses of one declaration: one walk each, cached with the declaration."""
+"""Find the uses of variables and events in the clauses of a declaration. They are cached with the declaration."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """A variable in a slot of a phrase: the kinds that the slot takes, and the phrase.
+    """A variable in a slot of a phrase. ``kinds`` are the kinds that the slot accepts.
 
-    ``bound`` is the quantifier of the variable, if any.
+    ``bound`` is the quantifier that introduces the variable, if any.
     """
 
     ref: tree.Ref
@@ -51,10 +51,11 @@ class Use:
 
 @dataclass(frozen=True, slots=True)
 class Clauses:
-    """The clauses of one template or variant with the qualified name ``path``; ``""`` if that is unknown.
+    """The clauses of one template or variant.
 
-    ``phrases`` are in text order. ``once`` are the durations outside of every ``for all``; events inside occur in each
-    iteration.
+    - ``path``: its qualified name; ``""`` if unknown.
+    - ``phrases``: the phrases in text order.
+    - ``once``: the durations outside of every ``for all``. The events of all other durations occur in each iteration.
     """
 
     node: tree.Template | tree.Variant

@@ -190,7 +190,7 @@ class Plan:
 
     @cached_property
     def scenarios(self) -> tuple[ScenarioSpec, ...]:
-        """The scenarios in execution order, with the names, values and seeds of a run without further options."""
+        """The scenarios in the order of execution, with the names, values and seeds of a run without options."""
         with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
             return self.prepare(Path(folder)).scenarios
 
