@@ -1,1 +1,4 @@
-"""The process that executes scenarios: behave, its steps, the course of behaviours, messages to the parent."""
+"""The process that executes scenarios.
+
+It runs behave with its steps, executes behaviours, and reports to the parent.
+"""

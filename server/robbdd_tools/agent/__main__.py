@@ -1,6 +1,7 @@
 """``python -m robbdd_tools.agent RUN_FOLDER``: execute scenarios of a prepared run.
 
-Reads scenario numbers from standard input as they arrive; writes messages to standard output (``protocol.messages``).
+The process reads the numbers of scenarios from standard input as they arrive, and writes messages (see
+``protocol.messages``) to standard output.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The course of events in the world: behaviours executed in sequence or by a behaviour tree."""
+"""Execute the behaviours of a scenario in the simulated world, in sequence or by a behaviour tree."""
 
 from __future__ import annotations
 
@@ -49,13 +49,16 @@ LOOK = 16
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A behaviour (by its catalog name) with the names in its slots; a place may be a set of workspaces."""
+    """A behaviour, by its catalog name, with the names in its slots.
+
+    The place of a behaviour may be a set of workspaces.
+    """
 
     behaviour: str
     arguments: Arguments
 
     def element(self, slot: str) -> str:
-        """Return the single element in a slot; raises ``SceneError`` for a set."""
+        """Return the single element in a slot. Raises ``SceneError`` if the slot contains a set."""
         found = self.arguments[slot]
         if isinstance(found, str):
             return found
@@ -70,7 +73,10 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """An element that a behaviour chose from a set of places; ``iteration`` and tree nodes as in event stamps."""
+    """An element that a behaviour chose from a set of places.
+
+    The iteration and the nodes of a behaviour tree are numbered as in event stamps.
+    """
 
     iteration: int
     nodes: tuple[str, ...]
@@ -79,7 +85,11 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """Simulated times, s: minimum idle time before the first behaviour, recording after the scenario's end, timeout."""
+    """The times of an execution in simulated s.
+
+    They are the minimum idle time before the first behaviour, the time of recording after the scenario's end, and the
+    timeout.
+    """
 
     lead: float = 0.5
     tail: float = 0.0
@@ -87,13 +97,17 @@ class Timing:
 
 
 class BehaviourRun:
-    """The course of events: the settled world at time 0 and the behaviours to execute in it.
+    """The execution of behaviours in a simulated world that has settled at time 0. Raises ``SceneError``.
 
-    ``stamps`` are the events emitted so far; ``completed`` counts the successful behaviours of a sequence; ``tree`` is
-    the behaviour tree, if one is executed. ``remark`` is the latest problem. ``broken`` is an error in the user's code
-    or model that prevents any verdict, and ``fault`` describes an error in that code. ``cut_short`` is the verdict on
-    behaviours that had not ended when the execution was stopped; ``failed`` is set when a behaviour has failed.
-    ``wall`` is the wall time spent, s. Raises ``SceneError`` when the scene cannot be set up.
+    - ``stamps``: the events emitted so far.
+    - ``completed``: the number of behaviours of a sequence that have succeeded.
+    - ``tree``: the behaviour tree, if one is executed.
+    - ``remark``: the latest problem.
+    - ``broken``: an error in the user's code or model that prevents any verdict.
+    - ``fault``: describes an error in the user's code.
+    - ``cut_short``: the verdict on behaviours that had not ended when the execution was stopped.
+    - ``failed``: true when a behaviour has failed.
+    - ``wall``: the wall time spent in s.
     """
 
     def __init__(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing | None = None) -> None:
@@ -131,7 +145,7 @@ class BehaviourRun:
         self.wall = perf_counter() - began
 
     def go_on(self) -> None:
-        """Simulate until an event occurs, or for a number of ticks."""
+        """Simulate until an event occurs, or for a limited number of control ticks."""
         began = perf_counter()
         self._run_on()
         self.wall += perf_counter() - began
@@ -184,7 +198,10 @@ class BehaviourRun:
             self.completed += 1
 
     def attempt(self, call: Call) -> Generator[None, None, str]:
-        """Execute a behaviour, one control tick per step; return why it failed, empty on success."""
+        """Execute a behaviour, one control tick for each step of the iterator.
+
+        Returns the reason why the behaviour failed; empty if it succeeded.
+        """
         try:
             yield from self._behaviour(call)
         except BehaviourError as error:
@@ -264,7 +281,7 @@ class BehaviourRun:
         self.simulation.restart()
 
     def stamp(self, name: str, iteration: int = 0) -> None:
-        """Record the event of an emitter at the current time, with its iteration."""
+        """Record the event of an emitter at the current time, with the number of its iteration."""
         self.stamps.append(EventStamp(name, self.simulation.time, iteration))
 
     def _emit(self, event: str) -> None:

@@ -1,4 +1,4 @@
-"""Destination of run messages: the parent process, or none when behave is run by hand."""
+"""The channel for messages of a run. It leads to the parent process, or nowhere if behave is run by hand."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Lines(Channel):
         self._writing = Lock()
 
     def send(self, message: RunMessage) -> None:
-        """Write a message; exit without a message if the reader is gone."""
+        """Write a message. If no process reads the channel any more, exit without a message."""
         data = (encode(message) + "\n").encode()
         try:
             # Threads of users' code print, too.
@@ -40,7 +40,7 @@ class Lines(Channel):
 
 
 class Reports(Lines):
-    """The channel of an agent; tracks the current scenario, if any, and the finished ones."""
+    """The channel of an agent. It records the current scenario, if any, and the finished scenarios."""
 
     def __init__(self, descriptor: int) -> None:
         super().__init__(descriptor)

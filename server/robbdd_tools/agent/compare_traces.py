@@ -1,7 +1,7 @@
 """``python -m robbdd_tools.agent.compare_traces RUN OTHER``: find where the traces of two runs first differ.
 
-Prints one JSON object for each scenario with a trace in OTHER: ``index`` and ``difference``, empty if the traces are
-bit-identical.
+For each scenario with a trace in OTHER, one JSON object is printed. It has the ``index`` of the scenario and the
+``difference``, which is empty if the traces are bit-identical.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Divergence:
-    """Two values that differ at a sample."""
+    """Two values that differ at the same sample."""
 
     row: int
     quantity: str
@@ -37,7 +37,7 @@ class _Divergence:
 
 
 def difference(first: Evidence, second: Evidence) -> str:
-    """Return the sample and quantity at which two traces first differ; empty if they are bit-identical."""
+    """Return the sample and the quantity at which two traces first differ; empty if they are bit-identical."""
     if pack(first) == pack(second):
         return ""
     one, other = first.trace, second.trace
@@ -78,7 +78,7 @@ def _divergences(one: Trace, other: Trace) -> Iterator[_Divergence | None]:
 def _first(
     ours: FloatArray, theirs: FloatArray, quantity: str, labels: tuple[tuple[str, ...], ...]
 ) -> _Divergence | None:
-    """Return the first position where the bits of two arrays differ, up to the length of the shorter one."""
+    """Return the first position at which the bits of two arrays differ. The longer array is cut."""
     rows = min(len(ours), len(theirs))
     bits = [np.ascontiguousarray(values[:rows]).view(np.uint64) for values in (ours, theirs)]
     places = np.argwhere(bits[0] != bits[1])

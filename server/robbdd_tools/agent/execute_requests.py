@@ -1,4 +1,4 @@
-"""Read the parent's orders, and end this process when the parent is gone."""
+"""Read the orders of the parent, and end this process when the parent is gone."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ PAUSE = 0.2
 def read_requests(stream: TextIO) -> Iterator[str]:
     """Yield the lines of a stream as they arrive.
 
-    When the stream has ended and the parent process is gone, this process exits immediately, whatever it executes. If
-    the parent is alive, all orders are completed.
+    When the stream ends and the parent process is gone, this process exits immediately, even while it executes a
+    scenario. If the parent is alive, all orders are completed.
     """
     lines: SimpleQueue[str | None] = SimpleQueue()
     threading.Thread(target=_read, args=(stream, os.getppid(), lines), daemon=True).start()

@@ -1,4 +1,4 @@
-"""One execution of a scenario, simulated lazily: only as far as its clauses need."""
+"""One execution of a scenario. It is simulated lazily, only as far as its clauses need."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
 
 class Execution:
-    """A scenario in execution: one scenario's view of a course, under its own event names.
+    """The execution of a scenario, which uses a ``BehaviourRun`` under the scenario's own event names.
 
-    Without ``course``, a new one is created; scenarios linked to one behaviour tree share a course. Raises
-    ``SceneError`` when the scene cannot be set up.
+    Without ``course``, a new ``BehaviourRun`` is created. Scenarios that are linked to one behaviour tree share it.
+    Raises ``SceneError`` if the scene cannot be set up.
     """
 
     def __init__(
@@ -54,32 +54,32 @@ class Execution:
 
     @property
     def completed(self) -> int:
-        """Number of successful behaviours."""
+        """The number of behaviours that have succeeded."""
         return self.course.completed
 
     @property
     def broken(self) -> str:
-        """An error in the user's code or model that prevents any verdict; else empty."""
+        """The error in the user's code or model that prevents any verdict; empty if there is none."""
         return self.course.broken
 
     @property
     def fault(self) -> Fault | None:
-        """The error in the user's code behind ``broken``."""
+        """The error in the user's code that caused ``broken``."""
         return self.course.fault
 
     @property
     def simulated(self) -> float:
-        """Simulated time so far, s."""
+        """The simulated time so far, s."""
         return self.simulation.time
 
     @property
     def wall(self) -> float:
-        """Wall time spent so far, s."""
+        """The wall time spent so far, s."""
         return self.course.wall
 
     @property
     def stepping(self) -> float:
-        """Wall time spent in the engine's steps so far, s."""
+        """The wall time that the steps of the physics engine have taken so far, s."""
         return self.simulation.stepping
 
     @property
@@ -99,14 +99,14 @@ class Execution:
         )
 
     def state_at(self, time: float) -> FloatArray:
-        """Return the engine's joint positions at the last sample at or before a time (s)."""
+        """Return the joint positions of the engine at the last sample at or before a time (s)."""
         return self.simulation.recorder.states[self.trace.last_at_or_before(time + TICK / 2)]
 
     def advance_until(self, satisfied: Callable[[Trace], bool]) -> Trace:
         """Simulate until the trace satisfies a condition or the execution is finished; return the trace.
 
-        The condition is evaluated after each event and behaviour, and every few ticks. If the scenario is linked to a
-        part of a behaviour tree, it is first evaluated when that part starts.
+        The condition is evaluated after each event, after each behaviour, and every few control ticks. If the scenario
+        is linked to a part of a behaviour tree, the condition is first evaluated when that part starts.
         """
         course = self.course
         while not (course.finished or self._begun):
@@ -118,7 +118,7 @@ class Execution:
         return trace
 
     def measured(self, clause: Clause, trace: Trace) -> Trace:
-        """Return a trace with the configuration and the costly quantities that a clause needs."""
+        """Return a trace with the configuration and the costly quantities that are needed to judge a clause."""
         began = perf_counter()
         for fluent, arguments in fluents_with_quantity(clause, "reach"):
             agent, name = arguments["agent"], arguments["object"]
@@ -130,7 +130,7 @@ class Execution:
         return self.complete(trace)
 
     def complete(self, trace: Trace) -> Trace:
-        """Return a trace with all data that belongs to it apart from its samples."""
+        """Return a trace to which all data except its samples has been added."""
         size, forces, cast = len(trace.times), self.simulation.forces, self.simulation.world.cast
         return replace(
             trace,
@@ -147,7 +147,7 @@ class Execution:
     def run_behaviour(self, index: int) -> bool:
         """Simulate until behaviour number ``index`` is over; return whether it succeeded.
 
-        For a scenario linked to a node of a behaviour tree, until the node is over.
+        If the scenario is linked to a node of a behaviour tree, simulate until that node is over.
         """
         tree = self.course.tree
         if tree is None or not self._node:
@@ -157,7 +157,7 @@ class Execution:
         return tree.has_succeeded(self._node)
 
     def chosen(self, index: int) -> str:
-        """Return the places that behaviour number ``index`` chose from a set, as text; empty without a choice."""
+        """Return the places that behaviour number ``index`` chose from a set, as text; empty if it had no choice."""
         course = self.course
         found = [
             choice.place
@@ -168,7 +168,7 @@ class Execution:
 
     @property
     def failure(self) -> str:
-        """Why the behaviour failed; empty if it has not."""
+        """The reason why the behaviour failed; empty if it has not failed."""
         tree = self.course.tree
         return (tree.failure(self._node) if tree is not None and self._node else "") or self.course.remark
 

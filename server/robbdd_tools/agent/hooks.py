@@ -1,6 +1,6 @@
-"""Hooks of behave: they manage the simulated world during a behave run.
+"""The hooks of behave, which manage the simulated world while behave runs.
 
-behave has no types; only this module and ``steps`` access its objects.
+behave has no type information. Only this module and ``steps`` access its objects.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ EXECUTION = "robbdd.execution"
 
 
 def before_all(context: Any) -> None:
-    """Read the manifest in the parent of the features folder; raises ``OSError`` or ``ValueError``."""
+    """Read the manifest in the parent folder of the features folder. Raises ``OSError`` or ``ValueError``."""
     folder = Path(context.config.base_dir).resolve().parent
     if not (folder / MANIFEST).is_file():
         raise OSError(f"there is no {MANIFEST} in {folder}: run a folder that 'robbdd run' has written")
@@ -30,7 +30,7 @@ def before_all(context: Any) -> None:
 
 
 def before_scenario(context: Any, scenario: Any) -> None:
-    """Read the scenario's steps in advance, so that its world knows the coming behaviours."""
+    """Read the steps of the scenario in advance, so that its world knows which behaviours will follow."""
     # Execute the remaining steps after a failed one: each clause gets its own verdict.
     scenario.continue_after_failed_step = True
     texts = [(int(step.line), str(step.step_type), str(step.name)) for step in scenario.all_steps]
@@ -40,7 +40,7 @@ def before_scenario(context: Any, scenario: Any) -> None:
 
 
 def after_step(context: Any, step: Any) -> None:
-    """Report the outcome of a user-defined step; our own steps have already reported their verdict."""
+    """Report the outcome of a user-defined step. The steps of RobBDD have already reported their verdict."""
     sources = context.session.sources
     context.session.set_step_verdict(int(step.line), _verdict(step, sources))
 
@@ -58,9 +58,9 @@ def after_all(context: Any) -> None:
 
 
 def _verdict(step: Any, sources: Mapping[str, str]) -> Verdict:
-    """Return the verdict on a step's clause from the step's outcome: a failed assertion violates it.
+    """Return the verdict on a step's clause that follows from the step's outcome.
 
-    ``sources`` maps copies of files of steps to the files that users edit.
+    A failed assertion violates the clause. ``sources`` maps copies of files of steps to the files that users edit.
     """
     error: BaseException | None = step.exception
     said = " ".join(str(error or "").split())

@@ -1,4 +1,4 @@
-"""Output of users' code: all of it goes to the process's log, the first part also to the parent as messages."""
+"""Handle the output of users' code. All of it is written to the log, and its first part is also sent to the parent."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CUT = "… the rest of the output is in the log of the run"
 
 
 class Printed(io.TextIOBase):
-    """Replaces standard output; complete lines are sent as messages."""
+    """A replacement of standard output that sends complete lines as messages."""
 
     encoding = "utf-8"
 
@@ -33,7 +33,7 @@ class Printed(io.TextIOBase):
         self._left = MAX_CHARACTERS
 
     def writable(self) -> bool:
-        """Return true."""
+        """Return true, because text can be written."""
         return True
 
     def write(self, text: str) -> int:
@@ -57,7 +57,7 @@ class Printed(io.TextIOBase):
         self._log.flush()
 
     def finish(self) -> None:
-        """Send a last line without a line break."""
+        """Send a last line that has no line break."""
         if self._line and self._left >= 0:
             self._pass_on(self._line)
         self._line = ""
@@ -75,6 +75,6 @@ class Printed(io.TextIOBase):
 
 
 def finish_output() -> None:
-    """Send output without a final line break; called before a scenario is reported as finished."""
+    """Send output that has no final line break. Call it before a scenario is reported as finished."""
     if isinstance(sys.stdout, Printed):
         sys.stdout.finish()

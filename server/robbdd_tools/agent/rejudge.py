@@ -1,7 +1,7 @@
-"""``python -m robbdd_tools.agent.rejudge FOLDER RUN``: judge stored traces against other clauses, without simulating.
+"""``python -m robbdd_tools.agent.rejudge FOLDER RUN``: judge stored traces by other clauses, without simulating.
 
-FOLDER is a run folder with the scenarios to judge and the results of the stored run RUN, which has the traces. Writes
-the same messages as the agent.
+FOLDER is a run folder. It contains the scenarios to judge and the results of the stored run RUN, which has the traces.
+The process writes the same messages as the agent.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ CHANGED = "{} changed since the run: execute a new run"
 
 
 class StoredTraces:
-    """A run's traces and its verdicts on behaviours; raises ``OSError``, ``ValueError`` or ``KeyError``."""
+    """The traces of a run, and its verdicts on behaviours. Raises ``OSError``, ``ValueError`` or ``KeyError``."""
 
     def __init__(self, folder: Path, results: Path) -> None:
         self._folder = folder
@@ -72,7 +72,7 @@ class StoredTraces:
                 yield clause, _decided(clause, found, spec, stored)
 
     def _evidence(self, index: int, spec: ScenarioSpec, stored: ScenarioSpec) -> Evidence | Verdict:
-        """Return the trace of an execution; without a usable trace, the verdict on all of its clauses."""
+        """Return the trace of an execution. If there is no usable trace, return the verdict on all its clauses."""
         reason = _change(spec, stored)
         if reason:
             return unknown(reason, Cause.CHANGED)
@@ -82,12 +82,15 @@ class StoredTraces:
             return unknown(str(error), Cause.NO_RECORD)
 
     def duration(self, spec: ScenarioSpec) -> float:
-        """Return the simulated time (s) of a scenario's stored execution, 0 without one."""
+        """Return the simulated time (s) of the stored execution of a scenario; 0 if there is none."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
         return 0.0 if stored is None else self._results[index].get("duration") or 0.0
 
     def ranges(self, number: int, spec: ScenarioSpec) -> Iterator[MarginRanges]:
-        """Yield margin ranges from the trace of scenario ``number``, to find clauses that prove little."""
+        """Yield the margin ranges in the trace of scenario ``number``.
+
+        They are used to find clauses that prove little.
+        """
         index, stored = self._specs.get(scenario_key(spec), (0, None))
         if stored is None or _change(spec, stored):
             return
@@ -102,7 +105,7 @@ class StoredTraces:
                 yield found
 
     def contacts(self, spec: ScenarioSpec) -> tuple[Contact, ...]:
-        """Return the contacts in a scenario's trace that its clauses do not name."""
+        """Return the contacts in the trace of a scenario that its clauses do not name."""
         index, stored = self._specs.get(scenario_key(spec), (0, None))
         if stored is None:
             return ()
@@ -116,7 +119,10 @@ class StoredTraces:
     def _done(
         self, clause: ClauseSpec, evidence: Evidence, index: int, spec: ScenarioSpec, stored: ScenarioSpec
     ) -> Verdict:
-        """Return the verdict on a When clause: from an event of the trace, or the stored result of the behaviour."""
+        """Return the verdict on a When clause.
+
+        It follows from an event of the trace, or from the behaviour's stored result.
+        """
         statement = statement_of(clause)
         if isinstance(statement, EventOccurrence):
             event, trace, iteration = statement.event, evidence.trace, iteration_of(clause)
@@ -135,7 +141,10 @@ class StoredTraces:
 def _stored_behaviour(
     clause: ClauseSpec, spec: ScenarioSpec, stored: ScenarioSpec, results: Sequence[Mapping[str, Any]]
 ) -> Mapping[str, Any] | None:
-    """Return the stored result of the same behaviour: both scenarios execute the same ones in the same order."""
+    """Return the stored result of the same behaviour.
+
+    It has the same number in both scenarios, because they execute the same behaviours in the same order.
+    """
     then = [entry for one, entry in zip(stored.clauses, results, strict=True) if _is_behaviour(one)]
     now = [one for one in spec.clauses if _is_behaviour(one)]
     return then[now.index(clause)] if len(now) == len(then) else None
@@ -146,7 +155,7 @@ def _is_behaviour(clause: ClauseSpec) -> bool:
 
 
 def _change(spec: ScenarioSpec, stored: ScenarioSpec) -> str:
-    """Return why a trace is not evidence for an edited scenario; empty if it is."""
+    """Return the reason why a trace is no evidence for an edited scenario; empty if it is evidence."""
     if spec.scene != stored.scene:
         return CHANGED.format("the scene")
     if (spec.tree, spec.node) != (stored.tree, stored.node):

@@ -1,4 +1,4 @@
-"""Run behave in this process on the ordered scenarios of a prepared run folder, one after the other."""
+"""Run behave in this process on scenarios of a prepared run folder, one after the other, as the parent orders them."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ QUIET = ("--format=null", "--no-summary", "--no-capture", "--no-capture-stderr",
 
 
 def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
-    """Execute scenarios of a run folder and write messages to a file descriptor; return the exit code."""
+    """Execute scenarios of a run folder and write messages to a file descriptor. Return the exit code."""
     channel = Reports(descriptor)
     use_channel(channel)
     folder = Path(name)
@@ -64,7 +64,7 @@ def run_folder(name: str, orders: Iterable[str], descriptor: int) -> int:
 
 
 def _behave(features: Features, orders: Iterable[str]) -> str:
-    """Execute the ordered scenarios with behave; return why behave could not work, else an empty string."""
+    """Execute the ordered scenarios with behave. Return the reason why behave could not work; empty if it could."""
     configuration: Any = import_module("behave.configuration").Configuration
     behave: Any = import_module("behave.runner")
     config = configuration([*QUIET, str(features.folder / "features")], load_config=False)
@@ -89,7 +89,7 @@ def _behave(features: Features, orders: Iterable[str]) -> str:
 
 
 class Features:
-    """The features of a run folder, each parsed at first use."""
+    """The features of a run folder. Each feature is parsed at its first use."""
 
     def __init__(self, folder: Path, manifest: Manifest, channel: Reports) -> None:
         self.folder = folder
@@ -99,7 +99,7 @@ class Features:
         self._parsed: dict[str, tuple[Any, dict[int, Any]] | Exception] = {}
 
     def own_steps(self) -> list[Path]:
-        """Return the files of user-defined steps, and let them import modules from the models' folders.
+        """Return the files of user-defined steps, and let them import modules from the folders of the models.
 
         Raises ``UserCodeError`` if users' code must not be run.
         """
@@ -109,7 +109,10 @@ class Features:
         return found
 
     def ordered(self, orders: Iterable[str], userdata: dict[str, str]) -> Iterator[Any]:
-        """Yield one feature per order, reduced to the ordered scenario; every order gets its report."""
+        """Yield one feature for each order. The feature contains only the ordered scenario.
+
+        Each order has its own report.
+        """
         for line in orders:
             index = decode_request(line).index
             tree = self._manifest.scenarios[index].tree
@@ -131,7 +134,7 @@ class Features:
                 end_descendants()
 
     def report_broken_steps(self, error: BaseException) -> str:
-        """Report that the users' steps cannot be loaded; return the reason."""
+        """Report that the users' steps cannot be loaded. Return the reason."""
         fault = original(fault_of(error, "steps"), sources_in(self.folder, self._manifest.sources))
         place = fault.place
         if place is not None and place.own:

@@ -1,4 +1,4 @@
-"""State of a run during behave's execution: the manifest, the current scenario, the verdicts so far."""
+"""The state of a run while behave executes it: the manifest, the current scenario, and the verdicts so far."""
 
 from __future__ import annotations
 
@@ -52,9 +52,10 @@ UNKNOWN_SCENARIO = "the manifest of this run has no such scenario; was the featu
 
 
 class ScenarioRun:
-    """The current scenario. ``texts`` are its steps in order: line, role (given, when, then) and sentence.
+    """The current scenario.
 
-    ``keep`` is the run folder for its trace, if the trace is wanted.
+    ``texts`` are its steps in order, each with its line, its role (given, when, then) and its sentence. ``keep`` is the
+    run folder in which the trace is stored, if the trace is wanted.
     """
 
     def __init__(
@@ -93,7 +94,7 @@ class ScenarioRun:
         channel.send(ScenarioStarted(index))
 
     def set_up(self) -> None:
-        """Build the scene if not yet done; raises ``SceneError``."""
+        """Build the scene, unless it is already built. Raises ``SceneError``."""
         if self._broken:
             raise self._broken
         if self._execution is None:
@@ -113,7 +114,7 @@ class ScenarioRun:
                 raise
 
     def _report_left_out(self, execution: Execution) -> None:
-        """Report the elements that are not simulated, each once."""
+        """Report each element that is not simulated once."""
         new = [name for name in execution.simulation.world.cast.left_out if name not in self._courses.left_out]
         self._courses.left_out.update(new)
         if new:
@@ -121,7 +122,7 @@ class ScenarioRun:
             self._channel.send(LogLine("warning", text))
 
     def _show(self, execution: Execution) -> None:
-        """Open a viewer window if requested; a failure does not affect verdicts."""
+        """Open a viewer window if it is requested. A failure does not affect verdicts."""
         if os.environ.get(VIEWER):
             try:
                 self._viewer = Viewer(execution.simulation)
@@ -129,7 +130,7 @@ class ScenarioRun:
                 self._channel.send(LogLine("warning", str(error)))
 
     def clause(self, line: int, text: str) -> Verdict:
-        """Simulate as far as a Given or Then clause needs, and judge it."""
+        """Simulate as far as is necessary to judge a Given or Then clause, and judge it."""
         clause = self._clauses.get(line) or read_clause(text)
 
         def verdict(execution: Execution) -> Verdict:
@@ -142,7 +143,7 @@ class ScenarioRun:
         return self._judged(line, text, verdict)
 
     def behaviour(self, line: int, text: str) -> Verdict:
-        """Simulate to the end of a behaviour; its clause holds if the behaviour succeeded."""
+        """Simulate to the end of a behaviour. The clause holds if the behaviour has succeeded."""
         index = list(self._calls).index(line) if line in self._calls else None
 
         def verdict(execution: Execution) -> Verdict:
@@ -180,11 +181,14 @@ class ScenarioRun:
         return self._judged(line, text, verdict)
 
     def set_step_verdict(self, line: int, verdict: Verdict) -> None:
-        """Record the verdict of a user's step on a clause without a verdict."""
+        """Record the verdict of a user's step, unless its clause already has a verdict."""
         self._report(line, verdict)
 
     def finish(self) -> None:
-        """Judge texts that have a policy, report open clauses as unknown, and report the scenario as finished."""
+        """Report the scenario as finished.
+
+        Before, texts that have a policy are judged, and open clauses are reported as unknown.
+        """
         for line, sentence in list(self._open.items()):
             # behave has no step for such a text.
             if line in self._texts and isinstance(self._clauses[line], Fluent):
@@ -212,7 +216,7 @@ class ScenarioRun:
         return unnamed_contacts(self._clauses.values(), trace, execution.regions)
 
     def _report_ranges(self, execution: Execution) -> None:
-        """Report the margin ranges of the whole execution, to find clauses that could not have failed."""
+        """Report the margin ranges of the whole execution. They are used to find clauses that could not have failed."""
         for line, clause in self._clauses.items():
             known = self._known.get(line)
             if known is None:
@@ -281,9 +285,9 @@ def _broken(execution: Execution) -> Verdict:
 
 
 class Session:
-    """A run: finds behave's current scenario in the manifest.
+    """A run. It finds the scenario that behave is executing in the manifest.
 
-    ``sources`` maps copies of files of users' steps to the originals, as absolute paths.
+    ``sources`` maps the absolute path of each copied file of users' steps to that of the original.
     """
 
     def __init__(self, folder: Path, manifest: Manifest, channel: Channel) -> None:
@@ -303,9 +307,9 @@ class Session:
     def start(
         self, feature: Path, line: int, texts: Sequence[tuple[int, str, str]], handed_out: int | None = None
     ) -> None:
-        """Begin the scenario at this line of a feature; if the manifest has none, its steps will fail.
+        """Begin the scenario at this line of a feature. If the manifest does not contain it, its steps fail.
 
-        ``handed_out`` is its number if the parent process ordered it.
+        ``handed_out`` is the number of the scenario if the parent process has ordered it.
         """
         self._present = None
         index = self._indices.get((feature.resolve(), line))
@@ -320,13 +324,13 @@ class Session:
 
     @property
     def scenario(self) -> ScenarioRun:
-        """The current scenario; raises ``SceneError`` if it is not in the manifest."""
+        """The current scenario. Raises ``SceneError`` if it is not in the manifest."""
         if self._present is None:
             raise SceneError(UNKNOWN_SCENARIO)
         return self._present
 
     def set_step_verdict(self, line: int, verdict: Verdict) -> None:
-        """Record the verdict of a user's step on the clause of a line."""
+        """Record the verdict of a user's step on the clause at a feature line."""
         if self._present is not None:
             self._present.set_step_verdict(line, verdict)
 

@@ -1,4 +1,4 @@
-"""Set-up of a scenario's execution: behaviours, times, and the course that related scenarios share."""
+"""Set up the execution of a scenario: its behaviours, its times, and the execution that related scenarios share."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ KEPT = 8
 
 
 class SharedExecutions:
-    """Courses shared by several scenarios: one for each execution of a behaviour tree."""
+    """The executions that several scenarios share. There is one for each execution of a behaviour tree."""
 
     def __init__(self) -> None:
         self._kept: dict[str, BehaviourRun] = {}
@@ -30,7 +30,10 @@ class SharedExecutions:
         """Elements already reported as left out."""
 
     def course(self, spec: ScenarioSpec, calls: Sequence[Call], timing: Timing) -> BehaviourRun:
-        """Return the course of a scenario, a new one unless it shares one; raises ``SceneError``."""
+        """Return the ``BehaviourRun`` of a scenario, which is new unless the scenario shares it.
+
+        Raises ``SceneError``.
+        """
         if spec.tree is None:
             return BehaviourRun(spec, calls, timing)
         course = self._kept.pop(spec.tree.name, None) or BehaviourRun(spec, calls, timing)
@@ -41,7 +44,7 @@ class SharedExecutions:
 
 
 def calls_of(spec: ScenarioSpec) -> list[Call]:
-    """Return the behaviours of a scenario, or those of its behaviour tree whose arguments are known.
+    """Return the behaviours of a scenario or, if it has one, those of its behaviour tree whose arguments are known.
 
     Raises the ``SceneError`` of ``call_of``.
     """
@@ -51,10 +54,10 @@ def calls_of(spec: ScenarioSpec) -> list[Call]:
 
 
 def call_of(call: BehaviourCall) -> Call:
-    """Return a behaviour in executable form.
+    """Return a behaviour in the form in which it is executed.
 
-    A place may be a set, from which the behaviour chooses an element. Raises ``SceneError`` for any other set, and for
-    an empty one.
+    A place may be a set, from which the behaviour chooses an element. Raises ``SceneError`` for an empty set, and for a
+    set in any other slot.
     """
     arguments: dict[str, str | tuple[str, ...]] = {}
     for slot in call.behaviour.slots:
@@ -69,7 +72,7 @@ def call_of(call: BehaviourCall) -> Call:
 
 
 def timing_of(spec: ScenarioSpec, clauses: Iterable[Clause]) -> Timing:
-    """Return times that leave room for the windows of all clauses, of the scenario or of its tree."""
+    """Return times that leave room for the windows of all clauses of the scenario or of its behaviour tree."""
     lead, tail = (LEAD, 0.0) if spec.tree is None else (spec.tree.lead, spec.tree.tail)
     for clause in clauses if spec.tree is None else ():
         for fluent in fluents_of(clause):

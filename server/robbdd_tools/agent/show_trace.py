@@ -1,7 +1,7 @@
 """``python -m robbdd_tools.agent.show_trace RUN INDEX``: print the contents of a stored trace as one JSON object.
 
-It is the part of ``docs/schemas/trace.schema.json`` that comes from the trace: shapes, meshes, bodies, frames,
-workspaces. Exit codes: 0 done; 2 the trace cannot be read, with the reason on standard error.
+The object has those parts of ``docs/schemas/trace.schema.json`` that are read from the trace: shapes, meshes, bodies,
+frames and workspaces. Exit codes: 0 done; 2 the trace cannot be read, with the reason on standard error.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ FRAMES = 4000
 
 
 def show(path: Path) -> dict[str, Any]:
-    """Return the displayable contents of a trace; raises ``UnreadableTrace``."""
+    """Return the contents of a trace that can be displayed. Raises ``UnreadableTrace``."""
     seen = read_views(path, ("/geometry", "/tf"))
     transforms = [message["transforms"] for _, message in seen["/tf"]]
     if not transforms or not seen["/geometry"]:

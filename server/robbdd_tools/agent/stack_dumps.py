@@ -1,6 +1,6 @@
-"""Dump this process's stack for its parent when it crashes, exits or takes too long.
+"""Dump the stack of this process for its parent when the process crashes, exits or takes too long.
 
-The interpreter's own fault handler writes the dump: in a signal handler, or in a thread that does not need the
+The fault handler of the interpreter writes the dump, in a signal handler or in a thread that does not need the
 interpreter.
 """
 
@@ -19,9 +19,9 @@ _limit = 0.0
 
 
 def install() -> None:
-    """Dump the stack if this process crashes, or is not ready within ``STARTUP`` seconds.
+    """Dump the stack if this process crashes, or if it is not ready within ``STARTUP`` seconds.
 
-    No effect in a process started by hand.
+    This has no effect in a process that was started by hand.
     """
     global _file, _limit
     base, limit = os.environ.pop(CRASH, ""), os.environ.pop(LIMIT, "0")
@@ -41,7 +41,7 @@ def watch() -> None:
 
 
 def rest() -> None:
-    """Cancel the dump for the time limit, and delete an earlier one."""
+    """Cancel the dump at the time limit, and delete an earlier dump."""
     if _file is not None:
         faulthandler.cancel_dump_traceback_later()
         _file.truncate(0)
@@ -54,7 +54,7 @@ def _watch(seconds: float) -> None:
 
 
 def _dump_before_leaving(file: BinaryIO) -> None:
-    """Make ``os._exit``, which bypasses all handlers, dump the stack first; not in child processes."""
+    """Make ``os._exit`` dump the stack first, because it bypasses all handlers. Child processes are not affected."""
     leave, own = os._exit, os.getpid()
 
     def dump_and_leave(status: int) -> None:

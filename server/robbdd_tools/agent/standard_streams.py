@@ -1,4 +1,4 @@
-"""Give users' code usable standard streams, and keep the channel to the parent out of its reach."""
+"""Give users' code usable standard streams, and prevent it from accessing the channel to the parent."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import os
 def reserve_channel() -> tuple[int, int]:
     """Return copies of standard input and output that child processes do not inherit.
 
-    All other code, including behave, the engine and users' code, then reads an empty standard input and prints to the
-    log.
+    After this, all other code, including behave, the engine and users' code, reads an empty standard input and prints
+    to the log.
     """
     orders, messages = os.dup(0), os.dup(1)
     nothing = os.open(os.devnull, os.O_RDONLY)

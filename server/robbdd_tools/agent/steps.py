@@ -1,4 +1,4 @@
-"""behave steps, one for every sentence of the catalog."""
+"""The steps of behave, one for every sentence of the catalog."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ TABLES = ("a set of objects", "a set of workspaces", "a set of agents", "variabl
 
 
 def register() -> None:
-    """Register the steps with behave; called from a file of the steps folder.
+    """Register the steps with behave. A file in the steps folder calls this function.
 
-    They are registered for all keywords: behave prefers a user's definition for one keyword and accepts both.
+    The steps are registered for all keywords. So a user can define the same step for one keyword; behave prefers this
+    definition.
     """
     behave = import_module("behave")
     matchers = import_module("behave.matchers")
@@ -44,7 +45,7 @@ def register() -> None:
 
 
 def load_steps(files: Iterable[Path]) -> None:
-    """Register our steps, then those in users' files; exceptions of these files pass through."""
+    """Register the steps of RobBDD and then those in users' files. Exceptions in these files are not caught."""
     register()
     matchers = import_module("behave.api.step_matchers")
     names: dict[str, Any] = {"use_step_matcher": matchers.use_step_matcher, "step_matcher": matchers.step_matcher}
@@ -89,7 +90,7 @@ def _check(context: Any, judge: Callable[[ScenarioRun, int, str], Verdict]) -> N
 
 
 def _present_step(context: Any) -> Any:
-    """Return the current step, as behave passes a step function only its text."""
+    """Return the current step, because behave passes only its text to a step function."""
     return next(step for step in context.scenario.all_steps if step.status.is_untested())
 
 

@@ -30,12 +30,12 @@ NOT_REACHED = "precondition not reached"
 
 
 class TreeRun:
-    """A behaviour tree in execution.
+    """A behaviour tree in execution. Raises ``SceneError`` if the tree cannot be created.
 
-    ``stamp`` is called with ``<node> start`` and ``<node> end`` (the node has succeeded) when they happen, and the
-    number of the node's execution; ``active`` are the nodes, by IRI, whose behaviour is at work, innermost first.
-    ``executions`` maps emitters of events to how often what emits them was begun, each from 1. Raises ``SceneError``
-    when the tree cannot be made.
+    - ``stamp``: called with ``<node> start`` when a node starts and with ``<node> end`` when it has succeeded, and with
+      the number of the node's execution.
+    - ``active``: the IRIs of the nodes whose behaviour is being executed, innermost first.
+    - ``executions``: maps each emitter of events to the number of its executions so far (from 1).
     """
 
     def __init__(self, spec: TreeSpec, attempt: Attempt, stamp: Callable[[str, int], None]) -> None:
@@ -54,7 +54,10 @@ class TreeRun:
         self.active: tuple[str, ...] = ()
 
     def steps(self) -> Iterator[None]:
-        """Tick the tree once per control tick until it is over; raises ``UserError`` and ``SimulationError``."""
+        """Tick the tree once in each control tick until the tree is over.
+
+        Raises ``UserError`` if users' code fails, and ``SimulationError`` if the simulation becomes unstable.
+        """
         while True:
             before = {behaviour.id: behaviour.status for behaviour in _preorder(self._root)}
             ticked = self._tick()
@@ -69,21 +72,21 @@ class TreeRun:
         return self._nodes[node].id in self._begun
 
     def is_over(self, node: str) -> bool:
-        """Whether a node has ended for good: one that the tree may execute again ends with the tree."""
+        """Return whether a node has ended finally. A node that the tree may execute again ends with the tree."""
         return self._is_over or (self.has_succeeded(node) and self._nodes[node].id not in self._repeatable)
 
     def has_succeeded(self, node: str) -> bool:
-        """Whether the last execution of a node has succeeded."""
+        """Return whether the last execution of a node has succeeded."""
         return self._nodes[node].id in self._succeeded
 
     @property
     def pending(self) -> frozenset[str]:
-        """Emitters of events that may be emitted again."""
+        """The emitters of events that may be emitted again."""
         return frozenset() if self._is_over else self._repeated
 
     @cached_property
     def _repeated(self) -> frozenset[str]:
-        """Emitters within nodes that the tree may execute again."""
+        """The emitters that belong to nodes that the tree may execute again."""
         found: set[str] = set()
         for iri, behaviour in self._nodes.items():
             if behaviour.id in self._repeatable:
@@ -94,11 +97,11 @@ class TreeRun:
         return frozenset(found)
 
     def failure(self, node: str) -> str:
-        """Return why a node failed: the reason of its last failed descendant; empty if none failed."""
+        """Return why a node failed, which is the reason of its last failed descendant; empty if none failed."""
         return self._failure(self._nodes[node])[1]
 
     def unreached(self, node: str, remark: str) -> str:
-        """Return why a node of a finished tree was never ticked; ``remark`` is the latest problem."""
+        """Return the reason why a node of a finished tree was never ticked. ``remark`` is the latest problem."""
         found = self._nodes[node]
         while found.parent is not None and found.parent.id not in self._begun:
             found = found.parent
@@ -124,7 +127,7 @@ class TreeRun:
         return COMPOSITES[node.kind](name=node.name, memory=True, children=children)
 
     def _leaf(self, name: str) -> Behaviour:
-        """Create the leaf that executes a node's behaviour; raises ``ValueError`` for an unknown node."""
+        """Create the leaf that executes the behaviour of a node. Raises ``ValueError`` for an unknown node."""
         known = {node.name: node for node in self._spec.nodes}
         if name not in known:
             raise ValueError(f"the model declares no node '{name}' of this tree; it has {', '.join(known)}")
@@ -165,7 +168,7 @@ class TreeRun:
             raise UserError(f"{at(source.origin)}{error}", replace(error.fault, origin=source.iri)) from error
 
     def _take_note(self, ticked: Iterable[Behaviour], before: Mapping[UUID, Status]) -> None:
-        """Record events for nodes that started or ended in this tick; ``before`` has their previous statuses."""
+        """Record the events of the nodes that started or ended in this tick. ``before`` has their previous statuses."""
         for behaviour in ticked:
             iri = self._iris.get(behaviour.id)
             if before.get(behaviour.id) is not Status.RUNNING:
@@ -181,7 +184,7 @@ class TreeRun:
 
 
 class _Leaf(Behaviour):
-    """Executes one behaviour, one control tick for each tick of the tree."""
+    """A leaf that executes one behaviour. Each tick of the tree is one control tick of the behaviour."""
 
     def __init__(self, node: NodeSpec, run: Callable[[Behaviour, NodeSpec], Generator[None, None, str]]) -> None:
         super().__init__(node.name)
@@ -213,13 +216,16 @@ def _events_of(node: NodeSpec) -> tuple[str, ...]:
 
 
 def _may_repeat(behaviour: Behaviour) -> bool:
-    """Return true unless all composites above a behaviour are sequences and selectors with memory."""
+    """Return whether the tree may execute a behaviour again.
+
+    It may not if all composites above the behaviour are sequences and selectors with memory.
+    """
     above = islice(_upwards(behaviour), 1, None)
     return not all(type(one) in COMPOSITES.values() and cast("Sequence | Selector", one).memory for one in above)
 
 
 def _made(spec: TreeSpec, leaf: Callable[[str], Behaviour]) -> Behaviour:
-    """Build a tree from leaves with the user's function; raises ``SceneError``."""
+    """Return the tree that the user's function builds from leaves. Raises ``SceneError``."""
     source = spec.source
     assert source is not None
     place, model = at(source.origin), "" if source.origin is None else source.origin.file

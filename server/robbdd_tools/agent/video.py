@@ -1,4 +1,4 @@
-"""Videos of an execution, annotated with its events."""
+"""Make videos of an execution that show its events."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class NoVideo(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """The violation of the clause ``name`` at a time (s)."""
+    """The violation of the clause ``name`` at the time ``at`` (s)."""
 
     at: float
     clause: str

@@ -1,4 +1,4 @@
-"""Store the world state at each clause violation, to render pictures later."""
+"""Store the state of the world at each violation of a clause, so that pictures can be rendered later."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FOLDER = "moments"
 
 @dataclass(frozen=True, slots=True)
 class ViolationState:
-    """A violation: scenario number, feature line of the clause, time (s), the engine's joint positions."""
+    """A violation: the number of the scenario, the feature line of the clause, the time (s) and the joint positions."""
 
     index: int
     line: int
@@ -28,16 +28,17 @@ class ViolationState:
 
 
 class ViolationStates:
-    """The violations of a run folder: one file per scenario with one JSON object per line, in order of detection.
+    """The violations in a run folder.
 
-    Several agent processes may work in one folder, each on its own scenarios.
+    Each scenario has one file with one JSON object in each line, in the order of detection. Several agent processes may
+    work in one folder, each on its own scenarios.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder / FOLDER
 
     def clear(self, index: int) -> None:
-        """Delete those of an earlier execution of a scenario; raises ``OSError``."""
+        """Delete the violations of an earlier execution of a scenario. Raises ``OSError``."""
         self._file(index).unlink(missing_ok=True)
 
     def keep(self, index: int, line: int, at: float, state: FloatArray) -> None:
@@ -48,7 +49,7 @@ class ViolationStates:
             file.write(json.dumps(asdict(moment)) + "\n")
 
     def __iter__(self) -> Iterator[ViolationState]:
-        """Yield all, scenario by scenario; raises ``OSError`` or ``ValueError`` if a file cannot be read."""
+        """Yield all violations, scenario by scenario. Raises ``OSError`` or ``ValueError`` if a file cannot be read."""
         for path in sorted(self._folder.glob("*.jsonl")):
             for line in load_text(path, RESULT_SIZE).splitlines():
                 try:

@@ -133,7 +133,7 @@ def _time(match: re.Match[str]) -> TimeConstraint:
 
 
 def _balanced(text: str) -> bool:
-    """Return whether every closing parenthesis outside of quotes has an opening one before it."""
+    """Return whether the parentheses outside of quotes are balanced."""
     depth = 0
     for char in _outside_quotes(text):
         depth += (char == "(") - (char == ")")
@@ -156,5 +156,5 @@ def _split(text: str, separator: str) -> list[str]:
 
 
 def _outside_quotes(text: str) -> str:
-    """Return a text in which spaces replace quoted text and escaped characters, so that its length stays the same."""
+    """Return a text of the same length in which ``_`` replaces quoted text and escaped characters."""
     return _OPAQUE.sub(lambda match: "_" * len(match[0]), text)

@@ -1,4 +1,4 @@
-"""Observation policies: a ``.bddx`` replaces the catalog's observation and evaluation of clauses."""
+"""Judge clauses by the observation policies of a ``.bddx``, which replace observation and evaluation by the catalog."""
 
 from __future__ import annotations
 

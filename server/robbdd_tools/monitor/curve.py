@@ -73,7 +73,7 @@ def _drawn(found: Curve, times: FloatArray, margins: FloatArray | None) -> Curve
 
 
 def _extremes(margins: FloatArray) -> Iterator[int]:
-    """Yield the rows of the smallest and the largest margin in each of ``POINTS / 2`` parts."""
+    """Yield the rows of the smallest and the largest margin in each of ``POINTS / 2`` parts of a curve."""
     bounds = np.linspace(0, len(margins), POINTS // 2 + 1).astype(int).tolist()
     for first, after in pairwise(bounds):
         part = margins[first:after]
@@ -81,7 +81,7 @@ def _extremes(margins: FloatArray) -> Iterator[int]:
 
 
 def _judged(found: Curve, times: FloatArray, margins: FloatArray) -> Iterator[int]:
-    """Yield the deciding rows: the window's first and last, and the smallest margin in between."""
+    """Yield the rows that decide the verdict: the window's first and last row, and that of the smallest margin."""
     if found.start is None or found.end is None:
         return
     first, after = np.searchsorted(times, [found.start - DIGIT, found.end + DIGIT]).tolist()

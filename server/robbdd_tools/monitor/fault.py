@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One call of a traceback: an absolute path, a line from 1, the function and the line's text without indentation.
+    """One call in a traceback.
 
-    ``own`` is false for a library called by the user's code.
+    It has an absolute path, a line (from 1), the function, and the text of the line without indentation. ``own`` is
+    false for a call in a library that the user's code calls.
     """
 
     file: str

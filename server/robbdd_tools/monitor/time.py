@@ -1,4 +1,4 @@
-"""Time constraints of fluents, and the window of a trace that each selects (paper, section on fluents)."""
+"""Time constraints of fluents, and the window of a trace that each one selects (paper, section on fluents)."""
 
 from __future__ import annotations
 

@@ -31,7 +31,10 @@ class EventStamp:
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """World state at one instant: name → position (m, world frame), name → orientation (w, x, y, z)."""
+    """The state of the world at one instant. It maps names to positions and orientations.
+
+    Positions are in m in the world frame, orientations are unit quaternions (w, x, y, z).
+    """
 
     time: float
     positions: Mapping[str, tuple[float, float, float]]

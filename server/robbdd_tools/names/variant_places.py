@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PlacedVariant:
-    """A scenario variant: its definition, its tree, its declaration (or part of one), and its template if known.
+    """A scenario variant: its definition, its syntax tree, its declaration (or a part of one) and its template.
 
-    ``rows`` are the absolute spans of its table's rows, in the order of its scenarios; empty without a table.
+    The template is ``None`` if it is unknown. ``rows`` are the absolute spans of the rows in its table, in the order of
+    its scenarios; empty without a table.
     """
 
     definition: Definition

@@ -1,1 +1,1 @@
-"""Data shared by a run and its agent processes: the manifest, the messages, the names of files in a run folder."""
+"""Data that a run and its agent processes share: the manifest, the messages, and the names of files in a run folder."""

@@ -1,7 +1,7 @@
-"""Clauses of one scenario as data: every variable is replaced by its value, names are CURIEs.
+"""Clauses of one scenario as data. Values replace all variables, and names are CURIEs.
 
-The parent process makes them from the model and writes the sentences of features from them; the agent takes them from
-the manifest and parses a sentence only if a person wrote it.
+The parent process makes them from the model, and writes the sentences of features from them. The agent reads them from
+the manifest. It parses a sentence only if a person wrote it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class AnyOf:
-    """Any element of a set: the value of an existential variable, or of a set used as a place."""
+    """Any element of a set. It is the value of an existential variable, or of a set that is used as a place."""
 
     elements: tuple[str, ...]
 
@@ -30,10 +30,10 @@ Filler = str | tuple[str, ...] | AnyOf
 
 @dataclass(frozen=True, slots=True)
 class Fluent:
-    """``holds(predicate, time)`` with the values of the predicate's slots.
+    """The clause ``holds(predicate, time)``, with the values of the predicate's slots.
 
-    ``iri`` is that of the model's clause. ``named`` are the values of its slots and quantified variables by name, for
-    users' code that judges it.
+    ``iri`` is the IRI of the clause in the model. ``named`` has the values of its slots and quantified variables by
+    name, for users' code that judges it.
     """
 
     predicate: Predicate
@@ -45,9 +45,9 @@ class Fluent:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """Text of a step that no catalog word matches; ``time`` is ``None`` if it has none.
+    """The text of a step that no word of the catalog matches. ``time`` is ``None`` if it has no time constraint.
 
-    ``iri`` and ``named`` are as for a fluent.
+    ``iri`` and ``named`` have the same meaning as in a fluent.
     """
 
     words: str
@@ -58,7 +58,7 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Junction:
-    """Clauses joined by ``and`` or ``or``, or one clause negated."""
+    """Clauses that are joined by ``and`` or ``or``, or one clause that is negated."""
 
     operator: Literal["and", "or", "not"]
     operands: tuple[Clause, ...]
@@ -115,8 +115,10 @@ def to_plain(statement: Statement) -> dict[str, Any]:
 
 
 def from_plain(data: Mapping[str, Any]) -> Statement:
-    """Return the statement of the JSON form that ``to_plain`` returns; raises ``KeyError``, ``TypeError`` or
-    ``ValueError``."""
+    """Return the statement whose JSON form is ``data``, as made by ``to_plain``.
+
+    Raises ``KeyError``, ``TypeError`` or ``ValueError``.
+    """
     match data:
         case {"behaviour": str(name), "arguments": arguments}:
             return BehaviourCall(load_catalog().behaviours[name], _arguments(arguments))

@@ -1,4 +1,4 @@
-"""Places of faults: which frames are the user's own, and the files that the user edits."""
+"""Places of faults: find the frames that are in the user's own files, and the files that the user edits."""
 
 from __future__ import annotations
 
@@ -37,11 +37,17 @@ def with_digest(fault: Fault) -> Fault:
 
 
 def original(fault: Fault, sources: Mapping[str, str]) -> Fault:
-    """Return a fault with the files that the user edits in place of the copies that ran; both are absolute paths."""
+    """Return a fault that names the files that the user edits instead of the copies that were executed.
+
+    ``sources`` maps the absolute paths of the copies to those of the originals.
+    """
     frames = tuple(replace(one, file=sources.get(str(Path(one.file).resolve()), one.file)) for one in fault.frames)
     return with_digest(replace(fault, frames=frames))
 
 
 def sources_in(folder: Path, sources: Mapping[str, str]) -> dict[str, str]:
-    """Return the originals of a run folder's copies (``Manifest.sources``) by the absolute paths of the copies."""
+    """Map the absolute paths of the copies in a run folder to the files that they were copied from.
+
+    ``sources`` is the field of this name in ``Manifest``.
+    """
     return {str((folder / copy).resolve()): source for copy, source in sources.items()}

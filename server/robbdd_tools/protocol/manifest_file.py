@@ -1,6 +1,6 @@
-"""The manifest in a run folder: the scenarios that the agent executes.
+"""The file in a run folder that lists the scenarios for the agent to execute.
 
-Scenarios refer to their execution by its IRI and to their behaviour tree by its name; each of these is written once.
+A scenario refers to its execution by its IRI, and to its behaviour tree by its name. Each of these is written once.
 """
 
 from __future__ import annotations
@@ -27,10 +27,9 @@ STORED_RESULTS = "stored-results.json"
 
 
 def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioSpec]) -> Iterator[ScenarioSpec]:
-    """Write a manifest into a run folder, with the head of ``head`` and these scenarios, and yield each scenario once
-    written.
+    """Write a manifest into a run folder, and yield each scenario after it is written. Raises ``OSError``.
 
-    Raises ``OSError``.
+    ``head`` is a manifest whose data, except for its scenarios, is written.
     """
     executions: dict[str, ExecutionSpec] = {}
     trees: dict[str, TreeSpec] = {}
@@ -52,7 +51,7 @@ def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioS
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Read the manifest of a run folder; raises ``OSError``, ``ValueError``, ``KeyError`` or ``TypeError``."""
+    """Return the manifest of a run folder. Raises ``OSError``, ``ValueError``, ``KeyError`` or ``TypeError``."""
     data = json.loads(load_text(folder / MANIFEST, RESULT_SIZE))
     executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
     trees = {entry["name"]: from_plain(TreeSpec, entry) for entry in data.get("trees", ())}
@@ -97,8 +96,7 @@ def _json(value: object) -> str:
 
 
 def _plain(value: Any) -> object:
-    """Return the fields of a dataclass without copying, unlike ``asdict``. Executions and trees are replaced by their
-    names."""
+    """Return the fields of a dataclass without copying them, unlike ``asdict``. Names replace executions and trees."""
     if isinstance(value, ExecutionSpec):
         return value.iri
     if isinstance(value, TreeSpec):

@@ -1,7 +1,7 @@
-"""Messages between a run and its agent processes: one JSON object per line in both directions.
+"""The messages between a run and its agent processes. Each message is one line of JSON.
 
-The agent reads orders (``Execute``) on its standard input, exits at its end, and writes ``RunMessage``s. Every message
-is a frozen dataclass; ``encode`` and ``decode`` are inverse.
+The agent reads orders (``Execute``) from its standard input, and exits when the input ends. It writes ``RunMessage``
+objects. Every message is a frozen dataclass. ``decode`` is the inverse of ``encode``.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ VIEWER = "ROBBDD_VIEWER"
 
 @dataclass(frozen=True, slots=True)
 class Execute:
-    """The parent's order to execute scenario number ``index`` of the manifest."""
+    """The order of the parent to execute scenario number ``index`` of the manifest."""
 
     index: int
 
 
 @dataclass(frozen=True, slots=True)
 class RunStarted:
-    """The agent is ready; the manifest has ``total`` scenarios."""
+    """The agent is ready. The manifest has ``total`` scenarios."""
 
     total: int
     simulator: str
@@ -42,7 +42,7 @@ class ScenarioStarted:
 
 @dataclass(frozen=True, slots=True)
 class ClauseStarted:
-    """The clause on feature line ``line`` is waiting for its window to close."""
+    """The clause on the feature line ``line`` is waiting for the end of its window."""
 
     index: int
     line: int
@@ -50,10 +50,10 @@ class ClauseStarted:
 
 @dataclass(frozen=True, slots=True)
 class ClauseJudged:
-    """A clause has its verdict (``holds``, ``violated``, ``unknown``); see ``monitor.verdict.Verdict``.
+    """A clause has its verdict (``holds``, ``violated`` or ``unknown``); see ``monitor.verdict.Verdict``.
 
-    ``fault`` is the ``id`` of the error in users' code that makes it unknown, as in ``UserCodeFailed``. ``cause`` is a
-    ``monitor.verdict.Cause``, empty if the verdict is known.
+    ``fault`` is the ``id`` of the error in users' code that makes the clause unknown, as in ``UserCodeFailed``.
+    ``cause`` is a ``monitor.verdict.Cause``; empty if the verdict is known.
     """
 
     index: int
@@ -72,9 +72,9 @@ class ClauseJudged:
 
 @dataclass(frozen=True, slots=True)
 class MarginRanges:
-    """Smallest and largest margin of each fluent of the clause on ``line`` over the whole execution.
+    """The smallest and the largest margin of each fluent of the clause on ``line`` in the whole execution.
 
-    ``held_before`` says whether a Then clause holds and its predicates also held before the behaviour began; ``None``
+    ``held_before`` states whether a Then clause holds and its predicates also held before the behaviour began; ``None``
     if unknown.
     """
 
@@ -86,10 +86,11 @@ class MarginRanges:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioFinished:
-    """All clauses of scenario ``index`` are judged; times in seconds (simulated, wall, wall inside mj_step).
+    """All clauses of scenario ``index`` are judged. Times are in s (simulated, wall, and wall inside mj_step).
 
-    ``resampled`` counts the random places that were sampled again because of overlap or lack of reach. ``contacts`` are
-    contacts of agents that no clause names as a target, except with gripped objects and the supports of these.
+    ``resampled`` is the number of random places that were sampled again because of an overlap or because they were out
+    of reach. ``contacts`` are contacts of agents that no clause names as a target, except those with gripped objects
+    and the supports of these.
     """
 
     index: int
@@ -102,9 +103,9 @@ class ScenarioFinished:
 
 @dataclass(frozen=True, slots=True)
 class UserCodeFailed:
-    """Users' code failed in scenario ``index``, or before any scenario if ``None``; once per scenario.
+    """Users' code failed in scenario ``index`` or, if ``index`` is ``None``, before any scenario.
 
-    It precedes the verdicts that name ``fault``.
+    The message is sent once for each scenario, before the verdicts that name ``fault``.
     """
 
     index: int | None
@@ -113,7 +114,7 @@ class UserCodeFailed:
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """Lines that users' code printed during scenario ``index``, or before any scenario if ``None``."""
+    """Lines that users' code printed during scenario ``index`` or, if ``index`` is ``None``, before any scenario."""
 
     index: int | None
     text: str
@@ -121,7 +122,7 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class LogLine:
-    """A line for the log: ``level`` is ``info``, ``warning`` or ``error``."""
+    """A line for the log. ``level`` is ``info``, ``warning`` or ``error``."""
 
     level: str
     text: str
@@ -129,7 +130,7 @@ class LogLine:
 
 @dataclass(frozen=True, slots=True)
 class RunFinished:
-    """The agent exits by itself; ``ok`` is false if it cannot work. A stream that ends otherwise means a crash."""
+    """The agent exits regularly. ``ok`` is false if it cannot work. Without this message, the agent has crashed."""
 
     ok: bool
 
@@ -182,17 +183,20 @@ def judged(index: int, line: int, verdict: Verdict) -> ClauseJudged:
 
 
 def never_judged(index: int, line: int, reason: str, cause: Cause, fault: Fault | None = None) -> ClauseJudged:
-    """Return the message for a clause that is unknown because nothing judged it; ``fault`` is the cause, if known."""
+    """Return the verdict *unknown* for a clause that nothing judged.
+
+    ``fault`` is the error that caused it, if known.
+    """
     return judged(index, line, unknown(reason, cause, fault=fault))
 
 
 def encode(message: RunMessage | Execute) -> str:
-    """Return a message as one line of JSON in ASCII, without the line end."""
+    """Return a message as one line of JSON in ASCII, without the line break."""
     return json.dumps({"type": type(message).__name__, **asdict(message)})
 
 
 def decode(line: str) -> RunMessage:
-    """Return the message of a line; raises ``ValueError`` if any field is invalid."""
+    """Return the message that a line contains. Raises ``ValueError`` if any field is invalid."""
     try:
         fields = json.loads(line, parse_float=finite, parse_constant=finite)
         message = from_plain(_TYPES[fields.pop("type")], fields)
@@ -208,7 +212,7 @@ def decode(line: str) -> RunMessage:
 
 
 def decode_request(line: str) -> Execute:
-    """Return the order of a line; raises ``ValueError`` if it is invalid."""
+    """Return the order that a line contains. Raises ``ValueError`` if it is invalid."""
     match json.loads(line):
         case {"type": "Execute", "index": int(index)}:
             return Execute(index)

@@ -1,4 +1,4 @@
-"""Constants shared by a run and its agents: names of files in a run folder, environment variables, limits."""
+"""Constants that a run and its agents share: names of files in a run folder, environment variables and limits."""
 
 from __future__ import annotations
 
@@ -28,15 +28,21 @@ def curves_file(folder: Path, index: int) -> Path:
 
 
 def thumbnail_file(folder: Path, index: int, line: int) -> Path:
-    """Return the path of the thumbnail of a violation: scenario, feature line of the clause."""
+    """Return the path of the thumbnail of a violation.
+
+    ``index`` is the number of the scenario, ``line`` the feature line.
+    """
     return folder / f"{index:06}-{line}.png"
 
 
 def dump_file(base: Path) -> Path:
-    """Return the path of an agent's stack dump; ``base`` is the value of ``CRASH``."""
+    """Return the path of an agent's stack dump. ``base`` is the value of the environment variable ``CRASH``."""
     return base.with_name(f"{base.name}.stack")
 
 
 def call_file(base: Path) -> Path:
-    """Return the path where an agent records its calls of user code: name, file and line, each followed by a NUL."""
+    """Return the path of the file in which an agent records its calls of user code.
+
+    The file contains the name, the file and the line of the call, each followed by a NUL.
+    """
     return base.with_name(f"{base.name}.call")

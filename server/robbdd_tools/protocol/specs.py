@@ -15,7 +15,7 @@ from robbdd_tools.protocol.clauses import Statement
 
 @dataclass(frozen=True, slots=True)
 class ConfigSpec:
-    """A configuration that a Given clause sets: the element's CURIE, the name, the value as text."""
+    """A configuration that a Given clause sets: the CURIE of the element, the name, and the value as text."""
 
     target: str
     name: str
@@ -24,12 +24,14 @@ class ConfigSpec:
 
 @dataclass(frozen=True, slots=True)
 class SceneSpec:
-    """Content of a scenario's world; all names are CURIEs as in the feature text.
+    """The contents of a scenario's world. All names are CURIEs, as in the text of the feature.
 
-    ``workspaces`` maps a workspace to the objects that carry it; ``contains`` to the workspaces inside it (a bin's
-    workspace within the table's); ``places`` maps an object to the workspace where the Given clauses put it. ``config``
-    are the configurations that the Given clauses set. ``unused`` are the objects and agents that no clause mentions;
-    ``sets`` maps elements to the local names of their sets, where models are chosen by name.
+    - ``workspaces``: maps a workspace to the objects that carry it.
+    - ``contains``: maps a workspace to the workspaces inside it, for example the table's to that of a bin.
+    - ``places``: maps an object to the workspace where the Given clauses put it.
+    - ``config``: the configurations that the Given clauses set.
+    - ``unused``: the objects and agents that no clause mentions.
+    - ``sets``: maps elements to the local names of their sets, where models are chosen by name.
     """
 
     objects: tuple[str, ...] = ()
@@ -44,11 +46,13 @@ class SceneSpec:
 
 @dataclass(frozen=True, slots=True)
 class ExecutionSpec:
-    """How scenarios are executed, as specified in a ``.bddx``: ``name`` is the execution's CURIE.
+    """The way in which scenarios are executed, as specified in a ``.bddx``.
 
-    ``implementation`` executes the behaviours in ``scene`` (elements by CURIE); ``policies`` judge the clauses that
-    they name (by IRI; their observations are CURIEs). ``repeat`` is the number of executions, ``timeout`` is in seconds
-    of simulated time.
+    - ``name``: the CURIE of the execution.
+    - ``implementation``: executes the behaviours in ``scene``, whose elements are CURIEs.
+    - ``policies``: judge the clauses that they name by IRI. Their observations are CURIEs.
+    - ``repeat``: the number of executions.
+    - ``timeout``: the limit in s of simulated time.
     """
 
     iri: str
@@ -62,12 +66,13 @@ class ExecutionSpec:
 
 @dataclass(frozen=True, slots=True)
 class ClauseSpec:
-    """One clause of one scenario: the feature line of its step, the IRI of the judged clause, its role.
+    """One clause of one scenario: the feature line of its step, the IRI of the judged clause, and its role.
 
-    ``statement`` is its content; in a run stored by an earlier version it is missing, and ``sentence`` is parsed.
-    ``parts`` are the IRIs of the fluents and texts of a group, in the order of the sentence. ``iterations`` are the
-    first and the last behaviour of the clause's scope, counted from 1 within the scenario; empty if the scenario
-    executes a single one.
+    - ``statement``: the content of the clause. It is missing in a run that an earlier version stored; then ``sentence``
+      is parsed.
+    - ``parts``: the IRIs of the fluents and texts of a group, in the order of the sentence.
+    - ``iterations``: the first and the last behaviour of the clause's scope, counted from 1 within the scenario; empty
+      if the scenario executes a single behaviour.
     """
 
     line: int
@@ -82,14 +87,17 @@ class ClauseSpec:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioSpec:
-    """One execution: a scenario of a feature, with its values and clauses in order.
+    """One execution of a scenario, with its values and its clauses in order.
 
-    ``events`` maps an event's CURIE to its emitter: ``scenario-start``, ``scenario-end`` or the name of an event of the
-    behaviour (``pick-start`` …); ``seed`` determines all its randomness. ``execution`` is the one of a ``.bddx``,
-    ``None`` for a scenario that is run without. Repetitions, counted from 1, share the feature's scenario and differ in
-    their seeds. ``model`` is the file's name in reports. ``tree`` is the execution of a behaviour tree from which all
-    scenarios with the same one are judged, ``node`` the IRI of the tree's node linked to this scenario; scene and seed
-    are then those of that execution.
+    - ``events``: maps the CURIE of an event to its emitter: ``scenario-start``, ``scenario-end`` or the name of an
+      event of the behaviour (``pick-start`` …).
+    - ``seed``: determines all randomness of the execution.
+    - ``execution``: the execution of a ``.bddx``; ``None`` if the scenario is run without one.
+    - ``repetition``: its number (from 1). Repetitions have the same scenario in the feature but different seeds.
+    - ``model``: the name of the file in reports.
+    - ``tree``: the execution of a behaviour tree. All scenarios with the same tree execution are judged from it, and
+      have its scene and seed.
+    - ``node``: the IRI of the tree's node that is linked to this scenario.
     """
 
     feature: str
@@ -111,15 +119,16 @@ class ScenarioSpec:
 
     @property
     def substitution(self) -> Substitution | None:
-        """The catalog behaviour that is executed in place of the model's implementation, if there is one."""
+        """The catalog behaviour that is executed instead of the model's implementation, if there is one."""
         return None if self.execution is None else self.execution.implementation.substitution
 
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """Everything that the agent needs besides the feature files; with ``traces`` it writes each ``trace_file``.
+    """Everything that the agent needs, apart from the feature files.
 
-    ``sources`` maps files of users' steps, by their path in the run folder, to the files that they are copies of.
+    If ``traces`` is true, the agent writes a ``trace_file`` for each scenario. ``sources`` maps the path of each file
+    of users' steps in the run folder to the file of which it is a copy.
     """
 
     model: str
@@ -130,11 +139,11 @@ class Manifest:
 
 
 def plain_name(curie: str) -> str:
-    """Return the name of a variable in users' code: the end of its CURIE, without ``var-``."""
+    """Return the name of a variable in users' code, which is the end of its CURIE without ``var-``."""
     return curie.replace("/", ":").rpartition(":")[2].removeprefix("var-")
 
 
 def scenario_key(spec: ScenarioSpec) -> str:
-    """Return the key that finds a scenario in another run, even of an edited model."""
+    """Return the key by which a scenario is found in another run, even if the model was edited."""
     execution = None if spec.execution is None else spec.execution.iri
     return json.dumps([spec.variant, spec.values, execution, spec.repetition], sort_keys=True)

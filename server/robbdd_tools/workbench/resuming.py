@@ -97,7 +97,7 @@ def _resumed(place: StoredRun, policy: Callable[[RunStatus], Policy]) -> Run:
 
 
 def _refusal(place: StoredRun, status: RunStatus) -> str:
-    """Return why the remaining results would differ from those of an uninterrupted run; empty if they would not."""
+    """Return why the remaining results would differ from those of an uninterrupted run; empty if they are the same."""
     model = model_now(place)
     reason = refusal(place, model)
     if reason or isinstance(model, str):
