@@ -263,7 +263,10 @@ class BehaviourRun:
             raise SceneError(f"the scene does not come to rest: {error}") from error
 
     def _refuse_nowhere(self, call: Call) -> None:
-        """Raise ``SceneError`` if no object carries a place of a behaviour: the model is wrong, not the robot."""
+        """Raise ``SceneError`` if no object carries a place of a behaviour.
+
+        In this case, the model is wrong, not the robot.
+        """
         places = call.places if "workspace" in call.arguments else ()
         if places and not self._is_users() and not any(place in self.regions for place in places):
             one = f"'{places[0]}'" if len(places) == 1 else f"any of {', '.join(places)}"

@@ -33,7 +33,7 @@ class NoVideo(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """The violation of the clause ``name`` at the time ``at`` (s)."""
+    """The violation of a clause, which is given by its name, at the time ``at`` (s)."""
 
     at: float
     clause: str

@@ -1,1 +1,1 @@
-"""Types and helpers that every layer shares: documents, ranges, diagnostics, data files."""
+"""Types and helpers that all layers share: documents, ranges, diagnostics and data files."""

@@ -8,7 +8,7 @@ from threading import local
 
 
 class Abandoned(Exception):
-    """The result of this work is no longer needed."""
+    """The work is abandoned because its result is no longer needed."""
 
 
 class _Watch(local):
@@ -19,7 +19,7 @@ _watch = _Watch()
 
 
 def checkpoint() -> None:
-    """Allow an interruption here; raises the watcher's exception, such as ``Abandoned``."""
+    """Allow an interruption of the current work. Raises the exception of the function given to ``watched``."""
     if _watch.look is not None:
         _watch.look()
 

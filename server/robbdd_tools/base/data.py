@@ -21,9 +21,9 @@ def data_file(folder: str, name: str) -> Path:
 
 
 def data_folder(folder: str, name: str) -> Path:
-    """Return the path of the folder ``name`` in a data folder, or of a data folder itself when ``folder`` is empty.
+    """Return the path of the folder ``name`` in a data folder. If ``folder`` is empty, ``name`` is the data folder.
 
-    Raises ``FileNotFoundError`` when the installation lacks it.
+    Raises ``FileNotFoundError`` if the installation lacks it.
     """
     for root in (PACKAGE / "data", PACKAGE.parent.parent):
         candidate = root / folder / name

@@ -1,8 +1,8 @@
 """End all processes that users' code leaves running, including daemons in sessions of their own.
 
-On Linux they are found in ``/proc``: while the agent runs, as its descendants (it adopts orphans); afterwards, by the
-mark that they inherited in their environment. On other systems only the members of the agent's process group are found,
-see ``processes.end_group``.
+On Linux they are found in ``/proc``. While the agent runs, they are its descendants, because it adopts orphans. After
+the agent has ended, they are found by the mark in their environment, which they have inherited. On other systems, only
+the members of the agent's process group are found (see ``processes.end_group``).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _ROUNDS = 100
 
 
 def adopt_orphans() -> None:
-    """Become the parent of all orphaned descendants, so that ``end_descendants`` finds them."""
+    """Make this process the parent of all its orphaned descendants, so that ``end_descendants`` finds them."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
@@ -75,7 +75,7 @@ def _pids() -> Iterator[int]:
 
 
 def _parent(pid: int) -> int:
-    """Return the parent ID of a process; 0 if the process has ended."""
+    """Return the id of the parent of a process; 0 if the process has ended."""
     try:
         # The process name, in parentheses, may contain any character.
         state, parent = (PROCESSES / str(pid) / "stat").read_bytes().rpartition(b")")[2].split()[:2]

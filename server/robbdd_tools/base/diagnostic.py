@@ -9,7 +9,7 @@ from robbdd_tools.base.document import Span
 
 
 class Severity(IntEnum):
-    """Severity of a diagnostic, ordered as in the Language Server Protocol."""
+    """The severity of a diagnostic, in the order of the Language Server Protocol."""
 
     ERROR = 1
     WARNING = 2
@@ -28,7 +28,7 @@ class Related:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Replace ``span`` of the document ``uri`` by ``text``."""
+    """A change of a text: ``text`` replaces ``span`` in the document ``uri``."""
 
     uri: str
     span: Span
@@ -45,7 +45,7 @@ class NewFile:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A change that is known to fix a diagnostic, and the file that it creates, if any."""
+    """A change that fixes a diagnostic, and the file that it creates, if any."""
 
     title: str
     edits: tuple[Edit, ...]
@@ -56,7 +56,8 @@ class Fix:
 class Diagnostic:
     """One finding about one document.
 
-    ``code`` is stable (``syntax``, ``unknown-name``, ``shacl-…``); ``message`` names the fix if there is one.
+    ``code`` never changes between versions (``syntax``, ``unknown-name``, ``shacl-…``). ``message`` names the fix if
+    there is one.
     """
 
     uri: str
@@ -69,5 +70,5 @@ class Diagnostic:
 
 
 def sort_key(diagnostic: Diagnostic) -> tuple[str, Span, int, str, str]:
-    """Order diagnostics by place, then severity, so that every output is the same for the same text."""
+    """Return a key that sorts diagnostics by place and then by severity, so that their order is always the same."""
     return (diagnostic.uri, diagnostic.span, diagnostic.severity, diagnostic.code, diagnostic.message)

@@ -9,23 +9,26 @@ from functools import cached_property
 
 @dataclass(frozen=True, slots=True, order=True)
 class Span:
-    """Half-open range ``[start, end)`` of code-point offsets in one document."""
+    """A half-open range ``[start, end)`` of code-point offsets in one document."""
 
     start: int
     end: int
 
     def shifted(self, offset: int) -> Span:
-        """Return the same span counted from ``offset`` code points earlier."""
+        """Return the span moved by ``offset`` code points."""
         return Span(self.start + offset, self.end + offset)
 
     def contains(self, offset: int) -> bool:
-        """Return whether ``offset`` lies inside or at either end (a cursor just after a name is on the name)."""
+        """Return whether ``offset`` is inside the span or at one of its ends.
+
+        A cursor just after a name is on the name.
+        """
         return self.start <= offset <= self.end
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Position:
-    """Line and column, both from 0, the column in code points."""
+    """A line and a column. Both count from 0, and the column counts code points."""
 
     line: int
     column: int
@@ -41,7 +44,7 @@ class Document:
 
     @cached_property
     def line_starts(self) -> tuple[int, ...]:
-        """Offset of the first code point of each line; ``\\n``, ``\\r\\n`` and a lone ``\\r`` end a line."""
+        """The offset of the first code point of each line. ``\n``, ``\r\n`` and a lone ``\r`` end a line."""
         starts = [0]
         text = self.text
         index = 0
@@ -57,13 +60,13 @@ class Document:
             starts.append(index)
 
     def position(self, offset: int) -> Position:
-        """Convert an offset (clamped to the text) to a position."""
+        """Return the position of an offset. An offset beyond the text is moved to its end."""
         offset = min(max(offset, 0), len(self.text))
         line = bisect_right(self.line_starts, offset) - 1
         return Position(line, offset - self.line_starts[line])
 
     def offset(self, position: Position) -> int:
-        """Convert a position to an offset, clamped to the line and the text."""
+        """Return the offset of a position. A position beyond its line or the text is moved to the end of it."""
         if position.line >= len(self.line_starts):
             return len(self.text)
         return self.line_starts[position.line] + min(position.column, len(self.line_text(position.line)))
@@ -76,13 +79,13 @@ class Document:
 
 
 def edited_part(old: str, new: str) -> tuple[int, int]:
-    """Return start and end in ``old`` of the smallest part that has to be replaced to get ``new``."""
+    """Return the start and the end of the smallest part of ``old`` that must be replaced to obtain ``new``."""
     start = _common(old, new)
     return start, len(old) - _common(old[start:][::-1], new[start:][::-1])
 
 
 def _common(one: str, other: str) -> int:
-    """Return the length of the longest common prefix, by bisection."""
+    """Return the length of the longest common prefix of two texts. It is found by bisection."""
     low, high = 0, min(len(one), len(other))
     while low < high:
         middle = (low + high + 1) // 2

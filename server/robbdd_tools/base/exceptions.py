@@ -2,4 +2,4 @@
 
 
 class RobbddError(Exception):
-    """The request cannot be carried out; the message states the reason and, where known, the fix."""
+    """The request cannot be carried out. The message states the reason and, if it is known, the fix."""

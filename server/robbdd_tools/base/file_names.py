@@ -9,6 +9,6 @@ RESERVED = frozenset(
 
 
 def safe_stem(name: str) -> str:
-    """Return a name as a file stem, without characters and names that some file system refuses."""
+    """Return a name as the stem of a file name. Characters and names that some file system refuses are replaced."""
     stem = "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in name).strip(".") or "_"
     return f"_{stem}" if stem.partition(".")[0].casefold() in RESERVED else stem

@@ -28,14 +28,17 @@ _KINDS = {
 
 @dataclass(frozen=True, slots=True)
 class Unreadable:
-    """Why a file cannot be read: ``code`` is a diagnostic code, ``reason`` a sentence with the fix."""
+    """The reason why a file cannot be read.
+
+    ``code`` is a diagnostic code, and ``reason`` is a sentence with the fix.
+    """
 
     code: str
     reason: str
 
 
 class UnreadableFile(OSError):
-    """A file cannot be read; the message is a sentence for the user, ``code`` a diagnostic code."""
+    """A file cannot be read. The message is a sentence for the user, and ``code`` is a diagnostic code."""
 
     def __init__(self, problem: Unreadable) -> None:
         super().__init__(problem.reason)
@@ -49,7 +52,7 @@ class MissingFile(UnreadableFile, FileNotFoundError):
 
 @dataclass(frozen=True, slots=True)
 class FileState:
-    """Modification time (nanoseconds) and size (bytes) of a file; caches use it as a key for the file's text."""
+    """The modification time (nanoseconds) and the size (bytes) of a file. Caches use them as a key for its text."""
 
     uri: str
     path: Path
@@ -58,7 +61,7 @@ class FileState:
 
 
 def file_state(uri: str) -> FileState | None:
-    """Return the current state of a regular file; ``None`` if there is none."""
+    """Return the current state of a regular file, or ``None`` if there is no such file."""
     path = uri_to_path(uri)
     try:
         status = path.stat() if path is not None else None
@@ -80,18 +83,18 @@ def path_to_uri(path: Path) -> str:
 
 
 def uri_to_path(uri: str) -> Path | None:
-    """Return the path of a ``file:`` URI, or ``None`` where it has none, see ``path_of``."""
+    """Return the path of a ``file:`` URI, or ``None`` if it has none (see ``path_of``)."""
     path = path_of(uri)
     return None if path is None else Path(path)
 
 
 def too_large(name: str, size: int, limit: Limit = MODEL_SIZE) -> Unreadable | None:
-    """Return why a text is too large, if it is; ``size`` is in bytes, or in code points for an open document."""
+    """Return a message if a text is too large. ``size`` is in bytes, or in code points for an open document."""
     return _too_large(name, limit, f"has {size / MIB:.1f} MiB") if size > limit.value() else None
 
 
 def read_text(path: Path, limit: Limit = MODEL_SIZE) -> str | Unreadable:
-    """Return the text of a UTF-8 file (without byte-order mark) or why it cannot be read."""
+    """Return the text of a UTF-8 file without its byte-order mark, or the reason why it cannot be read."""
     try:
         return load_text(path, limit)
     except UnreadableFile as error:
@@ -99,7 +102,7 @@ def read_text(path: Path, limit: Limit = MODEL_SIZE) -> str | Unreadable:
 
 
 def load_text(path: Path, limit: Limit = MODEL_SIZE) -> str:
-    """Return the text of a UTF-8 file (without byte-order mark); raises ``UnreadableFile``."""
+    """Return the text of a UTF-8 file without its byte-order mark. Raises ``UnreadableFile``."""
     data = load_bytes(path, limit)
     if b"\0" in data[:8192]:
         raise UnreadableFile(Unreadable("file-binary", f"'{path.name}' is a binary file, not text"))
@@ -134,7 +137,7 @@ def load_bytes(path: Path, limit: Limit = MODEL_SIZE) -> bytes:
 
 
 def open_regular(path: Path) -> BinaryIO:
-    """Open a regular file for reading; raises ``UnreadableFile`` for anything else."""
+    """Open a regular file for reading. Raises ``UnreadableFile`` for any other kind of file."""
     problem = unreadable(path)
     if problem is not None:
         raise _error(problem)
@@ -151,7 +154,7 @@ def open_regular(path: Path) -> BinaryIO:
 
 
 def unreadable(path: Path) -> Unreadable | None:
-    """Return why a path does not name a regular file, without opening it; ``None`` if it does."""
+    """Return the reason why a path does not name a regular file; ``None`` if it does. The file is not opened."""
     try:
         return _not_regular(path, path.stat())
     except ValueError:

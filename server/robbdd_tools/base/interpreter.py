@@ -1,8 +1,8 @@
-"""Start our Python interpreters, isolated from the opened folder and from the environment's modules.
+"""Start the Python interpreters of RobBDD, isolated from the opened folder and from the environment's modules.
 
-``python -m`` and ``python -c`` search the working directory and ``PYTHONPATH`` before the standard library: a
-``calendar.py`` next to a model would run. So every interpreter is started here: with ``-P``, without ``PYTHONPATH``, in
-an empty folder of our own.
+``python -m`` and ``python -c`` search the working directory and ``PYTHONPATH`` before the standard library, so a
+``calendar.py`` in the folder of a model would be executed. Therefore every interpreter is started by this module: with
+``-P``, without ``PYTHONPATH``, and in an empty folder.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _FOLDERS = ("PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX")
 
 
 def run(module: str, *arguments: str, more: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
-    """Run one of our modules to its end, with the extra environment variables ``more``, and return its output."""
+    """Run a module of RobBDD to its end and return its output. ``more`` are additional environment variables."""
     return subprocess.run(
         _command("-m", module, *arguments),
         cwd=working_folder(),
@@ -46,7 +46,7 @@ def run(module: str, *arguments: str, more: Mapping[str, str] | None = None) -> 
 def run_for(
     seconds: float, module: str, *arguments: str, more: Mapping[str, str] | None = None, sent: str = ""
 ) -> Ending:
-    """Run one of our modules with ``sent`` as input; after ``seconds`` it is ended with its children."""
+    """Run a module of RobBDD with ``sent`` as input. After ``seconds``, it is ended together with its children."""
     environment = {**_environment(), **(more or {})}
     return processes.run_for(seconds, _command("-m", module, *arguments), working_folder(), environment, sent)
 
@@ -54,9 +54,9 @@ def run_for(
 def start(
     module: str, *arguments: str, folder: Path, log: IO[bytes] | None, more: Mapping[str, str] | None = None
 ) -> subprocess.Popen[str]:
-    """Start one of our modules in ``folder``; it communicates over its standard streams and logs to ``log``.
+    """Start a module of RobBDD in ``folder``. It communicates over its standard streams and writes its log to ``log``.
 
-    ``more`` are further environment variables. The process leads a process group, see ``own_group``.
+    ``more`` are additional environment variables. The process is the leader of a process group (see ``own_group``).
     """
     return subprocess.Popen(
         _command("-m", module, *arguments),
@@ -72,23 +72,23 @@ def start(
 
 
 async def start_worker(code: str) -> Process:
-    """Start an interpreter that executes ``code``, which is ours, and communicates over its standard streams."""
+    """Start an interpreter that executes ``code`` of RobBDD and communicates over its standard streams."""
     return await asyncio.create_subprocess_exec(
         *_command("-c", code), cwd=working_folder(), env=_environment(), stdin=PIPE, stdout=PIPE
     )
 
 
 def inherited_paths() -> list[str]:
-    """Return the absolute folders of ``PYTHONPATH`` as our first process got it.
+    """Return the absolute folders in the ``PYTHONPATH`` with which the first process of RobBDD was started.
 
-    Empty and relative entries mean the working directory and are left out.
+    Empty and relative entries denote the working directory, so they are left out.
     """
     stated = os.environ.get(SEARCHED, os.environ.get(INHERITED, ""))
     return [entry for entry in stated.split(os.pathsep) if Path(entry).is_absolute()]
 
 
 def started_in() -> Path:
-    """Return the folder that users' relative paths are relative to."""
+    """Return the folder to which relative paths of the user are relative."""
     return Path(os.environ.get(STARTED_IN) or Path.cwd())
 
 
@@ -117,7 +117,10 @@ def _command(*arguments: str) -> list[str]:
 
 
 def _environment() -> dict[str, str]:
-    """Return the environment of an interpreter; ``PYTHONPATH`` is renamed, for the agent."""
+    """Return the environment of an interpreter.
+
+    ``PYTHONPATH`` has another name in it, so that only the agent uses it.
+    """
     kept = {name: value for name, value in os.environ.items() if name not in _DROPPED}
     for name in _FOLDERS:
         if name in kept and not Path(kept[name]).is_absolute():

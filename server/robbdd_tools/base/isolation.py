@@ -19,8 +19,8 @@ UNTRUSTED = "untrusted"
 def isolate() -> None:
     """Remove the working directory, the script's folder and the folders of ``PYTHONPATH`` from ``sys.path``.
 
-    A folder of ``PYTHONPATH`` that holds this package moves to the end instead: an installation made by ``pip install
-    --target`` has its libraries there.
+    A folder of ``PYTHONPATH`` that contains this package is moved to the end instead, because an installation by ``pip
+    install --target`` has its libraries there.
     """
     stated = os.environ.pop(SEARCHED, None)
     if stated is not None:
@@ -37,7 +37,7 @@ def isolate() -> None:
 
 
 def _installed() -> set[str]:
-    """Return the folders of the interpreter's own installation, which ``PYTHONPATH`` may also name."""
+    """Return the folders of the interpreter's own installation. They must stay even if ``PYTHONPATH`` names them."""
     library = os.path.dirname(os.__file__)
     own = site.USER_SITE if site.ENABLE_USER_SITE else None
     return {library, os.path.join(library, "lib-dynload"), *site.getsitepackages(), *([own] if own else [])}

@@ -18,7 +18,7 @@ _GIVEN = dict(os.environ)
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """A positive whole number that the user can change; ``variable`` is its environment variable."""
+    """A positive whole number that the user can change by an environment variable."""
 
     name: str
     default: int
@@ -26,16 +26,16 @@ class Limit:
 
     @property
     def variable(self) -> str:
-        """The environment variable that replaces the default."""
+        """The name of the environment variable that replaces the default value."""
         return f"ROBBDD_LIMIT_{self.name.replace('-', '_').upper()}"
 
     def value(self) -> int:
-        """Return the current limit; a variable that is not a positive whole number is ignored."""
+        """Return the current value of the limit. A variable that is not a positive whole number is ignored."""
         stated = os.environ.get(self.variable, "")
         return int(stated) if _is_positive(stated) else self.default
 
     def use(self, value: int | None) -> None:
-        """Set the limit for this process and its children; ``None`` restores the initial value."""
+        """Set the limit for this process and its children. ``None`` restores the initial value."""
         stated = _GIVEN.get(self.variable, "") if value is None else str(value)
         os.environ[self.variable] = stated
 
@@ -76,9 +76,9 @@ LIMITS: Mapping[str, Limit] = {
 
 
 def use_limits(stated: object) -> str | None:
-    """Set the limits in an editor's setting (an object of name and value), and reset the others.
+    """Set the limits that an editor's setting states, and reset all others. The setting maps names to values.
 
-    Returns what is wrong with the setting, or ``None``; an invalid setting changes nothing.
+    Returns a description of the errors in the setting, or ``None``. A setting with errors changes nothing.
     """
     values = cast("dict[object, object]", stated) if isinstance(stated, dict) else {}
     for name, value in values.items():

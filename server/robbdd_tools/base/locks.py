@@ -1,4 +1,4 @@
-"""File locks, released by the operating system however the holding process ends."""
+"""File locks. The operating system releases them when the process that holds them ends, for whatever reason."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if sys.platform == "win32":
     import msvcrt
 
     def _try_lock(file: BinaryIO, *, shared: bool) -> bool:
-        """Lock the first byte. Windows has no shared locks here, so a ``shared`` lock is exclusive too."""
+        """Lock the first byte of a file. Windows has no shared locks here, so a ``shared`` lock is exclusive, too."""
         del shared
         try:
             msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
@@ -28,8 +28,10 @@ else:
     import fcntl
 
     def _try_lock(file: BinaryIO, *, shared: bool) -> bool:
-        """Lock the file without waiting. ``flock``, not ``lockf``: its locks belong to the open file, not to the
-        process."""
+        """Lock the file without waiting.
+
+        ``flock`` is used instead of ``lockf``, because its locks belong to the open file instead of the process.
+        """
         try:
             fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -48,14 +50,14 @@ class Lock:
         self._file = file
 
     def release(self) -> None:
-        """Release the lock; the file stays."""
+        """Release the lock. The file is not deleted."""
         self._file.close()
 
 
 def acquire(path: Path, patience: float = 0.0) -> Lock | None:
-    """Lock a file, created if missing, within ``patience`` seconds; ``None`` while another holder has the lock.
+    """Lock a file within ``patience`` seconds. Return ``None`` if it is still locked by another holder.
 
-    Raises ``OSError``, also if the file system has no locks.
+    The file is created if it is missing. Raises ``OSError``, also if the file system does not support locks.
     """
     deadline = monotonic() + patience
     if path.exists() and not path.is_file():

@@ -18,21 +18,25 @@ generation is."""
 
 
 def collect_rarely() -> None:
-    """Search for cycles less often: trees have none, and a search in a large project takes longer than a keystroke."""
+    """Make Python search for reference cycles less often.
+
+    Syntax trees have no cycles, and in a large project a search takes longer than the reaction to a keystroke may take.
+    """
     gc.set_threshold(YOUNG, OLDER, OLD)
 
 
 def collect_recent() -> None:
-    """Free the cycles among objects made since the last search, in a few milliseconds.
+    """Free the reference cycles among the objects made since the last search. This takes a few milliseconds.
 
-    Every rdflib graph is a cycle. Call this after work that builds graphs; after ``collect_rarely`` they would pile up.
+    Every rdflib graph is a cycle. Call this function after work that builds graphs, because after ``collect_rarely``
+    they would accumulate.
     """
     gc.collect(1)
 
 
 @contextmanager
 def freeze_garbage_collection() -> Generator[None]:
-    """Turn garbage collection off while modules are loaded, and exempt the objects made meanwhile for good."""
+    """Turn garbage collection off while modules are loaded. Objects made in this time are never collected."""
     gc.disable()
     yield
     gc.freeze()
@@ -40,7 +44,7 @@ def freeze_garbage_collection() -> Generator[None]:
 
 
 def kept_with_key(function: Callable[[Key], Value]) -> Callable[[Key], Value]:
-    """Cache a function's results for as long as its arguments live; the results must not refer to the arguments."""
+    """Cache the results of a function for as long as its arguments exist. A result must not refer to the arguments."""
     kept: WeakKeyDictionary[Key, Value] = WeakKeyDictionary()
 
     @wraps(function)

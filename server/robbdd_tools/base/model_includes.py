@@ -1,4 +1,4 @@
-"""Files that an MJCF or URDF file makes its engine read: included models, meshes, textures."""
+"""Find the files that an MJCF or URDF file makes its engine read: included models, meshes and textures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FOLDERS = ("meshdir", "texturedir", "assetdir")
 
 
 def model_files(path: Path) -> Iterator[Path]:
-    """Yield a model file and the existing files that it names, each once, of whatever kind."""
+    """Yield a model file and the existing files that it names, each file once and of whatever kind."""
     seen: dict[Path, None] = {}
     waiting = [path]
     while waiting:
@@ -27,7 +27,10 @@ def model_files(path: Path) -> Iterator[Path]:
 
 
 def unusable(path: Path) -> Unreadable | None:
-    """Return why an engine cannot load a model file: the first of its files that is not regular, if any."""
+    """Return the reason why an engine cannot load a model file; ``None`` if it can.
+
+    It cannot if one of the files that the model names is not a regular file.
+    """
     named = [path, *model_files(path)]
     return next((problem for file in named if (problem := unreadable(file)) is not None), None)
 

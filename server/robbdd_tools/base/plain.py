@@ -14,16 +14,16 @@ _SCALARS = (bool, int, float, str)
 
 
 def from_plain(kind: type[Kind], data: object) -> Kind:
-    """Return a dataclass made from its JSON; raises ``TypeError``, ``ValueError`` or ``KeyError``.
+    """Return the dataclass that JSON data describes. Raises ``TypeError``, ``ValueError`` or ``KeyError``.
 
-    Fields may be plain values, dataclasses, tuples and mappings of these, and any of them or ``None``. A value of
-    another type is refused, except an integer for a float.
+    Fields may be plain values, dataclasses, tuples and mappings of these, and any of them or ``None``. A value of the
+    wrong type is refused, except an integer for a float.
     """
     return cast(Kind, _value(kind, data))
 
 
 def finite(number: str) -> float:
-    """Return a JSON number as a float; raises ``ValueError`` for infinite ones and ``NaN``."""
+    """Return a JSON number as a float. Raises ``ValueError`` for infinity and ``NaN``."""
     value = float(number)
     if not isfinite(value):
         raise ValueError(number)

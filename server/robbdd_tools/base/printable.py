@@ -29,7 +29,10 @@ def printable(line: str) -> str:
 
 
 def printable_json(document: object, indent: int | None = None) -> str:
-    """Return a document as JSON with the same characters escaped as in JSON; it parses to the same data."""
+    """Return the document as JSON text, in which every character that ``printable`` escapes is escaped.
+
+    Parsing the text gives the same data.
+    """
     text = json.dumps(document, indent=indent, ensure_ascii=False)
     # Line ends of the layout are the only ones outside of strings.
     if not text.replace("\n", "").isprintable():
@@ -38,24 +41,24 @@ def printable_json(document: object, indent: int | None = None) -> str:
 
 
 def printable_terms(text: str) -> str:
-    """Return Turtle or N-Triples with the same text escaped as in these formats; only line ends stay."""
+    """Return Turtle or N-Triples in which every character that ``printable`` escapes is escaped. Line ends stay."""
     if not text.replace("\n", "").isprintable():
         text = "".join(f"\\U{ord(one):08X}" if one != "\n" and _is_hidden(one) else one for one in text)
     return _without_commands(text, r"\\u003A", r"\\u0023")
 
 
 def printable_xml(text: str) -> str:
-    """Return XML without CI commands in its texts and attributes; it parses to the same document."""
+    """Return XML without CI commands in its texts and attributes. Parsing it gives the same document."""
     return _without_commands(text, "&#58;", "&#35;")
 
 
 def printable_python(text: str) -> str:
-    """Return Python source without CI commands in its string literals, which keep their values."""
+    """Return Python source without CI commands in its string literals. The values of the literals stay the same."""
     return _without_commands(text, r"\\x3a", r"\\x23")
 
 
 def _without_commands(text: str, colon: str, hash_sign: str) -> str:
-    """Replace the signs that begin CI commands by what a format reads as the same sign."""
+    """Replace the signs that begin CI commands by text that the format reads as the same signs."""
     return _CI_LINES.sub(rf"\1{colon}", _CI_PREFIX.sub(rf"#{hash_sign}", text))
 
 
@@ -75,5 +78,5 @@ def _json_shown(character: str) -> str:
 
 
 def encodable(text: str) -> str:
-    """Return a text that can be encoded as UTF-8: lone surrogates are escaped."""
+    """Return a text that can be encoded as UTF-8. Lone surrogates are escaped."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")

@@ -1,6 +1,6 @@
 """End processes together with their children, on POSIX and on Windows.
 
-The only module that knows the signals, process groups and priorities of operating systems.
+No other module uses the signals, process groups and priorities of operating systems.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ _MIN_ERROR = 0xC0000000
 
 
 class RunningProcess(Protocol):
-    """The common part of ``subprocess.Popen`` and ``asyncio.subprocess.Process``."""
+    """The interface that ``subprocess.Popen`` and ``asyncio.subprocess.Process`` have in common."""
 
     @property
     def pid(self) -> int:
-        """Process ID; on POSIX also the ID of the group that it leads."""
+        """The id of the process. On POSIX, it is also the id of the process group that the process leads."""
         ...
 
     def terminate(self) -> None:
-        """Send SIGTERM on POSIX; end the process at once on Windows."""
+        """Send SIGTERM on POSIX; on Windows, end the process immediately."""
         ...
 
     def kill(self) -> None:
@@ -57,7 +57,7 @@ class GroupArguments(TypedDict, total=False):
 
 
 def own_group() -> GroupArguments:
-    """Return the arguments of ``Popen`` that make the new process a group leader.
+    """Return arguments of ``Popen`` with which the new process becomes the leader of a process group.
 
     Ctrl-C in a terminal then reaches only the parent, which can stop its children one by one.
     """
@@ -68,7 +68,7 @@ def own_group() -> GroupArguments:
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a program ended (``code`` is ``None`` if it had to be killed) and its output."""
+    """The output of a program and its exit code. ``code`` is ``None`` if the program had to be killed."""
 
     code: int | None
     output: str
@@ -78,9 +78,9 @@ class Ending:
 def run_for(
     seconds: float, command: Sequence[str], folder: Path, environment: Mapping[str, str] | None = None, sent: str = ""
 ) -> Ending:
-    """Run a program in ``folder`` with ``sent`` as input.
+    """Run a program in ``folder`` with ``sent`` as input. Raises ``OSError``.
 
-    After ``seconds`` it is ended with its children. Raises ``OSError``.
+    After ``seconds``, the program is ended together with its children.
     """
     pipe = subprocess.PIPE
     with subprocess.Popen(
@@ -103,7 +103,7 @@ def run_for(
 
 
 def request_end(process: RunningProcess) -> None:
-    """Ask the leader of a group to end; it can react by ``on_end_request``."""
+    """Ask the leader of a process group to end. The process can react by ``on_end_request``."""
     with suppress(OSError):
         if sys.platform == "win32":
             try:
@@ -132,7 +132,7 @@ def end_group(process: RunningProcess) -> None:
 
 
 def on_end_request(handle: Callable[[int], None]) -> None:
-    """Call ``handle`` with the signal number when this process is asked to end. Main thread only."""
+    """Call ``handle`` with the signal number when this process is asked to end. Use it in the main thread only."""
     for name in ("SIGINT", "SIGTERM", "SIGBREAK"):
         number: int | None = getattr(signal, name, None)
         if number is not None:
@@ -141,10 +141,10 @@ def on_end_request(handle: Callable[[int], None]) -> None:
 
 @contextmanager
 def end_requests(handle: Callable[[int], None]) -> Generator[None]:
-    """Inside the block, call ``handle`` with the signal number when this process is asked to end.
+    """Within the block, call ``handle`` with the signal number when this process is asked to end.
 
-    Covers Ctrl-C, a closed terminal and the like. Signals that the parent made this process ignore (``nohup``) stay
-    ignored. Has no effect outside of the main thread.
+    Requests are, for example, Ctrl-C and the closing of the terminal. Signals that the parent made this process ignore
+    (``nohup``) stay ignored. Outside of the main thread, this has no effect.
     """
     before: dict[int, Any] = {}
     if threading.current_thread() is threading.main_thread():
@@ -169,7 +169,7 @@ def lower_priority() -> None:
 
 
 def limit_memory(largest: int) -> None:
-    """Let the address space of this process grow to ``largest`` bytes; beyond it, Python raises ``MemoryError``.
+    """Limit the address space of this process to ``largest`` bytes. Beyond it, Python raises ``MemoryError``.
 
     Windows and macOS have no such limit.
     """
@@ -183,7 +183,7 @@ def limit_memory(largest: int) -> None:
 
 
 def describe_exit(code: int) -> str:
-    """Return an exit code of ``Popen`` in words: ``code 7``, ``signal SIGKILL``, ``code 0xC0000005 (…)``."""
+    """Return an exit code of ``Popen`` as text: ``code 7``, ``signal SIGKILL`` or ``code 0xC0000005 (…)``."""
     if code < 0:
         known = {each.value: each.name for each in signal.Signals}
         hint = " (often: memory ran out)" if known.get(-code) == "SIGKILL" else ""

@@ -1,4 +1,4 @@
-"""Find Python modules and their names from files and syntax trees; nothing is imported or executed."""
+"""Find Python modules and the names in them from files and syntax trees. Nothing is imported or executed."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ UNKNOWN = ModuleNames(frozenset(), is_complete=False)
 
 
 def find_module(name: str, folder: Path) -> ModuleSpec | None:
-    """Return where the process that runs a folder's models would find a module, or ``None``.
+    """Return where the process that runs the models of a folder would find a module, or ``None``.
 
-    The order is that of ``agent.user_modules``: installed packages, the folder, ``PYTHONPATH``.
+    The folders are searched in the order of ``agent.user_modules``: installed packages, the folder, ``PYTHONPATH``.
     """
     inherited = inherited_paths()
     search = [*(entry for entry in sys.path if entry not in ("", *inherited)), str(folder), *inherited]
@@ -60,7 +60,7 @@ def _spec(path: str, search: list[str], *, top: bool) -> ModuleSpec | None:
 
 
 def module_names(spec: ModuleSpec) -> ModuleNames:
-    """Return the names in a found module; ``UNKNOWN`` if it is not a readable Python file."""
+    """Return the names in a module that was found; ``UNKNOWN`` if it is not a readable Python file."""
     if spec.origin is None or not spec.origin.endswith(".py"):
         return UNKNOWN
     state = file_state(path_to_uri(Path(spec.origin)))
@@ -101,7 +101,7 @@ def _bound(statements: Iterable[ast.stmt]) -> Iterator[str]:
 
 
 def _targets(statement: ast.stmt) -> Iterator[str]:
-    """Yield the names that a statement and the statements inside it bind."""
+    """Yield the names that a statement, or a statement inside it, binds."""
     for child in ast.iter_child_nodes(statement):
         if isinstance(child, ast.stmt):
             yield from _bound((child,))

@@ -1,4 +1,4 @@
-"""Renames files, on Windows also those that another program has open for a moment."""
+"""Rename files. On Windows, this includes files that another program has open for a short time."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ PAUSE = 0.02
 
 
 def rename(source: Path, target: Path) -> None:
-    """Give a file the name ``target``, in place of the file that has it. Raises ``OSError``.
+    """Rename a file to ``target``, and replace an existing file of this name. Raises ``OSError``.
 
-    POSIX renames open files; Windows denies access while a program has one of the two open.
+    POSIX renames open files. Windows denies access while a program has one of the two files open.
     """
     deadline = monotonic() + PATIENCE
     while True:

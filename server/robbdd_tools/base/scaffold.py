@@ -22,7 +22,7 @@ class ScaffoldProblem(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """An example that can be copied as a project; ``about`` is the first line of its first model."""
+    """An example that can be copied as a new project. ``about`` is the first line of its first model."""
 
     name: str
     about: str
@@ -41,9 +41,9 @@ def templates() -> dict[str, Template]:
 
 
 def begin_project(folder: Path, template: str) -> list[Path]:
-    """Copy a template into ``folder``, which must be empty or missing; returns its models.
+    """Copy a template into ``folder``, which must be empty or missing; return the models of the new project.
 
-    Hyphens in the template's name are ignored: ``pick-place`` is ``pickplace``. Raises ``ScaffoldProblem`` and
+    Hyphens in the template's name are ignored, so ``pick-place`` means ``pickplace``. Raises ``ScaffoldProblem`` and
     ``OSError``.
     """
     known = templates()

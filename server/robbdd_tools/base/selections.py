@@ -1,7 +1,7 @@
-"""Combinations and permutations: their number, all of them in order, and one by its rank.
+"""Combinations and permutations: their number, all of them in order, and the one with a given rank.
 
-A selection has ``length`` elements. Combinations ignore the order of their elements, permutations do not; both may
-repeat elements. The order is that of ``itertools``. Every count of scenarios in the product is computed here.
+A selection has ``length`` elements. The order of elements matters in permutations, but not in combinations. Both may
+repeat elements. They are ordered as by ``itertools``. All numbers of scenarios are computed with this module.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class SelectionRule:
-    """How elements are selected: ``kind`` is ``combinations`` or ``permutations``."""
+    """The rule by which elements are selected. ``kind`` is ``combinations`` or ``permutations``."""
 
     kind: str
     length: int
@@ -40,7 +40,7 @@ class SelectionRule:
         return choose(source, self.length)
 
     def at(self, source: Sequence[T], rank: int) -> tuple[T, ...]:
-        """Return the selection at position ``rank``, counted from 0, without computing the ones before it."""
+        """Return the selection with the index ``rank`` (from 0) without computing the ones before it."""
         free = list(source)
         picked: list[T] = []
         for left in range(self.length - 1, -1, -1):

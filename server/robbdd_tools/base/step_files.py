@@ -1,4 +1,4 @@
-"""Files of users' own steps: their path for a model, and the sentences that they define."""
+"""Files with users' own steps: their path for a model, and the sentences that they define."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _SLOT = re.compile(r"\\\{[^{}]*\\\}")
 
 
 def steps_file(model: Path) -> Path:
-    """Return the path of a model's own steps; the file may be missing."""
+    """Return the path of the file with a model's own steps. The file need not exist."""
     return model.parent / "steps" / f"{model.stem.replace('-', '_')}_steps.py"
 
 
 def defined_steps(source: str) -> tuple[set[tuple[str, str]], set[str]]:
-    """Return the (keyword, sentence) of the steps that a file defines, and the names of its functions.
+    """Return the steps that a file defines, each as (keyword, sentence), and the names of its functions.
 
-    Raises ``SyntaxError`` if it is not Python.
+    Raises ``SyntaxError`` if the file is not Python.
     """
     steps: set[tuple[str, str]] = set()
     names: set[str] = set()
@@ -47,7 +47,8 @@ def defined_steps(source: str) -> tuple[set[tuple[str, str]], set[str]]:
 def may_define(model: Path, sentence: str) -> bool:
     """Return whether a model's own steps may match a sentence of a feature.
 
-    A parameter of a step matches any text. Steps of another matcher, and of an unreadable file, may match anything.
+    A parameter of a step matches any text. A step with another matcher than ``parse`` may match any sentence, and so
+    may the steps of an unreadable file.
     """
     state = file_state(path_to_uri(steps_file(model)))
     return state is not None and any(pattern.fullmatch(sentence) for pattern in _patterns(state))

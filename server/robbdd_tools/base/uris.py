@@ -1,7 +1,8 @@
-"""``file:`` URIs and paths of POSIX and Windows.
+"""Convert between ``file:`` URIs and paths of POSIX and Windows.
 
-One file has several URIs: clients differ in which characters they escape, in the case of a drive letter, and in whether
-they write ``file:/`` or ``file:///``. Inside, each file has one URI: the one that VS Code uses.
+A file has several URIs, because clients differ in the characters that they escape, in the case of a drive letter, and
+in whether they write ``file:/`` or ``file:///``. Inside RobBDD, each file has a single URI, which is the one that VS
+Code uses.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ _DRIVE = re.compile(r"/([A-Za-z]):(?=/|$)")
 
 
 def path_of(uri: str, kind: type[PurePath] = HERE) -> PurePath | None:
-    """Return the path of a URI; ``None`` for other schemes than ``file:``, and on POSIX for a file of another host."""
+    """Return the path of a ``file:`` URI. Return ``None`` for other URIs and, on POSIX, for a file of another host."""
     found = _FILE.fullmatch(uri)
     if found is None:
         return None
@@ -39,13 +40,16 @@ def uri_of(path: PurePath) -> str:
 
 
 def drive_uri(path: str, kind: type[PurePath] | None = None) -> str | None:
-    """Return the URI of a path that begins with a drive; ``None`` for any other path and for systems without drives."""
+    """Return the URI of a path that begins with a drive.
+
+    Return ``None`` for other paths and on systems without drives.
+    """
     found = (kind or HERE)(path)
     return uri_of(found) if isinstance(found, PureWindowsPath) and found.drive and found.is_absolute() else None
 
 
 def canonical_uri(uri: str, kind: type[PurePath] = HERE) -> str:
-    """Return the canonical URI of a file; other URIs stay unchanged."""
+    """Return the canonical URI of a file. Other URIs are returned unchanged."""
     found = _FILE.fullmatch(uri)
     if found is None:
         return uri

@@ -8,9 +8,10 @@ from pathlib import Path
 
 
 def user_file() -> Path:
-    """Return the path of the user's own configuration, which no opened folder can supply; the file may be missing.
+    """Return the path of the user's own configuration. The file need not exist.
 
-    It is ``ROBBDD_CONFIG``, else ``robbdd/robbdd.toml`` in the platform's configuration folder.
+    The path is ``ROBBDD_CONFIG`` or, if that is not set, ``robbdd/robbdd.toml`` in the configuration folder of the
+    platform. So no opened folder can supply the file.
     """
     own = os.environ.get("ROBBDD_CONFIG", "")
     if Path(own).is_absolute():

@@ -1,8 +1,8 @@
-"""Write files atomically: a reader finds the old or the new content, also after a crash or on a full disk.
+"""Write files atomically. A reader finds either the old or the new content, even after a crash or on a full disk.
 
 The content is written to a temporary file in the same folder, synced, and renamed over the old file. Mode and owner are
-kept, and a symbolic link stays a link: its target is replaced. A file with several hard links keeps them, see
-``_overwrite``. Existing pipes and devices (``/dev/stdout``) are written to directly.
+kept. A symbolic link stays a link, and its target is replaced. A file with several hard links keeps them (see
+``_overwrite``). Existing pipes and devices (``/dev/stdout``) are written to directly.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ _STREAMS = (("dev",), ("proc",))
 
 
 def replace_file(path: Path, content: str | bytes) -> None:
-    """Write a file atomically, text as UTF-8 with ``\\n``; the old file survives errors. Raises ``OSError``."""
+    """Write a file atomically; text is written as UTF-8 with ``\n``.
+
+    Raises ``OSError``, and then keeps the old file.
+    """
     data = content.encode("utf-8") if isinstance(content, str) else content
     with replacing_bytes(path) as file:
         file.write(data)
@@ -35,10 +38,9 @@ def replace_file(path: Path, content: str | bytes) -> None:
 
 @contextmanager
 def replacing(path: Path) -> Generator[TextIO]:
-    """Open a UTF-8 text file that replaces the old one at the end of the block; an exception leaves the old file
-    untouched.
+    """Open a UTF-8 text file that replaces the old one at the end of the block. Raises ``OSError``.
 
-    Raises ``OSError``.
+    After an exception in the block, the old file is unchanged.
     """
     with replacing_bytes(path) as file:
         text = io.TextIOWrapper(file, encoding="utf-8", newline="\n")
@@ -49,7 +51,7 @@ def replacing(path: Path) -> Generator[TextIO]:
 
 @contextmanager
 def replacing_bytes(path: Path) -> Generator[BinaryIO]:
-    """Open a binary file that replaces the old one at the end of the block, see ``replacing``."""
+    """Open a binary file that replaces the old one at the end of the block (see ``replacing``)."""
     status = _status(path)
     if status is not None and (not stat.S_ISREG(status.st_mode) or path.absolute().parts[1:2] in _STREAMS):
         with path.open("wb") as stream:
@@ -80,7 +82,7 @@ def replacing_bytes(path: Path) -> Generator[BinaryIO]:
 
 
 def _status(path: Path) -> os.stat_result | None:
-    """Return the status of an existing writable file; raises ``OSError`` if it cannot be written."""
+    """Return the status of an existing file. Raises ``OSError`` if the file cannot be written."""
     try:
         status = path.stat()
     except FileNotFoundError:
@@ -125,7 +127,7 @@ def _overwrite(target: Path, fresh: Path) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Sync a rename to disk on systems where folders can be opened."""
+    """Sync a folder to disk after a rename, on systems where folders can be opened."""
     with suppress(OSError):
         descriptor = os.open(folder, os.O_RDONLY)
         try:

@@ -51,7 +51,7 @@ class Anchors:
         return Anchored(_moved(diagnostic, loosen), tuple(anchors))
 
     def fixed(self, anchored: Anchored, uri: str, own: PlacedDeclaration) -> Diagnostic:
-        """Return a diagnostic about the declaration ``own`` with the current places of its anchors."""
+        """Return a diagnostic about the declaration ``own`` with absolute spans at its anchors' current places."""
         following = iter(anchored.anchors)
 
         def fix(_: str, span: Span) -> Span:

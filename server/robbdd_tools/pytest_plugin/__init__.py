@@ -1,7 +1,7 @@
-"""Pytest plugin: each execution of a scenario is a test (docs/pytest.md).
+"""Pytest plugin: each execution of a scenario is a test (see ``docs/pytest.md``).
 
-Pytest loads this module in every session of an environment where the package is installed. It only adds its options
-until ``--robbdd`` or the ini setting ``robbdd`` enables it, and imports the rest only then.
+Pytest loads this module in every session of an environment in which the package is installed. Unless ``--robbdd`` or
+the ini setting ``robbdd`` enables the plugin, it only adds its options and imports nothing else.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the hooks that collect and run scenarios if the plugin is enabled; raises ``UsageError``."""
+    """If the plugin is enabled, register the hooks that collect and run scenarios. Raises ``UsageError``."""
     if config.getoption("robbdd") or config.getini("robbdd"):
         from robbdd_tools.pytest_plugin.session_hooks import Hooks
 

@@ -1,4 +1,4 @@
-"""Pytest output for a scenario that does not hold."""
+"""The text that pytest prints about a scenario that does not hold."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
 
 class Failure(Exception):
-    """A scenario that does not hold, or cannot be executed.
+    """A scenario does not hold, or cannot be executed.
 
-    The message is the printed text; ``summary`` is the line in the short summary, ``place`` the clause or scenario.
+    The message is the printed text. ``summary`` is the line in the short summary, and ``place`` is the place of the
+    clause or scenario.
     """
 
     def __init__(self, summary: str, text: str, place: Place | None) -> None:
@@ -34,11 +35,11 @@ class Failure(Exception):
 
 
 class Violated(Failure):
-    """A clause is violated: the test fails."""
+    """A clause is violated, so the test fails."""
 
 
 class Unknown(Failure):
-    """No clause is violated, but the evidence for one is missing: the test has an error."""
+    """No clause is violated, but the evidence for a clause is missing, so the test has an error."""
 
 
 def failure(executed: Executed, file: ModelFile, place: StoredRun) -> Failure:
@@ -68,7 +69,10 @@ def _summary(clause: ClauseResult) -> str:
 
 
 def _failed_lines(failed: Sequence[ClauseResult], file: ModelFile) -> Iterator[str]:
-    """Yield each clause with its place; a reason shared by successive clauses is printed once, after the last one."""
+    """Yield each clause with its place.
+
+    A reason that successive clauses share is printed once, after the last of them.
+    """
     for number, clause in enumerate(failed, start=1):
         yield f"{SIGNS[clause.verdict]} {printable(clause.name)}: {printable(plain_sentence(clause.sentence))}"
         place = file.place(clause.iri)

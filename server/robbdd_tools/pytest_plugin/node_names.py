@@ -1,4 +1,4 @@
-"""Names of stories and scenarios in node ids: readable, unique, and the same in every session."""
+"""Names of stories and scenarios in node ids. They are readable, unique, and the same in every session."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ LONGEST = 120
 
 
 def local_name(iri: str) -> str:
-    """Return the end of an IRI or CURIE, without the characters at which pytest splits node ids."""
+    """Return the last part of an IRI or CURIE, without the characters at which pytest splits node ids."""
     local = iri.replace("#", "/").rsplit("/", 1)[-1].rsplit(":", 1)[-1]
     return printable(local).replace("[", "(").replace("::", ":")
 
 
 def scenario_names(specs: Sequence[ScenarioSpec]) -> list[str]:
-    """Return the names of the executions of one story: ``part-to-bin[cube0-left_ws]``.
+    """Return the names of the executions of one story, for example ``part-to-bin[cube0-left_ws]``.
 
-    The values are in the order of the variables, after the execution's name if there is one. A name does not depend on
-    the selection: from the second repetition on, it includes the repetition number.
+    The brackets contain the name of the ``.bddx`` execution, if there is one, and then the values in the order of the
+    variables. A name does not depend on the selection. From the second repetition on, it includes the number of the
+    repetition.
     """
     names = [_name(spec, numbered=False) for spec in specs]
     count = Counter(names)

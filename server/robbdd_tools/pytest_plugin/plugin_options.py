@@ -17,7 +17,11 @@ from robbdd_tools.workbench.substitution import parse_substitution
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Selection of scenarios, number of repetitions, time limit of each (wall time, s), place of the run."""
+    """The options of the plugin.
+
+    They are the selection of scenarios, the number of repetitions, the time limit of each scenario (wall time, s) and
+    the place of the run.
+    """
 
     selection: Selection
     repeat: int | None

@@ -1,4 +1,4 @@
-"""Collected pytest nodes: a model file, its stories, and a test for each execution of a scenario."""
+"""The nodes that pytest collects: a model file, its stories, and a test for each execution of a scenario."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class ModelWarning(UserWarning):
 
 
 class ModelNode(pytest.File):
-    """A model file; errors in it are collection errors."""
+    """A model file. Its errors are reported as collection errors."""
 
     file: ModelFile | None = None
     """The collected model, if it is free of errors and has scenarios."""
@@ -54,7 +54,7 @@ class ModelNode(pytest.File):
     """Why the selection excludes the whole model, if so."""
 
     def collect(self) -> Iterator[StoryNode]:
-        """Yield the stories with a selected scenario."""
+        """Yield the stories that have a selected scenario."""
         try:
             self.file = file = self._sound_file(load(self.path))
             specs = () if file is None else self._selected(file)
@@ -67,7 +67,7 @@ class ModelNode(pytest.File):
             yield node
 
     def _sound_file(self, model: Model) -> ModelFile | None:
-        """Return the model if it has scenarios; raises ``CollectError`` for errors in it."""
+        """Return the model if it has scenarios. Raises ``CollectError`` if it has errors."""
         errors = [str(finding) for finding in model.diagnostics if finding.is_error]
         if errors:
             raise self.CollectError("\n".join(errors))
@@ -99,7 +99,7 @@ class StoryNode(pytest.Collector):
     file: ModelFile
 
     def collect(self) -> Iterator[ScenarioItem]:
-        """Yield a test for each execution."""
+        """Yield a test for each execution of the story's scenarios."""
         for name, spec in zip(scenario_names(self.specs), self.specs, strict=True):
             # Newer versions of pytest separate values from names in an explicit id, and compare such ids.
             item = make_node(ScenarioItem, self, name=name, nodeid=f"{self.nodeid}::{name}")
@@ -108,10 +108,10 @@ class StoryNode(pytest.Collector):
 
 
 class ScenarioItem(pytest.Item):
-    """One execution of a scenario.
+    """The test of one execution of a scenario.
 
-    Its setup executes it, so that missing evidence is an error; its call judges the verdict, so that a violated clause
-    is a failure.
+    The setup executes the scenario, so that missing evidence is an error of the test. The call checks the verdict, so
+    that a violated clause is a failure of the test.
     """
 
     spec: ScenarioSpec
@@ -121,7 +121,7 @@ class ScenarioItem(pytest.Item):
     _executed: Executed | None = None
 
     def describe(self, spec: ScenarioSpec, file: ModelFile) -> None:
-        """Set the execution of the test."""
+        """Set the execution that the test represents."""
         self.spec = spec
         self.file = file
         for mark in _marks(spec, file):
@@ -131,7 +131,7 @@ class ScenarioItem(pytest.Item):
             self.add_marker(pytest.mark.xdist_group(spec.tree.name))
 
     def setup(self) -> None:
-        """Execute the scenario; raises ``Unknown`` for missing evidence."""
+        """Execute the scenario. Raises ``Unknown`` if evidence is missing."""
         executor = self.config.stash[EXECUTOR]
         self._executed = executed = executor.execute(self.spec)
         result = executed.result
@@ -155,7 +155,10 @@ class ScenarioItem(pytest.Item):
             raise failure(self._executed, self.file, self.config.stash[EXECUTOR].place)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """Return the text that pytest prints: clauses of a failure, the reason of a usage error, else a traceback."""
+        """Return the text that pytest prints about an exception.
+
+        It has the clauses of a failure or the reason of a usage error. For any other exception, it is a traceback.
+        """
         error = excinfo.value
         if not isinstance(error, (Failure, RobbddError, OSError)):
             return super().repr_failure(excinfo, style)
@@ -168,7 +171,7 @@ class ScenarioItem(pytest.Item):
         return shown
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Return file and line (from 0) of the scenario, and the name for headings."""
+        """Return the file and the line (from 0) of the scenario, and the name for headings."""
         place = self.file.place(self.spec.variant)
         heading = f"{local_name(self.spec.story)}: {self.name}"
         if place is None or place.path is None:
@@ -177,26 +180,29 @@ class ScenarioItem(pytest.Item):
 
 
 class UnselectedItem(pytest.Item):
-    """Item for models excluded by the selection: it fails, so that a typing error is noticed."""
+    """The test of a model in which the selection selects nothing because of an error.
+
+    The test fails, so that the user notices a typing error.
+    """
 
     error: SelectionError
     funcargs: Mapping[str, Any] = MappingProxyType({})
 
     def setup(self) -> None:
-        """Raise the selection's error."""
+        """Raise the error in the selection."""
         raise self.error
 
     def runtest(self) -> None:
-        """Do nothing: the setup fails."""
+        """Do nothing, because the setup already fails."""
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """Return the reason without a traceback."""
+        """Return the reason of the failure without a traceback."""
         del style
         return str(excinfo.value)
 
 
 def _marks(spec: ScenarioSpec, file: ModelFile) -> Iterable[pytest.MarkDecorator]:
-    """Yield a mark for each agent and behaviour of a scenario, for ``-m "robbdd(agent='panda')"``."""
+    """Yield a mark for each agent and each behaviour of a scenario, for ``-m "robbdd(agent='panda')"``."""
     variant = next(one for story in file.acceptance.stories for one in story.variants if one.iri == spec.variant)
     agents = [local_name(agent) for agent in spec.scene.agents if agent not in spec.scene.unused]
     clauses = behaviour_clauses((*variant.template.clauses, *variant.clauses))

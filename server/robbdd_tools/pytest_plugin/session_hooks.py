@@ -62,7 +62,10 @@ class Hooks:
         config.addinivalue_line("markers", MARKER)
 
     def pytest_collect_file(self, file_path: Path, parent: pytest.Collector) -> ModelNode | None:
-        """Collect models; graphs only when named, as folders also contain other JSON files."""
+        """Collect models.
+
+        Graphs are collected only if they are named, because folders also contain other JSON files.
+        """
         named = graph_format(file_path.name) and parent.session.isinitpath(file_path)
         if file_path.suffix not in MODELS and not named:
             return None
@@ -72,7 +75,7 @@ class Hooks:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Skip executions that another model of the session contains, too, as ``robbdd run`` does for a folder."""
+        """Skip the executions that another model of the session also contains, as ``robbdd run`` does for a folder."""
         scenarios = [item for item in items if isinstance(item, ScenarioItem)]
         self._refuse_unknown_substitutions()
         for node in self._models:
@@ -101,7 +104,7 @@ class Hooks:
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_configure_node(self, node: Any) -> None:
-        """Pass the place of the run to a worker of pytest-xdist."""
+        """Send the place of the run to a worker of pytest-xdist."""
         self._shared = self._shared or Path(tempfile.mkdtemp(prefix="robbdd-"))
         node.workerinput["robbdd_shared"] = str(self._shared)
 
@@ -117,7 +120,7 @@ class Hooks:
     def pytest_runtest_makereport(
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-        """Report errors of the setup as those of the call, which pytest would print with a traceback."""
+        """Report errors of the setup as errors of the call. Otherwise pytest would print them with a traceback."""
         report = yield
         if isinstance(item, ScenarioItem | UnselectedItem) and report.failed and call.excinfo is not None:
             report.longrepr = item.repr_failure(call.excinfo)
@@ -131,7 +134,7 @@ class Hooks:
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self) -> None:
-        """End the agent and, after the workers of pytest-xdist, the run."""
+        """End the agent. After the workers of pytest-xdist have ended, end the run."""
         executor = self._config.stash.get(EXECUTOR, None)
         if executor is not None:
             executor.close()
@@ -144,7 +147,7 @@ class Hooks:
             self._summary = [] if ended is None else [remark, *_summary(*ended)]
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Print the counts of verdicts, the clauses that prove little, and where the run is kept."""
+        """Print the number of scenarios with each verdict, the clauses that prove little, and the place of the run."""
         lines = [printable(line) for line in self._summary if line]
         if lines:
             terminalreporter.write_sep("=", "RobBDD")
@@ -152,12 +155,12 @@ class Hooks:
                 terminalreporter.write_line(line)
 
     def pytest_unconfigure(self) -> None:
-        """Remove the files shared with workers."""
+        """Remove the files that are shared with workers."""
         if self._shared is not None:
             shutil.rmtree(self._shared, ignore_errors=True)
 
     def _refuse_unknown_substitutions(self) -> None:
-        """Raise ``UsageError`` where ``--robbdd-bhv`` names an implementation or behaviour that does not exist."""
+        """Raise ``UsageError`` if ``--robbdd-bhv`` names an implementation or a behaviour that does not exist."""
         try:
             substitutions = self._options.selection.default_substitutions
             refuse_unknown((file.acceptance for file in self._files), substitutions)
@@ -169,7 +172,7 @@ class Hooks:
         return model_files(node.file for node in self._models if node.file is not None)
 
     def _doubled(self, items: Sequence[ScenarioItem]) -> Iterator[ScenarioItem]:
-        """Yield the tests whose scenarios the joint plan takes from another model."""
+        """Yield the tests whose scenarios the common plan of all models takes from another model."""
         files = self._files
         if len(files) < 2 or not items:
             return

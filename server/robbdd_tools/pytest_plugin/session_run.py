@@ -1,7 +1,8 @@
-"""The single stored run of a pytest session: which process creates, executes and ends it.
+"""The single stored run of a pytest session: which process creates it, executes its scenarios and ends it.
 
-Without pytest-xdist, one process does everything. With it, the controller creates the folder and ends the run, and the
-workers execute: the first one with a scenario prepares the folder, and each records its own executions.
+Without pytest-xdist, one process does everything. With pytest-xdist, the controller creates the folder and ends the
+run, and the workers execute scenarios. The first worker with a scenario prepares the folder, and each worker records
+its own executions.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def key_of(spec: ScenarioSpec) -> Key:
 
 
 class Owner:
-    """Creates the folder of the session's run on first use, and ends the run."""
+    """Creates the folder of the session's run at its first use, and ends the run."""
 
     def __init__(self, keeping: Keeping) -> None:
         self._keeping = keeping
@@ -49,17 +50,17 @@ class Owner:
 
     @property
     def remark(self) -> str:
-        """Note on the store for the user; empty without a run."""
+        """A note about the store for the user; empty without a run."""
         return "" if self._folder is None else self._folder.remark
 
     def open(self, model: Path) -> StoredRun:
-        """Return the run folder; ``model`` determines the project's store. Raises ``OSError``."""
+        """Return the run folder. The store is that of the project that contains ``model``. Raises ``OSError``."""
         if self._folder is None:
             self._folder = new_folder(model, self._keeping)
         return self._folder.place
 
     def end(self) -> tuple[StoredRun, RunResults] | None:
-        """End the run; return it with its results, ``None`` if no scenario was to be executed.
+        """End the run and return it with its results; return ``None`` if no scenario was to be executed.
 
         Scenarios that were not executed are unknown. Raises ``OSError``.
         """
@@ -77,10 +78,13 @@ class Owner:
 
 
 class Executor:
-    """Executes the scenarios ``specs`` of the models ``files`` in this process.
+    """Executes scenarios in this process.
 
-    ``open_place`` returns the run folder. ``lock`` is a lock file that serialises preparation between processes, if
-    there are several; ``processes`` is their number, ``first_agent`` the number of this process's first agent.
+    - ``specs``: the scenarios, from the models ``files``.
+    - ``open_place``: returns the run folder.
+    - ``lock``: a lock file, so that only one of several processes prepares the folder at a time.
+    - ``processes``: the number of processes.
+    - ``first_agent``: the number of the first agent of this process.
     """
 
     def __init__(
@@ -105,11 +109,11 @@ class Executor:
 
     @property
     def place(self) -> StoredRun:
-        """The run's folder."""
+        """The folder of the run."""
         return self._open_place()
 
     def execute(self, spec: ScenarioSpec) -> Executed:
-        """Execute one of the scenarios; raises ``RobbddError`` and ``OSError`` if nothing can be executed."""
+        """Execute one of the scenarios. Raises ``RobbddError`` and ``OSError`` if nothing can be executed."""
         if self._problem is not None:
             raise self._problem
         try:
@@ -158,12 +162,12 @@ class Executor:
 def session_plan(
     files: tuple[ModelFile, ...], options: Options, only: Callable[[ScenarioSpec], bool] | None = None
 ) -> Plan:
-    """Return the plan of models; several are named after their common folder. Raises ``SelectionError``."""
+    """Return the plan of models. Several models are named after their common folder. Raises ``SelectionError``."""
     path = Path(files[0].name if len(files) == 1 else os.path.commonpath([file.name for file in files]))
     return Plan.of_files(str(path), path, files, replace(options.selection, only=only))
 
 
 def model_files(files: Iterable[ModelFile]) -> tuple[ModelFile, ...]:
-    """Return the models without duplicates; those with executions first, as for a folder."""
+    """Return the models without duplicates. Models with executions are first, as in a run of a folder."""
     found = {file.uri: file for file in files}
     return tuple(sorted(found.values(), key=lambda file: not file.uri.endswith(".bddx")))
