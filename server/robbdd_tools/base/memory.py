@@ -1,4 +1,4 @@
-"""Garbage collection and caches: how long values are kept, and how often Python searches for reference cycles."""
+"""Control garbage collection and caches: how long values are kept, and how often reference cycles are searched."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ Vector = tuple[float, float, float]
 
 
 class Kind(StrEnum):
-    """Kind of element that a slot of a phrase refers to."""
+    """The kind of element to which a slot of a phrase refers."""
 
     OBJECT = "object"
     WORKSPACE = "workspace"
@@ -64,8 +64,8 @@ Outline = tuple[tuple[Vector, float], ...]
 class Evidence(Protocol):
     """The data that an evaluator reads: the samples of one window, in order, and their scene.
 
-    ``n`` samples; positions in metres in the world frame, orientations as unit quaternions (w, x, y, z). An unknown
-    name raises ``KeyError``, which the monitor turns into *unknown*.
+    There are ``n`` samples. Positions are in m in the world frame, and orientations are unit quaternions (w, x, y, z).
+    An unknown name raises ``KeyError``, for which the monitor returns *unknown*.
     """
 
     @property
@@ -74,11 +74,11 @@ class Evidence(Protocol):
         ...
 
     def position(self, name: str) -> FloatArray:
-        """Position of an object's middle or of an agent's tool centre point, shape (n, 3)."""
+        """Return the position of an object's centre or of an agent's tool centre point, shape (n, 3)."""
         ...
 
     def orientation(self, name: str) -> FloatArray:
-        """Orientation of an object or of an agent's tool, shape (n, 4)."""
+        """Return the orientation of an object or of an agent's tool, shape (n, 4)."""
         ...
 
     def velocity(self, name: str) -> FloatArray:
@@ -86,7 +86,10 @@ class Evidence(Protocol):
         ...
 
     def position_at(self, name: str, times: FloatArray) -> FloatArray:
-        """Position at the last sample at or before each of ``times`` (n,), within the window or before it, (n, 3)."""
+        """Return the position at the last sample at or before each of ``times`` (n,), shape (n, 3).
+
+        The samples may be in the window or before it.
+        """
         ...
 
     def orientation_at(self, name: str, times: FloatArray) -> FloatArray:
@@ -98,11 +101,11 @@ class Evidence(Protocol):
         ...
 
     def regions(self, workspace: str) -> Sequence[tuple[str, Region]]:
-        """The regions of the objects that carry a workspace, each with the object whose frame it is in."""
+        """Return the regions of the objects that carry a workspace, each with the object in whose frame it is given."""
         ...
 
     def contents(self, workspace: str) -> Sequence[str]:
-        """The workspaces composed into this one, at any depth."""
+        """Return the workspaces inside this one, at any depth."""
         ...
 
     @property
@@ -111,27 +114,30 @@ class Evidence(Protocol):
         ...
 
     def gripped(self, agent: str, name: str) -> FloatArray:
-        """1.0 where the agent's gripper holds the object by its gripping faces, else 0.0, shape (n,)."""
+        """Return 1.0 where the agent's gripping faces hold the object, else 0.0, shape (n,)."""
         ...
 
     def reach(self, agent: str, name: str) -> FloatArray:
-        """Joint-limit distance (rad) of the agent's best clear grasp of the object, -π without any, shape (n,)."""
+        """Return the joint-limit distance (rad) of the agent's best clear grasp of the object, shape (n,).
+
+        It is -π where there is no clear grasp.
+        """
         ...
 
     def force(self, agent: str, name: str) -> FloatArray:
-        """Largest force (N) since the previous sample between an element and the agent or the object that it grips,
-        shape (n,).
+        """Return the largest contact force (N) of an element since the previous sample, shape (n,).
 
-        The weight of the gripped object is not counted.
+        This is the force between the element and the agent or the object that the agent grips. The weight of the
+        gripped object is not counted.
         """
         ...
 
     def is_immovable(self, name: str) -> bool:
-        """Whether a hit does not push an element: a fixed object, or an agent."""
+        """Return whether an element does not move when it is hit. This is so for a fixed object and for an agent."""
         ...
 
     def setting(self, target: str, name: str) -> str:
-        """A configuration value of an element, as set up in the world."""
+        """Return the value of a configuration of an element, as set up in the world."""
         ...
 
 
@@ -149,13 +155,15 @@ UnitChoice = Callable[[Evidence, Arguments], str]
 class Predicate:
     """A predicate of fluents.
 
-    ``phrase`` is the surface form, slots in ``<…>`` (a reference), ``$…`` (a bare name) or as words; ``aliases`` are
-    other surface forms with the same meaning and slots; ``sentence`` is the Gherkin form with ``{slot}`` placeholders.
-    ``unit`` is the SI unit of the margin (``""`` for a margin of ±1); ``unit_for`` overrides it for a configured
-    variant. ``evaluate`` is ``None`` for a predicate that this installation cannot judge: its clauses are *unknown*,
-    never a pass. ``quantities`` are those that the evaluator needs besides poses and grips (``reach``): they are
-    expensive and sampled only in the windows of clauses that need them. ``set_up`` marks a predicate that is set up
-    before the scenario starts instead of observed.
+    - ``phrase``: its form in a model. A slot is written in ``<…>`` (a reference), as ``$…`` (a bare name) or as words.
+    - ``aliases``: other forms with the same meaning and slots.
+    - ``sentence``: its form in Gherkin, with ``{slot}`` placeholders.
+    - ``unit``: the SI unit of the margin; ``""`` for a margin of ±1. ``unit_for`` replaces it for a configured variant.
+    - ``evaluate``: the evaluator. It is ``None`` if this installation cannot judge the predicate. Then its clauses are
+      *unknown* and never pass.
+    - ``quantities``: what the evaluator needs besides poses and grips (``reach``). Quantities are expensive, so they
+      are sampled only in the windows of clauses that need them.
+    - ``set_up``: true if the predicate is set up before the scenario starts instead of observed.
     """
 
     name: str
@@ -176,8 +184,8 @@ class Predicate:
 class Behaviour:
     """A behaviour that an agent executes in ``When``.
 
-    ``events`` are the names of the events that it emits, in order; the first and the last delimit its duration.
-    ``aliases`` are other surface forms of ``phrase``, with the same slots.
+    ``events`` are the names of the events that it emits, in order. The first and the last of them delimit its duration.
+    ``aliases`` are other forms of ``phrase`` with the same slots.
     """
 
     name: str
@@ -200,11 +208,12 @@ class ShapeKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """A primitive in the object's frame.
+    """A primitive shape in the frame of its object.
 
-    ``size`` in metres: half edges of a box; (radius, 0, 0) of a sphere; (radius, half length, 0) of a cylinder along z.
-    ``position`` is its centre. ``surface`` is the surface velocity (m/s, along one axis) of a driven belt, ``None`` for
-    other shapes.
+    - ``size``: in m: the half edges of a box, (radius, 0, 0) of a sphere, or (radius, half length, 0) of a cylinder
+      along z.
+    - ``position``: the centre of the shape.
+    - ``surface``: the surface velocity (m/s, along one axis) of a driven belt; ``None`` for other shapes.
     """
 
     kind: ShapeKind
@@ -215,13 +224,17 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class ObjectModel:
-    """A kind of object of the simulated world.
+    """A kind of object in the simulated world.
 
-    Used for a scene object if one of ``prefixes`` occurs in its name, or in that of its set. ``mass`` in kg,
-    ``friction`` the sliding coefficient. A ``free`` object can move (a bin can be pushed); any other is fixed. A
-    ``graspable`` one fits into a gripper and is placed at random unless the scene places it. ``rest_height`` is the
-    height (m) of its origin above the surface below it. ``region`` is the workspace that it carries, if any. ``color``
-    is RGBA in [0, 1].
+    It is used for an object of a scene if the name of the object, or of its set, contains one of ``prefixes``.
+
+    - ``mass``: in kg.
+    - ``friction``: the coefficient of sliding friction.
+    - ``free``: true if the object can move, for example a bin that can be pushed. Other objects are fixed.
+    - ``graspable``: true if the object fits into a gripper. It is placed at random unless the scene places it.
+    - ``rest_height``: the height (m) of its origin above the surface below it.
+    - ``region``: the workspace that it carries, if any.
+    - ``color``: RGBA in [0, 1].
     """
 
     name: str
@@ -245,8 +258,8 @@ class ObjectModel:
     def spaces(self, workspace: str) -> tuple[Region, ...]:
         """Return the regions of a workspace that the object carries.
 
-        These are the parts that the workspace's local name contains (``shelf_upper``: the part ``upper``), otherwise
-        all parts, otherwise the whole region.
+        These are the parts whose name the workspace's local name contains (``shelf_upper`` contains ``upper``). If
+        there are none, these are all parts or, without parts, the whole region.
         """
         named = tuple(part for part in self.parts if part.name in workspace.lower())
         return named or self.parts or (() if self.region is None else (self.region,))
@@ -263,12 +276,17 @@ class GripperKind(StrEnum):
 class RobotModel:
     """A robot arm with its tool.
 
-    Used for a scene agent if one of ``prefixes`` occurs in its name, or in that of its set. ``mjcf`` is a file next to
-    the catalog file. ``home`` are the initial joint positions (rad); ``velocity_limits`` (rad/s) and ``torque_limits``
-    (N m) per arm joint, as published. ``joints``, ``tool_site`` and ``gripper_actuator`` are names in the MJCF;
-    ``gripper_open`` and ``gripper_closed`` its control values. ``pads`` are the geoms of the gripping faces. ``mount``
-    is the base position of the first such robot (m, world frame); ``stroke`` is the widest opening between the gripping
-    faces, or the diameter of the suction cup (m). ``source`` names the publications of the numbers.
+    It is used for an agent of a scene if the name of the agent, or of its set, contains one of ``prefixes``.
+
+    - ``mjcf``: a model file in the folder of the catalog file.
+    - ``home``: the initial joint positions (rad).
+    - ``velocity_limits`` (rad/s) and ``torque_limits`` (N m): the published limits of each arm joint.
+    - ``joints``, ``tool_site`` and ``gripper_actuator``: names in the model file.
+    - ``gripper_open`` and ``gripper_closed``: control values of the gripper's actuator.
+    - ``pads``: the geoms of the gripping faces.
+    - ``mount``: the position of the base of the first such robot (m, world frame).
+    - ``stroke``: the widest opening between the gripping faces, or the diameter of the suction cup (m).
+    - ``source``: the publications from which the numbers are taken.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Executed behaviour trees as plain data: what each node does in one execution."""
+"""Behaviour trees to be executed, as plain data: what each node does in one execution."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ START, END = "start", "end"
 
 
 def emitter(node: str, event: str) -> str:
-    """Return the emitter of an event inside a node: the node itself, or the behaviour that it executes."""
+    """Return the emitter of an event inside a node, which is the node itself or the behaviour that it executes."""
     return f"{node} {event}"
 
 
@@ -20,8 +20,10 @@ def emitter(node: str, event: str) -> str:
 class NodeSpec:
     """A node of a behaviour tree, by its IRI, with a readable ``name``.
 
-    ``kind`` is ``sequence``, ``selector`` or ``leaf``. A leaf executes ``behaviour`` (a catalog name) with
-    ``arguments`` (slot to CURIE, or to several CURIEs for a place); ``problem`` is the reason if it cannot.
+    - ``kind``: ``sequence``, ``selector`` or ``leaf``.
+    - ``behaviour``: the catalog name of the behaviour that a leaf executes.
+    - ``arguments``: maps each slot of that behaviour to a CURIE, or to several CURIEs for a place.
+    - ``problem``: the reason if the leaf cannot execute it.
     """
 
     iri: str
@@ -42,11 +44,12 @@ class NodeSpec:
 
 @dataclass(frozen=True, slots=True)
 class TreeSpec:
-    """One execution of a behaviour tree; all scenarios linked to its nodes are judged from it.
+    """One execution of a behaviour tree. All scenarios that are linked to its nodes are judged from it.
 
-    ``name`` identifies it within a run, ``tree`` is the IRI. ``nodes`` is the root alone or, if Python code
-    (``source``) makes the tree, the expected nodes. ``lead`` and ``tail`` (s) are the durations to record before the
-    tree's start and after its end.
+    - ``name``: identifies the execution within a run.
+    - ``tree``: the IRI of the tree.
+    - ``nodes``: the root alone or, if Python code (``source``) creates the tree, the expected nodes.
+    - ``lead`` and ``tail``: the time (s) to record before the tree starts and after it ends.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Map a model's event names to the events of a behaviour."""
+"""Map the names of events in a model to the events of a behaviour."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _FORMS: Mapping[str, str] = {"started": "start", "starts": "start", "ended": "en
 
 
 def inner_event(name: str, events: Iterable[str]) -> str | None:
-    """Return the event of a behaviour that a name (CURIE, IRI or local name) means, or ``None``.
+    """Return the event of a behaviour that a name (CURIE, IRI or local name) denotes, or ``None``.
 
-    Case, separators, verb form and words such as ``evt`` are ignored: ``evt-pick-end``, ``E_PICK_END``, ``pickEnd``,
-    ``pick_ended`` and ``PickEnded`` all mean ``pick-end``.
+    Case, separators, verb forms and words such as ``evt`` are ignored. So ``evt-pick-end``, ``E_PICK_END``,
+    ``pickEnd``, ``pick_ended`` and ``PickEnded`` all denote ``pick-end``.
     """
     words = _words(name)
     return next((event for event in events if _words(event) == words), None)

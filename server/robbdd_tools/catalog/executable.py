@@ -1,7 +1,7 @@
 """Executable scenes and behaviours as plain data: the content of a ``.scenex`` and a ``.bddx``.
 
-Names are IRIs in the graph's data and CURIEs in a run. Python code is named ``module:attribute``; nothing here imports
-it.
+Names are IRIs in the data of the graph and CURIEs in a run. Python code is named ``module:attribute``, and this module
+never imports it.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Source position: a file (an absolute path), line and column, both from 1.
+    """A source position: a file (an absolute path), a line and a column, both from 1.
 
-    Relative paths in a model are relative to the file's folder, which may also contain user code.
+    Relative paths in a model are relative to the folder of the file. This folder may also contain users' code.
     """
 
     file: str
@@ -30,10 +30,11 @@ _KINDS = {"catalog": "catalog behaviour", "python": "Python code", "ros-action":
 
 @dataclass(frozen=True, slots=True)
 class Substitution:
-    """A catalog behaviour that a run executes in place of a model's implementation.
+    """A catalog behaviour that a run executes instead of a model's implementation.
 
-    ``implementation`` is its IRI, ``stated`` the model's binding (``ROS action '/pick'``), ``executed`` the name
-    of the catalog behaviour.
+    - ``implementation``: the IRI of the implementation.
+    - ``stated``: the binding in the model (``ROS action '/pick'``).
+    - ``executed``: the name of the catalog behaviour.
     """
 
     implementation: str
@@ -48,10 +49,12 @@ class Substitution:
 
 @dataclass(frozen=True, slots=True)
 class Implementation:
-    """Implementation of a behaviour: ``kind`` is ``catalog``, ``python`` or ``ros-action``; ``name`` is its name there.
+    """The implementation of a behaviour.
 
-    ``origin`` is its source position, ``None`` for a graph without source text. ``replaced`` is what the model states
-    where a run executes a catalog behaviour instead.
+    - ``kind``: ``catalog``, ``python`` or ``ros-action``.
+    - ``name``: the name of the catalog behaviour, the Python code or the ROS action.
+    - ``origin``: its source position; ``None`` for a graph without source text.
+    - ``replaced``: the implementation in the model, if a run executes a catalog behaviour instead.
     """
 
     iri: str
@@ -62,21 +65,21 @@ class Implementation:
 
     @property
     def words(self) -> str:
-        """Kind and name for messages, such as ``ROS action '/pick'``."""
+        """The kind and the name for messages, for example ``ROS action '/pick'``."""
         return f"{_KINDS[self.kind]} '{self.name}'"
 
     @property
     def substitution(self) -> Substitution | None:
-        """The substitution, ``None`` for an implementation as the model states it."""
+        """The substitution; ``None`` if the implementation is the one that the model states."""
         return Substitution(self.iri, self.replaced, self.name) if self.replaced else None
 
 
 @dataclass(frozen=True, slots=True)
 class Law:
-    """A distribution: ``kind`` is ``uniform``, ``normal`` or ``uniform-rotation``.
+    """A distribution. ``kind`` is ``uniform``, ``normal`` or ``uniform-rotation``.
 
-    ``low`` and ``high`` bound each number of a uniform one; ``mean`` and ``covariance`` (row by row) belong to a normal
-    one.
+    ``low`` and ``high`` are the bounds of each number in a uniform distribution. ``mean`` and ``covariance`` (row by
+    row) are the parameters of a normal distribution.
     """
 
     iri: str
@@ -89,12 +92,15 @@ class Law:
 
 
 def spherical(deviation: float, size: int) -> tuple[float, ...]:
-    """Return the covariance of independent numbers with the same standard deviation, row by row."""
+    """Return the covariance (row by row) of independent numbers that have the same standard deviation."""
     return tuple(deviation**2 if row == column else 0.0 for row in range(size) for column in range(size))
 
 
 def law_fault(law: Law) -> str:
-    """Return why a distribution cannot be sampled, as a predicate of a sentence; empty if it can."""
+    """Return the reason why a distribution cannot be sampled; empty if it can.
+
+    The text is the predicate of a sentence.
+    """
     # Import numpy here, so that reading a model does not wait for it.
     import numpy as np
 
@@ -120,11 +126,13 @@ def law_fault(law: Law) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """The placement of a frame relative to another one, ``base`` (empty: the world).
+    """The placement of a frame relative to the frame ``base``. An empty ``base`` is the world.
 
-    A ``pose`` has a position (m) and a rotation (unit quaternion, w first), or a distribution to sample them from;
-    sampled positions are multiplied by ``scale`` (m). A ``fixed`` joint connects its frames rigidly; at the zero of a
-    ``revolute`` joint they are ``position`` apart and its ``axes`` (of ``base`` and ``frame``) coincide.
+    - A ``pose`` has a position (m) and a rotation (unit quaternion, w first), or a distribution from which they are
+      sampled. Sampled positions are multiplied by ``scale`` (m).
+    - A ``fixed`` joint connects its frames rigidly.
+    - At the zero of a ``revolute`` joint, its frames are ``position`` apart, and its ``axes`` (of ``base`` and
+      ``frame``) coincide.
     """
 
     frame: str
@@ -141,7 +149,7 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A body of a kinematic tree or graph with its frames in written order; the first is the body frame."""
+    """A body of a kinematic tree or graph. Its frames are in written order, and the first one is the body frame."""
 
     iri: str
     frames: tuple[str, ...]
@@ -150,10 +158,10 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class ArmModel:
-    """Data on a picking arm that its model file lacks; names are those in the file.
+    """Data about an arm that its model file lacks but that is needed for picking. Names are those in the file.
 
-    ``open`` and ``closed`` are values of the gripper's actuator, ``stroke`` (m) is the widest opening between the
-    ``pads``. ``home`` (rad) and ``velocity`` (rad/s), one number per joint, are empty if not given.
+    ``open`` and ``closed`` are values of the gripper's actuator. ``stroke`` (m) is the widest opening between the
+    ``pads``. ``home`` (rad) and ``velocity`` (rad/s) have one number for each joint; they are empty if not given.
     """
 
     tool: str
@@ -168,10 +176,13 @@ class ArmModel:
 
 @dataclass(frozen=True, slots=True)
 class ModelSource:
-    """Source of a model: ``kind`` is ``file``, ``ros``, ``python`` or ``catalog``.
+    """The source of a model.
 
-    ``name`` is the path, the code or the catalog name, ``package`` the ROS package; ``format`` is ``mjcf``, ``urdf`` or
-    ``usd``. ``bodies`` maps bodies of the scene's trees to their names in the file.
+    - ``kind``: ``file``, ``ros``, ``python`` or ``catalog``.
+    - ``name``: the path, the Python code or the name in the catalog.
+    - ``package``: the ROS package.
+    - ``format``: ``mjcf``, ``urdf`` or ``usd``.
+    - ``bodies``: maps bodies of the scene's kinematic trees to their names in the file.
     """
 
     iri: str

@@ -1,4 +1,4 @@
-"""Geometry shared by several evaluators; numpy is imported at the first evaluation."""
+"""Geometry that several evaluators share. numpy is imported at the first evaluation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ CONTACT = 1e-3
 
 
 def into_frame(points: FloatArray, origin: FloatArray, orientation: FloatArray) -> FloatArray:
-    """Express world points (n, 3) in frames given by origins (n, 3) and unit quaternions (w, x, y, z) (n, 4)."""
+    """Return world points (n, 3) in other frames.
+
+    The frames are given by their origins (n, 3) and orientations as unit quaternions (w, x, y, z) (n, 4).
+    """
     import numpy as np
 
     relative = points - origin
@@ -26,7 +29,7 @@ def into_frame(points: FloatArray, origin: FloatArray, orientation: FloatArray) 
 
 
 def out_of_frame(point: Vector, origin: FloatArray, orientation: FloatArray) -> FloatArray:
-    """Express a point of moving frames (as in ``into_frame``) in the world, shape (n, 3)."""
+    """Return the world position, shape (n, 3), of a point that is fixed in moving frames (see ``into_frame``)."""
     import numpy as np
 
     relative = np.tile(np.asarray(point), (len(origin), 1))
@@ -71,12 +74,12 @@ def inside_margin(evidence: Evidence, name: str, workspaces: Iterable[str]) -> F
 
 
 def _without(carrier: str, places: Iterable[tuple[str, Region]]) -> dict[tuple[str, Region], None]:
-    """Return each region once, in order, without those of one carrier."""
+    """Return each region once and in order, without the regions of one carrier."""
     return dict.fromkeys(place for place in places if place[0] != carrier)
 
 
 def _space(evidence: Evidence, workspace: str) -> Iterator[tuple[str, Region]]:
-    """Yield the regions of a workspace's objects and of the workspaces composed into it; raises ``KeyError``."""
+    """Yield the regions of a workspace's objects and of the workspaces inside it. Raises ``KeyError``."""
     inner = [name for name in evidence.contents(workspace) if name in evidence.workspaces]
     if workspace in evidence.workspaces or not inner:
         yield from evidence.regions(workspace)
@@ -85,7 +88,7 @@ def _space(evidence: Evidence, workspace: str) -> Iterator[tuple[str, Region]]:
 
 
 def _into(evidence: Evidence, place: tuple[str, Region], position: FloatArray) -> FloatArray:
-    """Distance (m) of points (n, 3) to the faces of a region in its carrier's frame, positive inside, shape (n,).
+    """Return the distance (m) of points (n, 3) to the faces of a region, positive inside, shape (n,).
 
     A point less than ``CONTACT`` below the bottom counts as on it.
     """
@@ -98,7 +101,7 @@ def _into(evidence: Evidence, place: tuple[str, Region], position: FloatArray) -
 
 
 def _floor(evidence: Evidence, place: tuple[str, Region]) -> FloatArray:
-    """Height (m, world frame) of the middle of a region's bottom, shape (n,)."""
+    """Return the height (m, world frame) of the centre of a region's bottom, shape (n,)."""
     carrier, region = place
     x, y, z = region.center
     bottom = (x, y, z - region.half[2])
@@ -106,7 +109,7 @@ def _floor(evidence: Evidence, place: tuple[str, Region]) -> FloatArray:
 
 
 def limit_of(evidence: Evidence, elements: Iterable[str], name: str) -> float | None:
-    """Return the smallest value of a configuration among elements, ``None`` if none of them has it."""
+    """Return the smallest value of a configuration among some elements; ``None`` if none of them has it."""
     found: list[float] = []
     for element in elements:
         try:
@@ -122,7 +125,7 @@ def is_configured(evidence: Evidence, element: str, name: str) -> bool:
 
 
 def carriers_of(evidence: Evidence, target: str) -> list[str]:
-    """Return the objects that carry a workspace; for any other target, the target itself."""
+    """Return the objects that carry a workspace. For any other target, return the target itself."""
     try:
         return [carrier for carrier, _ in evidence.regions(target)]
     except KeyError:

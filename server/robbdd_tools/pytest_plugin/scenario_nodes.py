@@ -180,10 +180,7 @@ class ScenarioItem(pytest.Item):
 
 
 class UnselectedItem(pytest.Item):
-    """The test of a model in which the selection selects nothing because of an error.
-
-    The test fails, so that the user notices a typing error.
-    """
+    """A test that fails because the selection is not possible or empty, so that a typing error is noticed."""
 
     error: SelectionError
     funcargs: Mapping[str, Any] = MappingProxyType({})

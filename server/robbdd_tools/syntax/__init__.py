@@ -1,1 +1,1 @@
-"""Parse text into declarations: split it into chunks and parse each into a tree with its errors."""
+"""Parse text into declarations. The text is split into chunks, and each chunk is parsed into a tree with its errors."""

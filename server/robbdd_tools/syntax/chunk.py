@@ -1,7 +1,8 @@
-"""Parse one chunk with the grammar of its file kind; on an error, report what was expected.
+"""Parse one chunk with the grammar of its file kind. On an error, report the expected text.
 
-The grammars are textX's. ``peg`` compiles them into a faster parser, because editors parse on every keystroke; a
-grammar with notation that ``peg`` does not know is parsed by textX itself. Tests hold the two to the same results.
+The grammars are written for textX. ``peg`` compiles them into a faster parser, because editors parse on every
+keystroke. A grammar with notation that ``peg`` does not know is parsed by textX itself. Tests check that both have the
+same results.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ _COMPILING = RLock()
 
 
 def parse_chunk(language: str, text: str) -> Parsed | Rejected:
-    """Parse one chunk of a file with the extension ``language``; a ``scenario`` is parsed without its story."""
+    """Parse one chunk of a file whose extension is ``language``. A ``scenario`` is parsed without its story."""
     parser = _parser(language)
     if parser is None:
         return parse_with_textx(language, text)

@@ -1,4 +1,4 @@
-"""A declaration: the content of one chunk of text (offsets count from the chunk's start)."""
+"""A declaration, which is the content of one chunk of text. Its offsets count from the start of the chunk."""
 
 from __future__ import annotations
 
@@ -63,10 +63,13 @@ FILE_NAMESPACE = ""
 class Symbol:
     """A declared name.
 
-    ``path`` is the qualified name (``parts.bolt``), ``span`` that of the name itself (empty if the name is generated),
-    ``extent`` that of the whole declaration. ``namespace`` is the name in the nearest enclosing ``(ns=…)``,
-    ``FILE_NAMESPACE`` if that is omitted, ``None`` for a name without an IRI of its own. ``target`` is a qualified name
-    whose members are members of this one too: the template of a kinematic tree instance.
+    - ``path``: the qualified name (``parts.bolt``).
+    - ``span``: the span of the name itself; empty if the name is generated.
+    - ``extent``: the span of the whole declaration.
+    - ``namespace``: the name in the nearest enclosing ``(ns=…)``; ``FILE_NAMESPACE`` if that is omitted; ``None`` for a
+      name without an IRI of its own.
+    - ``target``: a qualified name whose members are also members of this name, for example the template of a kinematic
+      tree instance.
     """
 
     path: str
@@ -80,7 +83,7 @@ class Symbol:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A use of a name. ``scopes`` are the enclosing declarations' paths, innermost first."""
+    """A use of a name. ``scopes`` are the paths of the enclosing declarations, innermost first."""
 
     ref: Ref
     scopes: tuple[str, ...]
@@ -88,7 +91,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True)
 class SyntaxFix:
-    """Text that repairs a fault when it replaces ``span`` (empty: insertion)."""
+    """Text that repairs a fault when it replaces ``span``. If ``span`` is empty, the text is inserted."""
 
     span: Span
     text: str
@@ -96,7 +99,7 @@ class SyntaxFix:
 
 @dataclass(frozen=True, slots=True)
 class SyntaxFault:
-    """A place where the text violates the grammar, with what the grammar allows there."""
+    """A place where the text violates the grammar, with the text that the grammar allows there."""
 
     span: Span
     message: str
@@ -105,12 +108,12 @@ class SyntaxFault:
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Declaration:
-    """One chunk: its tree (``None`` if broken), names, references and faults; a function of its text only.
+    """One chunk with its tree (``None`` if broken), names, references and faults. They depend on its text only.
 
-    Compared by identity: the cache returns the same object for the same text, and a keystroke looks up hundreds.
-
-    A long story has ``parts`` in text order: the text before its scenarios, each scenario (its tree is a variant) and
-    the text after them. Data on a part is kept when an edit of another part moves it. Other declarations have no parts.
+    Declarations are compared by identity. The cache returns the same object for the same text, because a keystroke
+    looks up hundreds of declarations. A long story has ``parts`` in text order: the text before its scenarios, each
+    scenario (its tree is a variant), and the text after them. Data about a part is kept when an edit of another part
+    moves it. Other declarations have no parts.
     """
 
     text: str
@@ -123,7 +126,7 @@ class Declaration:
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A declaration and its offset in a file, or in a larger declaration as a part of it."""
+    """A declaration and its offset in a file. A part of a larger declaration has its offset in that declaration."""
 
     declaration: Declaration
     offset: int

@@ -1,4 +1,4 @@
-"""Syntax fault messages: the position, the text found there and the expected text."""
+"""Messages about syntax faults: the position, the text found there and the expected text."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def _token(text: str, offset: int) -> Span:
 
 
 def _blank_line(text: str) -> Span | None:
-    """Return the empty line after the last word of a text, where a closing brace would be."""
+    """Return the position of an empty line after the last word of a text, where a closing brace would be."""
     end = len(text.rstrip())
     match = _EMPTY_LINE.match(text, end)
     return None if match is None else Span(match.start(1), match.end(1))

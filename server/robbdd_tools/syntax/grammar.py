@@ -1,6 +1,6 @@
-"""Read textX grammars into plain data; supports the part of textX's notation that ours use.
+"""Read textX grammars into plain data. Only the notation that the grammars of RobBDD use is supported.
 
-textX stays the reference for the meaning of the notation; tests compare the two on random texts.
+textX remains the reference for the meaning of the notation. Tests compare the two on random texts.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ Expression = Literal | Pattern | Use | Sequence | Choice | Optional | Assignment
 
 
 class GrammarError(Exception):
-    """The grammar uses unsupported notation; the message shows where."""
+    """The grammar uses notation that is not supported. The message names the place."""
 
 
 def read_grammar(text: str) -> dict[str, Expression]:

@@ -17,7 +17,7 @@ ROOTS = {"scenario": "ScenarioChunk"}
 
 @cache
 def grammar_text(language: str) -> str:
-    """Return the whole grammar of a file kind: its own rules, the shared ones, the phrases of the catalog."""
+    """Return the whole grammar of a file kind: its own rules, the shared rules, and the phrases of the catalog."""
     grammars = [load_text(data_file("grammar", f"{name}.tx")) for name in (grammar_name(language), "base")]
     if grammar_name(language) == "bdd":
         grammars.append(phrase_rules(load_catalog()))

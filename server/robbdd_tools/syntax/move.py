@@ -1,4 +1,4 @@
-"""Move parsed data of a piece of text to its place in a larger text."""
+"""Move the parsed data of a piece of text to its place in a larger text."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Entry = TypeVar("Entry")
 
 
 class InPlace(Sequence[Entry]):
-    """Concatenated entries of the parts of a text; each entry is moved to its place on first access.
+    """The entries of all parts of a text as one sequence. Each entry is moved to its place at the first access.
 
-    Equal to any sequence with the same entries; an entry is always the same object.
+    The sequence is equal to any sequence with the same entries. An entry is always the same object.
     """
 
     def __init__(self, parts: Iterable[tuple[int, Sequence[Entry]]], move: Callable[[Entry, int], Entry]) -> None:
@@ -74,7 +74,7 @@ def _moved(value: Any, by: int) -> Any:
 
 @cache
 def _inner_fields(kind: type[Node]) -> tuple[str, ...]:
-    """Return the fields of a kind of node after its span, which is always the first."""
+    """Return the fields of a kind of node without its span, which is always the first field."""
     return field_names(kind)[1:]
 
 

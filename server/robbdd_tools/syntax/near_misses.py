@@ -1,4 +1,4 @@
-"""Common mistakes of newcomers, each with the intended text, which a list of expected words does not convey."""
+"""Recognise common mistakes of newcomers. For these, the intended text helps more than a list of expected words."""
 
 from __future__ import annotations
 
@@ -19,10 +19,12 @@ _NAME = r"[^\W\d][\w\-]*"
 
 @dataclass(frozen=True, slots=True)
 class NearMiss:
-    """A mistake, recognised by the text before (``before``) and at (``at``) the parser's error.
+    """A common mistake.
 
-    ``expected`` is a keyword or symbol that the parser misses there. ``fix`` makes the text that replaces the match of
-    ``at``; ``""`` removes it. ``rewrite`` gives another span and its new text.
+    - ``before`` and ``at``: match the text before the parser's error and at the error.
+    - ``expected``: a keyword or symbol that the parser expects there.
+    - ``fix``: returns the text that replaces the match of ``at``; ``""`` removes the match.
+    - ``rewrite``: returns another span and its new text.
     """
 
     before: str
@@ -102,5 +104,5 @@ def _fix(miss: NearMiss, before: re.Match[str], at: re.Match[str], head: str) ->
 
 
 def _may_be_anything(rejected: Rejected) -> bool:
-    """Return whether so much is allowed at a place that the intended text is uncertain."""
+    """Return whether so many texts are allowed at a place that the intended one is uncertain."""
     return len(rejected.expected.literals - {"pred"}) > 2

@@ -1,4 +1,4 @@
-"""Parse chunk text into a ``Declaration``, cached by text; the only place where chunks are parsed."""
+"""Parse the text of a chunk into a ``Declaration``, which is cached by its text. No other module parses chunks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LANGUAGES = ("bdd", "scene", "scenex", "ktree", "bddx")
 
 
 class _Kept:
-    """Declarations by language and text: all that are in use, and the latest unused ones (for undo)."""
+    """Cached declarations by language and text: all that are in use, and the latest unused ones (for undo)."""
 
     def __init__(self) -> None:
         self._in_use: WeakValueDictionary[tuple[str, str], Declaration] = WeakValueDictionary()
@@ -43,7 +43,7 @@ _kept = _Kept()
 
 
 def parse_declaration(language: str, text: str) -> Declaration:
-    """Parse one chunk. User text never raises: a broken chunk is returned with its faults and salvaged names."""
+    """Parse one chunk. A broken chunk raises no error; its declaration has its faults and the names found in it."""
     key = (language, text)
     found = _kept.get(key)
     if found is None:

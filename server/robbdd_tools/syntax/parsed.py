@@ -1,4 +1,4 @@
-"""Result of parsing a chunk: the object of a declaration, or the place where it violates the grammar."""
+"""The result of parsing a chunk: the object of a declaration, or the place where the chunk violates the grammar."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ RawNode = Any
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """The tokens that the parser accepts at a position: keywords and symbols as written, rules by name."""
+    """The tokens that the parser accepts at a position: keywords and symbols as written, and names of rules."""
 
     literals: frozenset[str]
     rules: frozenset[str]
@@ -19,7 +19,10 @@ class Expectation:
 
 @dataclass(frozen=True, slots=True)
 class Rejected:
-    """The chunk violates the grammar: the furthest offset reached and what was expected there."""
+    """The chunk violates the grammar.
+
+    It has the furthest offset that the parser reached, and the tokens expected there.
+    """
 
     offset: int
     expected: Expectation
@@ -27,7 +30,7 @@ class Rejected:
 
 @dataclass(frozen=True, slots=True)
 class Parsed:
-    """The object of a declaration, and the offset of surplus text after it."""
+    """The object of a declaration, and the offset of the text that follows it in the chunk."""
 
     declaration: RawNode
     trailing: int | None

@@ -27,7 +27,7 @@ Make = Callable[["State", int], "tuple[int, Any] | None"]
 
 
 class State:
-    """State of parsing one text: the furthest failure, what was expected there, and the memoised results."""
+    """The state of parsing one text: the furthest failure, the tokens expected there, and the memoised results."""
 
     __slots__ = ("_blank", "expected", "furthest", "results", "text")
 
@@ -47,7 +47,7 @@ class State:
         return found
 
     def fail(self, position: int, expected: tuple[str, str]) -> None:
-        """Record what was expected at a position: a literal, or a rule by name."""
+        """Record that a literal, or a rule given by its name, was expected at a position."""
         if position > self.furthest:
             self.furthest = position
             self.expected = {expected}
@@ -72,7 +72,7 @@ class Compiled:
         self._makers: dict[str, Make] = {}
 
     def parse(self, text: str) -> tuple[Node | None, State]:
-        """Parse a whole text; ``None`` and the state with the error if it violates the grammar."""
+        """Parse a whole text. If it violates the grammar, return ``None`` and the state with the error."""
         state = State(text)
         if sys.getrecursionlimit() < DEEPEST:
             sys.setrecursionlimit(DEEPEST)
@@ -89,7 +89,7 @@ class Compiled:
         return None, state
 
     def _is_text(self, rule: str) -> bool:
-        """Return whether a rule matches text only, without making an object."""
+        """Return whether a rule only matches text and makes no object."""
         return _reads_text(self._rules[rule], self._rules)
 
     def _text(self, rule: str) -> Parse:

@@ -1,4 +1,4 @@
-"""Translate catalog phrases to grammar rules: ``<object> is located at <workspace>`` becomes a textX rule."""
+"""Translate phrases of the catalog to rules of the grammar, for example ``<object> is located at <workspace>``."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _phrases(prefix: str, words: Mapping[str, Predicate] | Mapping[str, Behaviou
 
 
 def _longest_first(phrases: Mapping[str, str]) -> list[str]:
-    """``picks <o> and places …`` must be tried before ``picks <o>``."""
+    """Sort phrases by length, because ``picks <o> and places …`` must be tried before ``picks <o>``."""
     return sorted(phrases, key=lambda name: (-len(phrases[name]), name))
 
 

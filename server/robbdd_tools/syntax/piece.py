@@ -1,4 +1,4 @@
-"""Parse one piece of text into a tree, with repairs where it is broken."""
+"""Parse one piece of text into a tree. Broken text is repaired."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robbdd_tools.syntax.to_trees import convert
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """Parsed text: its tree (``None`` if no repair helped), its faults, the offset of text after its end."""
+    """A parsed text: its tree (``None`` if no repair helped), its faults, and the offset of text after its end."""
 
     tree: Any
     faults: tuple[SyntaxFault, ...]

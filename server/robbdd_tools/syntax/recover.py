@@ -32,9 +32,9 @@ _BRACKETS = re.compile(r"//[^\n]*|\"(?:\\.|[^\"\\\n])*\"?|'(?:\\.|[^'\\\n])*'?|(
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """A repaired text of the same length; ``span`` is the changed part.
+    """A repaired text, which has the same length as the original. ``span`` is the part that was changed.
 
-    ``text`` is the user's fix there, ``None`` if text was blanked.
+    ``text`` is the fix to offer for that part; ``None`` if the part was blanked.
     """
 
     repaired: str
@@ -52,7 +52,7 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """All errors found, and the repaired text with its parse, ``None`` if no repair helped."""
+    """All errors found, and the repaired text with its parse result. The latter are ``None`` if no repair helped."""
 
     faults: tuple[Fault, ...]
     text: str
@@ -85,7 +85,7 @@ def recover(language: str, text: str, first: Rejected) -> Recovered:
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """The repair chosen for one error, the parser's result after it, and the number of attempts."""
+    """The repair chosen for one error, the parse result after it, and the number of attempts."""
 
     repair: Repair
     result: Parsed | Rejected
@@ -190,13 +190,13 @@ def _spelling(text: str, found: Span, keyword: str) -> Iterator[Repair]:
 
 
 def _continues(text: str, place: int) -> bool:
-    """Return whether a word would run into the letter at ``place``."""
+    """Return whether a word that ends at ``place`` would be joined to the letter that follows."""
     letter = text[place : place + 1] if place >= 0 else ""
     return letter.isalnum() or letter in {"_", "-"}
 
 
 def _lines(text: str, offset: int, windows: tuple[tuple[int, int], ...]) -> Iterator[Repair]:
-    """Blank the line of the error, with non-empty lines before and after it."""
+    """Blank the line of the error, together with non-empty lines before and after it."""
     lines = [match.span() for match in re.finditer(r"[^\n]*\S[^\n]*", text)]
     own = next((index for index, (_, end) in enumerate(lines) if offset <= end), len(lines) - 1)
     # The first line holds the declaration's head, without which nothing can be parsed.

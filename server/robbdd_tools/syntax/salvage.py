@@ -1,4 +1,4 @@
-"""Salvage the names in a declaration that did not parse."""
+"""Find the names in a declaration that could not be parsed."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ _KINEMATIC_PARTS = {
 
 
 def salvage(text: str) -> tuple[Symbol, ...]:
-    """Return the names that a broken declaration evidently declares, so that references to them are no errors."""
+    """Return the names that a broken declaration evidently declares, so that references to them are not reported."""
     for pattern, kind in _HEADERS:
         match = pattern.match(text)
         if match:
@@ -101,7 +101,7 @@ def salvage_scenario(text: str, story: str, namespace: str | None) -> tuple[Symb
 
 
 def with_lost(declared: tuple[Symbol, ...], salvaged: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
-    """Add the names in the blanked parts of a repaired text, so that references to them are no errors."""
+    """Add the names in the blanked parts of a repaired text, so that references to them are not reported."""
     paths = {symbol.path for symbol in declared}
     lost = (symbol for symbol in salvaged if symbol.path not in paths)
     known = (symbol for symbol in declared if HOLE not in symbol.path)

@@ -53,14 +53,14 @@ _STARTERS["ktree"] = _STARTERS["scenex"]
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """The text from one declaration's first word up to the next declaration, and its offset."""
+    """The text from the first word of a declaration up to the next declaration, and its offset."""
 
     offset: int
     text: str
 
 
 def split(language: str, text: str) -> tuple[Chunk, ...]:
-    """Return the chunks of a text in order; non-blank text before the first declaration is a chunk too."""
+    """Return the chunks of a text in order. Text before the first declaration is a chunk if it is not blank."""
     starts = list(_starts(language, text))
     first = starts[0] if starts else len(text)
     lead = len(text) - len(_LEAD.sub("", text, count=1))

@@ -42,7 +42,7 @@ _STORY = re.compile(r"User\s+Story\b")
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """A story's text in parts: the starts of its scenarios, and the start of its closing part."""
+    """The parts of a story's text: the starts of its scenarios, and the start of its closing part."""
 
     text: str
     starts: tuple[int, ...]
@@ -59,7 +59,7 @@ class Cut:
         return self.text[self.end :]
 
     def scenarios(self) -> Iterator[tuple[int, str]]:
-        """Yield each scenario's offset and text, including the text up to the next."""
+        """Yield the offset and the text of each scenario. The text extends to the next scenario."""
         return ((start, self.text[start:end]) for start, end in pairwise((*self.starts, self.end)))
 
 
@@ -97,7 +97,7 @@ def quotes_braces(text: str) -> bool:
 
 
 def _starts_line(text: str, offset: int) -> bool:
-    """Return whether only white space precedes a place in its line."""
+    """Return whether there is only white space before a place in its line."""
     return not text[text.rfind("\n", 0, offset) + 1 : offset].strip()
 
 
@@ -113,7 +113,7 @@ def _closing_line(text: str, start: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """A story without its scenarios, parsed with a placeholder for them.
+    """A story without its scenarios. It is parsed with a placeholder for them.
 
     ``head`` and ``tail`` are the parts of the story before and after the scenarios.
     """
@@ -130,7 +130,7 @@ Key = tuple[str, str, str | None]
 
 
 class _Kept:
-    """Cached scenarios: those of the latest stories; the latest story is kept completely."""
+    """Cached scenarios of the latest stories. Those of the latest story are all kept."""
 
     def __init__(self) -> None:
         self._latest: dict[Key, tuple[Placed, ...]] = {}
@@ -138,7 +138,7 @@ class _Kept:
         self._letters = 0
 
     def begin(self) -> None:
-        """Start a story: scenarios that it does not use may be evicted."""
+        """Begin a new story. Cached scenarios that it does not use may be removed."""
         if self._letters > CACHED_LETTERS:
             self._older, self._latest, self._letters = self._latest, {}, 0
 
@@ -165,7 +165,7 @@ def forget_scenarios() -> None:
 
 
 def read_story(cut: Cut) -> Declaration:
-    """Return the declaration of a story; only scenarios with a new text are parsed."""
+    """Return the declaration of a story. Only scenarios whose text is new are parsed."""
     _kept.begin()
     frame = _frame(cut.head, cut.tail)
     own = tuple(replace(symbol, extent=_stretched(symbol.extent, cut)) for symbol in frame.symbols)

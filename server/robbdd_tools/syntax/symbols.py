@@ -1,4 +1,4 @@
-"""The names declared and used in a tree."""
+"""Find the names that a tree declares and uses."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _TOP: dict[type[tree.Node], SymbolKind] = {
 
 
 def symbols(root: tree.DeclarationTree) -> tuple[Symbol, ...]:
-    """Return the names that a declaration declares: itself first, then its parts in text order."""
+    """Return the names that a declaration declares: first its own name, then those of its parts in text order."""
     if isinstance(root, tree.Import):
         return ()
     if isinstance(root, tree.Namespace):

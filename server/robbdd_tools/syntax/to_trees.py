@@ -75,7 +75,7 @@ def _number(raw: RawNode, span: Span, _: str) -> tree.Number:
 
 
 def _inner(field: str) -> Callable[[RawNode, Span, str], Any]:
-    """Return a converter for a rule that only wraps one of its parts in words."""
+    """Return a converter for a rule that consists of one of its parts and keywords around it."""
     return lambda raw, _, text: _value(getattr(raw, field), text)
 
 

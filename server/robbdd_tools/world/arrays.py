@@ -1,4 +1,4 @@
-"""Arrays as JSON."""
+"""Convert arrays to JSON."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ if TYPE_CHECKING:
 
 
 def array(values: NDArray[Any], kind: Literal["float32", "uint32"]) -> dict[str, Any]:
-    """Return numbers as JSON: little-endian, last index fastest, in base64; ``kind`` is their type."""
+    """Return numbers as base64 for JSON: little-endian, last index fastest. ``kind`` is the type of the numbers."""
     data = np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<")).tobytes()
     return {"type": kind, "shape": list(values.shape), "data": b64encode(data).decode("ascii")}

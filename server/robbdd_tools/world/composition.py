@@ -42,9 +42,11 @@ TORSION, ROLLING = 0.005, 0.0005
 class World:
     """A compiled scene.
 
-    ``model`` is the engine's; ``bases`` are the poses of the robots' bases, ``poses`` those of the objects before they
-    settle. ``seed`` is the seed of all random choices; ``resampled`` counts the random places that were resampled
-    because they overlapped or were out of reach.
+    - ``model``: the model of the physics engine.
+    - ``bases``: the poses of the robots' bases.
+    - ``poses``: the poses of the objects before they settle.
+    - ``seed``: the seed of all random choices.
+    - ``resampled``: the number of random places that were sampled again because they overlapped or were out of reach.
     """
 
     model: Any
@@ -56,10 +58,11 @@ class World:
 
 
 def build_world(scene: SceneSpec, seed: int, actor: str | None = None, instance: SceneInstance | None = None) -> World:
-    """Build the world of a scene; all random choices derive from ``seed``, or from the seed in its configuration.
+    """Build the world of a scene.
 
-    ``actor`` is the agent that objects are laid out for, by default the first; ``instance`` gives models and places of
-    elements. Raises ``SceneError`` when an element has no model, a place does not exist or there is no room.
+    All random choices derive from ``seed`` or from the seed in the scene's configuration. ``actor`` is the agent for
+    which objects are laid out; by default, the first agent. ``instance`` has models and places of elements. Raises
+    ``SceneError`` if an element has no model, a place does not exist or there is no room.
     """
     staging = None if instance is None else Staging(instance, _seed_of(scene, seed))
     cast = cast_scene(scene, staging)
@@ -80,7 +83,7 @@ def _seed_of(scene: SceneSpec, seed: int) -> int:
 
 
 def mjcf_path(robot: RobotModel) -> Path:
-    """Return the robot's model file; raises ``SceneError`` if it is missing."""
+    """Return the path of the robot's model file. Raises ``SceneError`` if the file is missing."""
     from robbdd_tools.catalog import robots
 
     own = Path(robots.__path__[0]) / robot.mjcf

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def read_back(simulation: Simulation, scene: SceneSpec) -> Mapping[tuple[str, str], str]:
-    """Return element and name → value of every configuration in the simulated world."""
+    """Map the element and the name of every configuration in the simulated world to its value."""
     cast, model = simulation.world.cast, simulation.model
     settings: dict[tuple[str, str], Numbers] = dict(cast.judged)
     for name, thing in cast.objects.items():

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class _WithFault(Exception):
-    """An error that users' code may have caused; then ``fault`` describes it."""
+    """An error that users' code may have caused. In this case, ``fault`` describes it."""
 
     def __init__(self, message: str, fault: Fault | None = None) -> None:
         super().__init__(message)

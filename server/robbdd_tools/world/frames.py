@@ -23,7 +23,7 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def at(origin: Origin | None) -> str:
-    """Return the place where something is written, as the beginning of a message."""
+    """Return a source position as the beginning of a message."""
     return "" if origin is None else f"{Path(origin.file).name}:{origin.line}:{origin.column}: "
 
 
@@ -54,7 +54,7 @@ class Frames:
         return known[body.frames[0]]
 
     def _is_placed(self, body: Body) -> bool:
-        """Return whether a pose or joint says where a body is."""
+        """Return whether a pose or a joint places a body."""
         named = {self._instance.anchor, *(frame for link in self._instance.links for frame in (link.frame, link.base))}
         return not named.isdisjoint(body.frames)
 

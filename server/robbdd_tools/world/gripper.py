@@ -30,7 +30,7 @@ Step = Iterator[None]
 
 
 class Hand(Protocol):
-    """A gripper's interface to the controller that moves it. ``control`` is the value of its actuator."""
+    """The interface between a gripper and the controller that moves it. ``control`` is the value of its actuator."""
 
     control: float
 

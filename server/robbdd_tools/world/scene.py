@@ -29,9 +29,11 @@ PEDESTAL = "pedestal"
 class Cast:
     """A scene with a model for every object and agent.
 
-    ``regions`` maps a workspace to its boxes, each with the object in whose frame it is given; a workspace without a
-    carrier is absent. ``ranges`` are areas where some elements are laid out (``position_range``); ``seed`` is the one
-    that the scene sets, if any. ``judged`` maps element and name to the configurations of how to judge it.
+    - ``regions``: maps a workspace to its boxes, each with the object in whose frame it is given. A workspace without a
+      carrier is absent.
+    - ``ranges``: the areas in which some elements are laid out (``position_range``).
+    - ``seed``: the seed that the scene sets, if any.
+    - ``judged``: maps an element and a name to a configuration that only changes how the element is judged.
     """
 
     objects: Mapping[str, ObjectModel]
@@ -64,7 +66,7 @@ class Cast:
 
     @property
     def tables(self) -> tuple[str, ...]:
-        """The fixed objects, which carry everything else, the one with the largest top first."""
+        """The fixed objects, which carry everything else. The one with the largest top is first."""
         fixed = [name for name, model in self.objects.items() if not model.free]
         return tuple(sorted(fixed, key=lambda name: -_top_area(self.objects[name])))
 
@@ -79,9 +81,10 @@ def local_name(curie: str) -> str:
 
 
 def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
-    """Choose the models of a scene, from an executable scene, else by name, and configure them.
+    """Choose models for the elements of a scene, and configure them.
 
-    Raises ``SceneError`` for a name without a model and for an impossible configuration.
+    They are chosen from an executable scene or, otherwise, by name. Raises ``SceneError`` for a name without a model
+    and for an impossible configuration.
     """
     catalog = load_catalog()
     objects: dict[str, ObjectModel] = {}
@@ -119,7 +122,7 @@ def cast_scene(scene: SceneSpec, staging: Staging | None = None) -> Cast:
 
 
 def _elements(scene: SceneSpec, target: str) -> tuple[str, ...]:
-    """Return the objects that a workspace stands for; for anything else the target itself."""
+    """Return the objects that carry a workspace. For any other target, return the target itself."""
     return carriers(scene, target) or (target,)
 
 
@@ -148,7 +151,7 @@ def _regions(scene: SceneSpec, objects: Mapping[str, ObjectModel]) -> dict[str, 
 
 
 def contents_of(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
-    """Return the workspaces composed into one, at any depth, in written order."""
+    """Return the workspaces inside a workspace, at any depth, in written order."""
     found: dict[str, None] = {}
     waiting = list(scene.contains.get(workspace, ()))
     while waiting:
@@ -160,7 +163,10 @@ def contents_of(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
 
 
 def carriers(scene: SceneSpec, workspace: str) -> tuple[str, ...]:
-    """Return the objects that carry a workspace: its own or, if it has none, those of its parts."""
+    """Return the objects that carry a workspace.
+
+    If it has none of its own, return those of the workspaces inside it.
+    """
     return _carriers(scene, workspace, frozenset())
 
 

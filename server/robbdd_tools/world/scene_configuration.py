@@ -91,7 +91,7 @@ def _apply(found: Configured, element: str, config: ConfigSpec, value: Numbers) 
 
 
 def _loose(found: Configured) -> list[str]:
-    """Return the objects that are laid out at random and have no range of their own."""
+    """Return the objects that are laid out at random and that have no range of their own."""
     return [name for name in found.objects if found.objects[name].graspable and name not in found.ranges]
 
 

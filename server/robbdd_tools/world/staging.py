@@ -1,4 +1,4 @@
-"""An executable scene's data on the elements of a scenario: their models and places."""
+"""The data of an executable scene about the elements of a scenario: their models and places."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class Staging:
         return None if transform is None else _pose(transform)
 
     def base(self, element: str) -> Pose | None:
-        """Return the pose of an agent's base; raises ``SceneError`` if it does not stand upright."""
+        """Return the pose of an agent's base. Raises ``SceneError`` if the base does not stand upright."""
         pose = self.pose(element)
         if pose is not None and pose.rotation:
             chosen = self._source(element)
@@ -130,7 +130,7 @@ class Staging:
         return pose
 
     def origin(self, element: str) -> Origin | None:
-        """Return where the scene defines an element, ``None`` if nowhere."""
+        """Return the source position at which the scene defines an element; ``None`` if it does not define it."""
         said = self._elements.get(element)
         return None if said is None else said.origin
 
