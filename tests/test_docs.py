@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
 import pytest
 
 from kit import DOCS, ROOT
+from robbdd_tools.catalog.registry import load_catalog
+from robbdd_tools.cli import main
 
 PAGES = sorted(DOCS.rglob("*.md"))
 LINK = re.compile(r"\]\((?!\w+:)([^)#\s]+)(?:#[^)]*)?\)")
@@ -40,3 +43,31 @@ def test_each_feature_that_is_compared_is_linked_to_a_file_of_tests() -> None:
         tests = TEST.findall(row)
         assert len(tests) == 1, row
         assert A_TEST.search((DOCS / tests[0]).read_text(encoding="utf-8")) is not None, row
+
+
+def test_each_command_has_its_row(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    commands = re.findall(r"^    (\w+)", capsys.readouterr().out, re.MULTILINE)
+    assert {"check", "run", "doctor"} <= set(commands)
+    table = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert [command for command in commands if f"`robbdd {command}" not in table] == []
+
+
+def test_the_page_on_simulation_has_each_predicate_and_robot() -> None:
+    page = (DOCS / "simulation.md").read_text(encoding="utf-8")
+    catalog = load_catalog()
+    words = [re.sub(r"<\w+>|\$.*", "", one.phrase).strip() for one in catalog.predicates.values()]
+    assert [word for word in words if f"\n| {word} |" not in page] == []
+    robots = catalog.robots.values()
+    assert [one.name for one in robots if not any(f"`{prefix}…`" in page for prefix in one.prefixes)] == []
+
+
+def test_the_context_has_a_term_for_each_type_and_property_of_the_catalog() -> None:
+    terms = json.loads((ROOT / "metamodels" / "context.jsonld").read_text(encoding="utf-8"))["@context"].values()
+    known = {term if isinstance(term, str) else term["@id"] for term in terms}
+    catalog = load_catalog()
+    words = (*catalog.predicates.values(), *catalog.behaviours.values())
+    used = {one.rdf_type for one in catalog.predicates.values()}
+    used |= {name for one in catalog.behaviours.values() for name in one.rdf_types}
+    assert used | {slot.property for word in words for slot in word.slots} <= known
