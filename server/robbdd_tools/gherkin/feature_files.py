@@ -38,7 +38,7 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class FeaturePlan:
-    """What to write: the stories of a model, the scenarios of each variant, and the template.
+    """The contents to write: the stories of a model, the scenarios of each variant, and the template.
 
     ``origins`` are the source ranges of clauses, if known.
     """

@@ -84,7 +84,7 @@ class StepWriter:
         return sentence(self._binder.bind(clause, values))
 
     def word(self, value: Value) -> str:
-        """Return a value as it is written inside the quotes of a sentence."""
+        """Return a value as written inside the quotes of a sentence."""
         return word(self._binder.filler(value))
 
     def _step(self, role: str, clause: Clause, values: Values, scope: Scope) -> Step:

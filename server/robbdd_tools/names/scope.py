@@ -40,7 +40,7 @@ class Scope:
         return self.own is other.own and self.files == other.files and self.unread == other.unread
 
     def walk(self) -> Iterator[FileIndex]:
-        """Yield the files, nearest first; as many as somebody takes are looked for."""
+        """Yield the files, nearest first. Files are searched only as far as the caller iterates."""
         sources = self._reachability.sources
         for uri in self._reachability.walk(self.own.document.uri):
             source = sources.get(uri)
@@ -89,7 +89,7 @@ class Scope:
         return found
 
     def declaring(self, path: str, kind: SymbolKind | None = None) -> Iterator[FileIndex]:
-        """Yield the files that declare a qualified name, as a certain kind where one is given, nearest first."""
+        """Yield the files that declare a qualified name, nearest first. With ``kind``, it must have this kind."""
         if kind is None:
             return self._having(lambda file: path in file.names.entries, lambda reach: reach.declaring.get(path, ()))
         return self._having(

@@ -55,7 +55,7 @@ def fault_in(text: str, fault: Fault) -> SyntaxFault:
 
 
 def expected_words(expectation: Expectation) -> list[str]:
-    """Return what is allowed at a place, in words: keywords in quotes first, then names, strings and numbers."""
+    """Return the text that is allowed at a place in words: keywords in quotes, then names, strings and numbers."""
     literals = [f"'{literal}'" for literal in sorted(expectation.literals)]
     named = (rule for rule in expectation.rules if rule in _RULE_WORDS or rule.endswith("Path"))
     rules = sorted({_RULE_WORDS.get(rule) or _path_words(rule) for rule in named})

@@ -98,7 +98,10 @@ class Compiled:
         return self._texts[rule]
 
     def _maker(self, rule: str) -> Make:
-        """Return a rule's function by name, even while it is being compiled (rules refer to each other)."""
+        """Return the function of a rule by its name.
+
+        It can be found even while it is being compiled, because rules refer to each other.
+        """
         if rule not in self._makers:
             self._makers[rule] = lambda state, position: self._makers[rule](state, position)
             body = self._rules[rule]

@@ -44,7 +44,7 @@ class Repair:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """An error: where the parser stopped and what it expected, with the repairing text if that is certain."""
+    """An error: where the parser stopped, the expected tokens and, if it is certain, the text that repairs it."""
 
     rejected: Rejected
     repair: Repair | None

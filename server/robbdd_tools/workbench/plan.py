@@ -131,10 +131,7 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """The coverage of a covering array.
-
-    It has the CURIE of the variant and the numbers of scenarios, covered combinations and possible combinations.
-    """
+    """Coverage of a covering array: a variant's CURIE, the numbers of scenarios, of covered and of all combinations."""
 
     variant: str
     scenarios: int

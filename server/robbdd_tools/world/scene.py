@@ -61,7 +61,7 @@ class Cast:
         return None if self.staging is None else self.staging.base(name)
 
     def origin(self, name: str) -> Origin | None:
-        """Return where an executable scene defines an element, ``None`` if nowhere."""
+        """Return the source position at which an executable scene defines an element, or ``None``."""
         return None if self.staging is None else self.staging.origin(name)
 
     @property
