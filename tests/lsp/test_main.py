@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
+import signal
 import socket
 import subprocess
 import sys
 from collections.abc import AsyncIterator
+from contextlib import closing, suppress
+from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from robbdd_tools import __version__
+from robbdd_tools.base.limits import HEADER_SECONDS
+from robbdd_tools.lsp import tcp
 from robbdd_tools.lsp.main import address, main
 
 INVALID_PARAMS = -32602
@@ -71,8 +78,27 @@ async def connected(port: int) -> tuple[asyncio.StreamReader, asyncio.StreamWrit
 class Wire:
     """A client that sends given messages."""
 
-    def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        self._reader, self._writer = reader, writer
+    def __init__(
+        self,
+        reader: asyncio.StreamReader,
+        writer: asyncio.StreamWriter,
+        server: asyncio.subprocess.Process,
+        log: Path,
+    ) -> None:
+        self._reader, self._writer, self.server, self._log = reader, writer, server, log
+
+    def send(self, data: bytes) -> None:
+        self._writer.write(data)
+
+    def send_message(self, method: str) -> None:
+        body = json.dumps({"jsonrpc": "2.0", "method": method})
+        self.send(f"Content-Length: {len(body)}\r\n\r\n{body}".encode())
+
+    async def ended(self) -> tuple[int, str]:
+        """Return the server's exit code and its log when it ends by itself."""
+        async with asyncio.timeout(60):
+            code = await self.server.wait()
+        return code, self._log.read_text("utf-8")
 
     async def answer(self, method: str, params: object) -> dict[str, Any]:
         body = json.dumps({"jsonrpc": "2.0", "id": 1, "method": method, "params": params})
@@ -83,25 +109,76 @@ class Wire:
 
 
 @pytest.fixture
-async def wire() -> AsyncIterator[Wire]:
+async def wire(tmp_path: Path) -> AsyncIterator[Wire]:
     """A client of a server at a TCP address."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    server = await asyncio.create_subprocess_exec(sys.executable, "-m", "robbdd_tools.lsp.main", "--tcp", str(port))
+    log = tmp_path / "log"
+    with log.open("wb") as stderr:
+        server = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", "robbdd_tools.lsp.main", "--tcp", str(port)),
+            env={**os.environ, HEADER_SECONDS.variable: "1"},
+            stderr=stderr,
+        )
     try:
         async with asyncio.timeout(60):
             reader, writer = await connected(port)
-            yield Wire(reader, writer)
+            yield Wire(reader, writer, server, log)
             writer.close()
     finally:
-        server.kill()
+        with suppress(ProcessLookupError):
+            server.kill()
         await server.wait()
 
 
 async def test_a_client_is_served_over_tcp(wire: Wire) -> None:
     answer = await wire.answer("initialize", {"capabilities": {}})
     assert answer["result"]["serverInfo"]["name"] == "robbdd-lsp"
+
+
+async def test_messages_and_headers_are_bounded_over_tcp(wire: Wire) -> None:
+    wire.send(b"Content-Length: 70000000\r\n\r\n" + b" " * 70_000_000)
+    wire.send(b"x" * 1_000_000 + b"\r\n")
+    assert "result" in await wire.answer("initialize", {"capabilities": {}})
+    ended = asyncio.create_task(wire.ended())
+    while not ended.done():
+        wire.send(b"slow\n")
+        await asyncio.wait([ended], timeout=0.1)
+    code, log = await ended
+    assert code == 1
+    assert "skipped a message of 70000000 bytes" in log
+    assert "closed the connection: a header took longer than 1 s" in log
+    assert "Traceback" not in log
+
+
+def test_only_the_time_of_a_header_is_limited_over_tcp(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tcp, "monotonic", partial(next, count(0, HEADER_SECONDS.default + 1)))
+    ours, theirs = socket.socketpair()
+    with theirs, closing(tcp.Connection(ours)) as connection:
+        for content in (b"{}", b"[]"):
+            theirs.sendall(b"Content-Length: 2\r\n\r\n" + content[:1])
+            assert connection.input.readline() == b"Content-Length: 2\r\n"
+            assert connection.input.readline() == b"\r\n"
+            theirs.sendall(content[1:])
+            assert connection.input.read(2) == content
+        theirs.sendall(b"Content-Length: 2\r\n")
+        assert connection.input.readline() == b"Content-Length: 2\r\n"
+        theirs.sendall(b"\r\n[]")
+        assert connection.input.readline() == b""
+
+
+async def test_exit_ends_the_session_while_the_client_stays_connected(wire: Wire) -> None:
+    await wire.answer("initialize", {"capabilities": {}})
+    await wire.answer("shutdown", None)
+    wire.send_message("exit")
+    assert await wire.ended() == (0, "")
+
+
+async def test_ctrl_c_ends_the_session_while_the_client_stays_connected(wire: Wire) -> None:
+    await wire.answer("initialize", {"capabilities": {}})
+    wire.server.send_signal(signal.SIGINT)
+    assert await wire.ended() == (1, "")
 
 
 async def test_a_session_that_begins_with_nonsense_is_told_so_and_may_begin_again(wire: Wire) -> None:

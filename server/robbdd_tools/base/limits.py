@@ -46,6 +46,8 @@ RESULT_SIZE = Limit("result-size", 512 * MIB, "bytes")
 """A file of a run (results, manifest, trace), or a mesh or texture of a scene's model."""
 MESSAGE_SIZE = Limit("message-size", 64 * MIB, "bytes")
 """The content of one message to the language server."""
+HEADER_SECONDS = Limit("header-seconds", 30, "seconds")
+"""Time from the first byte of a message's header to its end, for a TCP client; editors send it at once."""
 SCANNED_ENTRIES = Limit("scanned-entries", 200_000, "files and folders")
 """Entries that one search of a folder visits."""
 SCANNED_DEPTH = Limit("scanned-depth", 32, "levels of folders")
@@ -65,6 +67,7 @@ LIMITS: Mapping[str, Limit] = {
         MODEL_SIZE,
         RESULT_SIZE,
         MESSAGE_SIZE,
+        HEADER_SECONDS,
         SCANNED_ENTRIES,
         SCANNED_DEPTH,
         VALIDATION_SECONDS,

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robbdd_tools import __version__
+from robbdd_tools.lsp.tcp import Connection, accept_client
 from robbdd_tools.lsp.transport import RefusalFilter, bounded, end_soon
 
 LOOPBACK = "127.0.0.1"
@@ -46,11 +47,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         server.start_io(bounded(sys.stdin.buffer))
     else:
         try:
-            server.start_tcp(*options.tcp)
+            client = accept_client(*options.tcp)
         except OSError as error:
             host, port = options.tcp
             reason = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or error
             parser.error(f"no client can connect to {host}:{port}: {reason}")
+        server.start_connection(Connection(client))
     server.stop()
     code = server.exit_code()
     end_soon(code)

@@ -6,7 +6,6 @@ import asyncio
 import logging
 from collections.abc import Generator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from typing import Any, cast
 
 from lsprotocol import types
@@ -26,12 +25,6 @@ class Protocol(LanguageServerProtocol):
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._outbox = ThreadPoolExecutor(1, thread_name_prefix="outbox")
-
-    def set_writer(self, writer: Any, include_headers: bool = True) -> None:
-        """Set the writer for all messages from now on."""
-        if isinstance(writer, asyncio.StreamWriter):
-            writer = LoopWriter(writer)
-        super().set_writer(writer, include_headers)
 
     @lsp_method(types.EXIT)
     def lsp_exit(self, *arguments: Any) -> Generator[Any, Any, None]:
@@ -123,21 +116,3 @@ def with_canonical_uris(message: Any) -> Any:
             return [with_canonical_uris(entry) for entry in cast("list[Any]", message)]
         case _:
             return message
-
-
-class LoopWriter:
-    """A thread-safe writer to an asyncio stream. The stream itself may only be used in the thread of its event loop."""
-
-    def __init__(self, stream: asyncio.StreamWriter) -> None:
-        self._stream = stream
-        self._loop = asyncio.get_running_loop()
-
-    def write(self, data: bytes) -> None:
-        """Schedule a write. Writes are done in the order of the calls."""
-        self._loop.call_soon_threadsafe(self._stream.write, data)
-
-    async def close(self) -> None:
-        """Close the stream after all scheduled writes."""
-        self._stream.close()
-        with suppress(ConnectionError):
-            await self._stream.wait_closed()

@@ -42,6 +42,7 @@ from robbdd_tools.names.project import Project, Snapshot
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.active_run import ActiveRun
+    from robbdd_tools.lsp.tcp import Connection
 
 Result = TypeVar("Result")
 _LOG = logging.getLogger(__name__)
@@ -75,6 +76,7 @@ class RobbddServer(LanguageServer):
         """Whether the client shows pictures in Markdown."""
         self.shows_replays = False
         """Whether the client has the command ``robbdd.showReplay``, also in Markdown links."""
+        self._connection: Connection | None = None
         self._shapes = ShapeFindings()
         self._analysis = AnalysisThread()
         self.requests = Requests()
@@ -269,6 +271,17 @@ class RobbddServer(LanguageServer):
         """Return the process's exit code, see ``Protocol.exit_code``."""
         protocol: Any = self.protocol
         return protocol.exit_code
+
+    def start_connection(self, connection: Connection) -> None:
+        """Serve a TCP client until it ends the session."""
+        self._connection = connection
+        self.start_io(connection.input, connection.output)
+
+    def shutdown(self) -> None:
+        """End the session. The connection is closed first, because pygls waits for the thread that reads from it."""
+        if self._connection is not None:
+            self._connection.close()
+        super().shutdown()
 
     def stop(self) -> None:
         """Stop all threads and processes of the server."""

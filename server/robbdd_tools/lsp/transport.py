@@ -1,4 +1,4 @@
-"""Standard input for pygls. It tolerates variants of headers, limits the size of messages, and ends reliably."""
+"""Input of the server for pygls. It tolerates variants of headers, limits the size of messages, and ends reliably."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import logging
 import os
 import re
 import threading
-from typing import IO, BinaryIO, cast
+from typing import IO, BinaryIO, Protocol, cast
 
 from robbdd_tools.base.limits import MESSAGE_SIZE
 
@@ -20,20 +20,34 @@ _LENGTH = re.compile(rb"content-length[ \t]*:[ \t]*(\d{1,18})[ \t]*\r?\n$", re.I
 _LOG = logging.getLogger(__name__)
 
 
+class HeaderTimer(Protocol):
+    """Limits the time from the first byte of a header to its end."""
+
+    def begin_header(self) -> None:
+        """Wait for the first byte of a header, then start its time."""
+        ...
+
+    def end_header(self) -> None:
+        """Stop the time: the header is complete."""
+        ...
+
+
 class BoundedInput:
     """The lines and contents that pygls reads, with normalised headers.
 
     A message above the size limit is skipped and logged. After a broken header, reading continues at the next valid
-    one.
+    one. A ``timer`` ends the stream if a header takes too long.
     """
 
-    def __init__(self, stream: BinaryIO) -> None:
+    def __init__(self, stream: BinaryIO, timer: HeaderTimer | None = None) -> None:
         self._stream = stream
+        self._timer = timer
+        self._in_header = False
         self._has_length = False
 
     def readline(self) -> bytes:
         """Return the next header line, or ``b""`` at the end of the input."""
-        line = self._line()
+        line = self._header_line()
         stated = _LENGTH.search(line)
         if stated is not None:
             length = int(stated[1])
@@ -53,6 +67,15 @@ class BoundedInput:
         self._has_length = False
         return self._stream.read(size)
 
+    def _header_line(self) -> bytes:
+        if self._timer is not None and not self._in_header:
+            self._timer.begin_header()
+        line = self._line()
+        self._in_header = bool(line.strip())
+        if self._timer is not None and line and not self._in_header:
+            self._timer.end_header()
+        return line
+
     def _line(self) -> bytes:
         line = self._stream.readline(LONGEST_HEADER)
         while len(line) >= LONGEST_HEADER and not line.endswith(b"\n"):
@@ -61,16 +84,16 @@ class BoundedInput:
         return line
 
     def _skip(self, length: int) -> bytes:
-        while self._line().strip():
+        while self._header_line().strip():
             pass
         while length > 0 and (data := self._stream.read(min(length, _CHUNK))):
             length -= len(data)
         return b"\n" if length == 0 else b""
 
 
-def bounded(stream: IO[bytes]) -> BinaryIO:
+def bounded(stream: IO[bytes], timer: HeaderTimer | None = None) -> BinaryIO:
     """Return a stream for pygls, which uses only its methods for reading lines and contents."""
-    return cast("BinaryIO", BoundedInput(cast("BinaryIO", stream)))
+    return cast("BinaryIO", BoundedInput(cast("BinaryIO", stream), timer))
 
 
 def end_soon(code: int, seconds: float = EXIT_SECONDS) -> None:
