@@ -58,7 +58,7 @@ test("executions run separately, the file runs all of them", async () => {
 const begun = {
   type: "ScenarioStarted", name: "fetch", values: "part = cube1", variant: "t:fetch", variation: 1, source: at(9),
 } as const;
-const judged = { type: "ClauseJudged", line: 7, unit: "m", at: 1, reason: "", ...words("held", 0) } as const;
+const judged = { type: "ClauseJudged", line: 7, unit: "m", at: 1, reason: "", failure: "", ...words("held", 0) } as const;
 
 test("a clause of an execution that is repeated is as good as its worst verdict", async () => {
   const world = executing();
@@ -67,19 +67,19 @@ test("a clause of an execution that is repeated is as good as its worst verdict"
   const verdicts = [0.01, -0.02, 0.03].flatMap((robustness, index): RunMessage[] => [
     { ...begun, index, execution: "x:by-ours" },
     { type: "ClauseStarted", index, line: 7, ...words("held", 0) },
-    { ...judged, index, robustness, verdict: robustness < 0 ? "violated" : "holds" },
+    { ...judged, index, robustness, verdict: robustness < 0 ? "violated" : "holds", failure: robustness < 0 ? "pushed (violated)" : "" },
   ]);
   for (const message of verdicts) {
     follower.take({ run: "1", uri: MODEL, message });
   }
   await follower.settled();
   const failed = "failed part = cube1 / Then held";
-  const why = "the worst: violated by −20.0 mm at 1.00 s [part = cube1] @3 (−20.0 mm at 1.00 s)";
+  const why = "pushed (violated) [part = cube1]";
   assert.deepEqual(told, [
     "started part = cube1 / Then held",
     "passed part = cube1 / Then held 0",
-    `${failed} 1 of 2 hold, ${why}`,
-    `${failed} 2 of 3 hold, ${why}`,
+    `${failed} ${why} · 1 of 2 hold @3`,
+    `${failed} ${why} · 2 of 3 hold @3`,
   ]);
   const item = world.item("fetch.bddx", "by-ours", "part = cube1", "Then held");
   assert.equal(item.description, "2/3 hold · −20.0 mm · at 1.00 s · cube is held");
@@ -92,13 +92,13 @@ test("kept results of executions are theirs, the worst of several repetitions", 
   const clause = { clause: "t:held", position: null, sentence: "", margin: "", stale: false };
   const result = (execution: string, verdict: "holds" | "violated"): FoundScenario => ({
     uri: MODEL, variant: "t:fetch", execution, variation: 1, values: "", seconds: null, stale: false,
-    clauses: [{ ...clause, verdict, said: verdict }],
+    clauses: [{ ...clause, verdict, said: verdict, failure: verdict }],
   });
   const results = [result("x:by-ours", "violated"), result("x:by-ours", "holds"), result("x:by-catalog", "holds")];
   await showResults(world.tree, [...results, result("x:gone", "violated")], sink);
   assert.deepEqual(told, [
-    "failed part = cube1 / Then held violated @3 (?)",
-    "failed part = cube1 / Then held 1 of 2 hold, the worst: violated @3 (?)",
+    "failed part = cube1 / Then held violated @3",
+    "failed part = cube1 / Then held violated · 1 of 2 hold @3",
     "passed part = cube1 / Then held ?",
   ]);
   assert.equal(world.item("fetch.bddx", "by-catalog", "part = cube1", "Then held").description, "cube is held");

@@ -15,6 +15,7 @@ const judged = (index: number, verdict: "holds" | "violated" | "unknown", more: 
   unit: "",
   at: null,
   reason: "",
+  failure: "",
   ...more,
 });
 const started = (index: number): RunMessage => ({
@@ -144,7 +145,7 @@ test("a notification of another shape is not taken for a run message", () => {
 });
 
 // Fields that the language server adds to those of its protocol with the agent.
-const WORDS = ["name", "values", "sentence"];
+const WORDS = ["name", "values", "sentence", "failure"];
 
 test("every field that is read is one of the server's protocol", () => {
   const protocol = readFileSync(join(process.cwd(), "..", "server", "robbdd_tools", "protocol", "messages.py"), "utf8");

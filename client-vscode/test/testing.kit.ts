@@ -178,8 +178,8 @@ export function recorded(): { told: string[]; sink: Sink<Node> } {
   const sink: Sink<Node> = {
     started: (item) => told.push(`started ${label(item)}`),
     passed: (item, duration) => told.push(`passed ${label(item)} ${duration ?? "?"}`),
-    failed: (item, { text, actual }, place) =>
-      told.push(`failed ${label(item)} ${text} @${place?.range.start.line ?? "?"} (${actual ?? "?"})`),
+    failed: (item, { text }, place) =>
+      told.push(`failed ${label(item)} ${text} @${place?.range.start.line ?? "?"}`),
     errored: (item, failure) => told.push(`errored ${label(item)} ${failure.text}`),
     output: () => undefined,
     end: () => told.push("end"),

@@ -170,6 +170,16 @@ def test_clauses_of_every_kind_have_results() -> None:
         assert hint.label == "✔ +31 mm"
 
 
+def test_the_failure_of_a_behaviour_is_shown_at_its_first_words() -> None:
+    case = fixture(MODEL)
+    findings = judged(case, VIOLATED, iri=f"{NS}when-bhv-fetch.when")
+    (hint,) = clause_hints(case.snapshot, case.uri, findings)
+    (found,) = clause_diagnostics(case.snapshot, case.uri, findings)
+    assert "\n" in MODEL[hint.span.start : hint.span.end]
+    assert MODEL[found.span.start : found.span.end] == "Behaviour (ns=t) carry"
+    assert hint.head == found.span
+
+
 def test_a_pass_rate_goes_stale_with_its_variant_and_its_template() -> None:
     case = fixture(MODEL)
     findings = judged(case, HOLDS, VIOLATED, UNKNOWN)

@@ -111,6 +111,11 @@ def test_the_last_results_of_a_clause_are_shown_worst_first() -> None:
     findings = Results(scenarios).findings()
     found = shown(MODEL.replace("in-tray: holds", "in-$0tray: holds"), findings)
     assert "Last results:\n\n- part = bolt: ✗ −3 mm at 2.00 s\n- part = nut: ✔ +12 mm" in found
+    clause = "in-tray: holds(<part> is located at <goal>, 0.5 seconds after <place-end>)"
+    for word in ("holds", "part", "located", "goal", "seconds", "place-end"):
+        inside = shown(MODEL.replace(clause, clause.replace(word, f"{word[0]}$0{word[1:]}")), findings)
+        assert inside.count("Last results:\n\n- part = bolt: ✗ −3 mm at 2.00 s") == 1, word
+    assert "Last results" not in shown(MODEL.replace("var part", "var pa$0rt"), findings)
     edited = shown(MODEL.replace("in-tray: holds", "in-$0tray: holds").replace("0.5 seconds", "0.6 seconds"), findings)
     assert "before the text was edited" in edited
 

@@ -28,7 +28,7 @@ def opened(client: LanguageClient, folder: Path, weight: float | None = None) ->
 
 
 async def shown(editor: Editor) -> dict[str, str]:
-    """Verdict and margin of each clause, by its name; behaviours by the end of theirs."""
+    """Verdict and margin of each clause, by its name, without the behaviours."""
     document = types.TextDocumentIdentifier(uri=editor.uri)
     params = types.InlayHintParams(text_document=document, range=editor.everything())
     found = await editor.client.text_document_inlay_hint_async(params) or []
@@ -36,7 +36,8 @@ async def shown(editor: Editor) -> dict[str, str]:
     return {
         name: str(hint.label)
         for hint in found
-        if hint.kind is None and (name := lines[hint.position.line].strip(" (").partition(":")[0]) != "}"
+        if hint.kind is None
+        and not (name := lines[hint.position.line].strip(" (").partition(":")[0]).startswith("Behaviour")
     }
 
 

@@ -88,7 +88,7 @@ async def test_a_run_shows_each_clauses_verdict_where_the_clause_stands(
         "cancelled": False,
     }
     shown = await hints(editor)
-    assert set(shown) == {"at-source", "in-hand", "at-goal", "goal-untouched", "}"}
+    assert set(shown) == {"at-source", "in-hand", "at-goal", "goal-untouched", "Behaviour (ns=crit) carry {"}
     assert all(label.startswith("✔") for label in shown.values()), shown
     assert "mm" in shown["at-goal"]
     messages = [notification.message for notification in run_messages]

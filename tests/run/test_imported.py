@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -48,6 +49,14 @@ def test_json_and_junit_tell_the_same() -> None:
         "✔ +16 mm",
         "✗ −12 mm at 3.20 s: it was pushed\nby the arm",
         "? unknown: timed out",
+    ]
+    assert [clause.failure for clause in from_junit[0].clauses] == [
+        "",
+        "it was pushed by the arm (violated by −12 mm at 3.20 s)",
+        "timed out (unknown)",
+    ]
+    assert [one.clauses for one in from_junit] == [
+        tuple(replace(clause, iri=None) for clause in one.clauses) for one in from_json
     ]
     assert [clause.margin for clause in from_junit[0].clauses] == ["+16 mm", "−12 mm", ""]
     assert {clause.verdict for clause in from_junit[1].clauses} == {"unknown"}

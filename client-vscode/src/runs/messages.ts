@@ -59,6 +59,8 @@ export interface ClauseJudged extends ClauseWords {
   /** Simulated time of the deciding instant, s. */
   readonly at: number | null;
   readonly reason: string;
+  /** Why the clause is violated or unknown, the reason first; empty if it holds. */
+  readonly failure: string;
   /** Why the clause could not have been violated; empty if it could. */
   readonly vacuous?: string;
   /** The id of the error in users' code that makes it unknown; empty if there is none. */

@@ -1,9 +1,6 @@
 // Convert a clause's verdict to the editor's test states.
 import { marginOf, seconds } from "../runs/report";
 
-/** The expected margin. */
-export const NO_LESS = "margin ≥ 0";
-
 /** A verdict, from a run's message or from a stored result. */
 export interface Judged {
   readonly verdict: "holds" | "violated" | "unknown";
@@ -11,15 +8,14 @@ export interface Judged {
   readonly unit: string;
   readonly at: number | null;
   readonly reason: string;
+  /** Why it is violated or unknown, the reason first. */
+  readonly failure: string;
   readonly vacuous?: string;
 }
 
 export interface Failure {
-  /** Text shown next to the clause. */
+  /** Text shown next to the clause, the reason first. */
   readonly text: string;
-  /** The expected value of the comparison; an unknown verdict has none. */
-  readonly expected?: string;
-  readonly actual?: string;
 }
 
 export interface Outcome {
@@ -35,28 +31,23 @@ export interface Outcome {
  */
 export function outcomeOf(judged: Judged, values: string): Outcome {
   const margin = marginOf(judged);
-  const where = values === "" ? "" : ` [${values}]`;
-  const because = judged.reason === "" ? "" : `: ${judged.reason}`;
   switch (judged.verdict) {
     case "holds": {
       const vacuous = judged.vacuous ?? "";
       return { state: "passed", note: joined(margin, vacuous === "" ? "" : `vacuous: ${vacuous}`) };
     }
     case "violated": {
-      const instant = judged.at === null ? "" : ` at ${seconds(judged.at)}`;
-      const words = `violated${margin === "" ? "" : ` by ${margin}`}${instant}`;
-      // Short, so that the editor shows both on one line next to the clause.
-      const expected = margin === "" ? "holds" : NO_LESS;
-      const actual = margin === "" ? `violated${instant}` : `${margin}${instant}`;
-      return {
-        state: "failed",
-        note: joined(margin, instant.trim()),
-        failure: { text: `${words}${because}${where}`, expected, actual },
-      };
+      const instant = judged.at === null ? "" : `at ${seconds(judged.at)}`;
+      return { state: "failed", note: joined(judged.reason, margin, instant), failure: failureOf(judged, values) };
     }
     case "unknown":
-      return { state: "errored", note: "unknown", failure: { text: `unknown${because}${where}` } };
+      return { state: "errored", note: judged.reason || "unknown", failure: failureOf(judged, values) };
   }
+}
+
+/** `values` distinguish the scenario from others shown at the same clause. */
+export function failureOf({ failure }: Pick<Judged, "failure">, values: string): Failure {
+  return { text: values === "" ? failure : `${failure} [${values}]` };
 }
 
 function joined(...parts: string[]): string {

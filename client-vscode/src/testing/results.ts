@@ -3,7 +3,7 @@ import { isRecord } from "../values";
 import { type Sink, showOutcome } from "./follower";
 import type { Item } from "./items";
 import type { ListedTest } from "./listing";
-import { type Failure, NO_LESS, type Outcome } from "./outcomes";
+import { type Outcome, failureOf } from "./outcomes";
 import type { TestTree } from "./tree";
 import { Worst } from "./worst";
 
@@ -16,6 +16,8 @@ export interface FoundClause {
   readonly margin: string;
   /** Sign, margin, instant and reason. */
   readonly said: string;
+  /** Why the clause is violated or unknown, the reason first. */
+  readonly failure: string;
   readonly stale: boolean;
 }
 
@@ -115,19 +117,12 @@ function itemsOf<I extends Item<I>>(tree: TestTree<I>, scenario: I, found: Found
 }
 
 function outcomeOf(found: FoundClause, values: string): Outcome {
-  const text = `${found.said}${values === "" ? "" : ` [${values}]`}`;
   switch (found.verdict) {
     case "holds":
       return { state: "passed", note: found.margin };
     case "violated":
-      return { state: "failed", note: found.margin, failure: { text, ...compared(found) } };
+      return { state: "failed", note: found.margin || found.failure, failure: failureOf(found, values) };
     case "unknown":
-      return { state: "errored", note: found.margin, failure: { text } };
+      return { state: "errored", note: found.failure, failure: failureOf(found, values) };
   }
-}
-
-/** As short as for our own runs, so that it fits next to the clause: without sign and reason. */
-function compared({ margin, said }: FoundClause): Omit<Failure, "text"> {
-  const actual = said.replace(/^\S+ /, "").split(": ", 1)[0] ?? margin;
-  return margin === "" ? {} : { expected: NO_LESS, actual };
 }

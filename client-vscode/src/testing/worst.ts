@@ -43,5 +43,5 @@ function outcomeOf({ held, count, worst }: Seen): Outcome {
   const { failure } = worst;
   return failure === undefined
     ? { ...worst, note }
-    : { ...worst, note, failure: { ...failure, text: `${held} of ${count} hold, the worst: ${failure.text}` } };
+    : { ...worst, note, failure: { ...failure, text: `${failure.text} · ${held} of ${count} hold` } };
 }

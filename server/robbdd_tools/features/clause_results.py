@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from robbdd_tools.base.document import Span
     from robbdd_tools.features.executions import PlacedExecution
     from robbdd_tools.features.run_verdicts import Findings, Judged, JudgedScenario
+    from robbdd_tools.names.clause_places import PlacedClause
     from robbdd_tools.names.project import Snapshot
     from robbdd_tools.names.variant_places import PlacedVariant
 
@@ -30,7 +31,7 @@ MAX_LINES_OF_FAILURES = 5
 
 @dataclass(frozen=True, slots=True)
 class ResultHint:
-    """The hint to show after the clause or table row at ``span`` (absolute).
+    """The hint to show after ``head`` (absolute), for the clause or table row at ``span``.
 
     - ``outcome``: the worst outcome of all variations.
     - ``lines``: descriptions of the variations, the worst first.
@@ -42,6 +43,7 @@ class ResultHint:
     """
 
     span: Span
+    head: Span
     label: str
     outcome: str
     lines: tuple[str, ...]
@@ -92,7 +94,7 @@ def clause_hints(snapshot: Snapshot, uri: str, findings: Findings) -> list[Resul
         now = digest(snapshot, uri, clause.span) if judged else ""
         fresh = [entry for entry in judged if entry[1].digest == now]
         if judged:
-            hints.append(_clause_hint(clause.span, fresh or judged, stale=not fresh))
+            hints.append(_clause_hint(clause, fresh or judged, stale=not fresh))
     return hints
 
 
@@ -142,30 +144,43 @@ def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
 def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:
     """Return a diagnostic for each clause that did not hold in some variation.
 
-    Clauses whose text has changed since the run have none. A diagnostic lists the worst variations with their instants,
-    and links to their table rows. If it is ``brief``, it names only the worst variation, because a hover below it shows
-    the full list.
+    Clauses whose text has changed since the run have none. A diagnostic begins with the worst reason, then lists the
+    worst variations with their instants, and links to their table rows. If it is ``brief``, it names only the worst
+    variation, because a hover below it shows the full list.
     """
     rows = _rows(snapshot, uri) if findings.clauses else {}
     found: list[Diagnostic] = []
     for hint in clause_hints(snapshot, uri, findings):
         if hint.vacuous and not hint.stale:
             message = f"This clause proved little in the last run: {hint.vacuous}."
-            found.append(Diagnostic(uri, hint.span, Severity.HINT, "clause-vacuous", message))
+            found.append(Diagnostic(uri, hint.head, Severity.HINT, "clause-vacuous", message))
         # An error in users' code is reported at the code, not at every clause that is unknown because of it.
         failing = [judged for judged in hint.failing if not judged[1].fault]
         if failing and not hint.stale:
-            lines_of_failures = list(map(_line, failing))
-            lines = lines_of_failures[:1] if brief else _shortened(lines_of_failures, MAX_LINES_OF_FAILURES)
             severity = Severity.ERROR if hint.outcome == "violated" else Severity.WARNING
             related = tuple(
                 Related(uri, rows[scenario.variant, scenario.row], _line((scenario, judgement)))
                 for scenario, judgement in failing[:MAX_LINES_OF_FAILURES]
                 if (scenario.variant, scenario.row) in rows
             )
-            message = "\n".join((hint.label, *lines))
-            found.append(Diagnostic(uri, hint.span, severity, f"clause-{hint.outcome}", message, related))
+            message = _failure_message(hint, failing, 1 if brief else MAX_LINES_OF_FAILURES)
+            found.append(Diagnostic(uri, hint.head, severity, f"clause-{hint.outcome}", message, related))
     return found
+
+
+def _failure_message(hint: ResultHint, failing: Sequence[Judged], most: int) -> str:
+    """Return the text of a clause's failures. The first line has the reason of the worst, since clients may cut there.
+
+    ``most`` is the maximum number of variations in it.
+    """
+    scenario, worst = failing[0]
+    reason = worst.failure or worst.said
+    count = len(hint.lines)
+    if count == 1:
+        return f"{reason} [{scenario.values}]" if scenario.values else reason
+    lines = list(map(_line, failing))
+    shown = lines[:1] if most == 1 else _shortened(lines, most)
+    return "\n".join((f"{reason} · {count - len(hint.failing)} of {count} hold", *shown))
 
 
 def _rows(snapshot: Snapshot, uri: str) -> dict[tuple[str, str], Span]:
@@ -180,7 +195,7 @@ def _line(judged: Judged) -> str:
     return f"{scenario.values}: {judgement.said}"
 
 
-def _clause_hint(span: Span, judged: Sequence[Judged], *, stale: bool) -> ResultHint:
+def _clause_hint(clause: PlacedClause, judged: Sequence[Judged], *, stale: bool) -> ResultHint:
     ranked = sorted(judged, key=lambda entry: entry[1].rank)
     worst = ranked[0][1]
     failing = tuple(entry for entry in ranked if entry[1].outcome != "holds")
@@ -197,7 +212,9 @@ def _clause_hint(span: Span, judged: Sequence[Judged], *, stale: bool) -> Result
     vacuous = worst.vacuous if all(judgement.vacuous for _, judgement in judged) else ""
     shown = " ".join((label, *[VACUOUS] * bool(vacuous), *[STALE] * stale))
     lines, substituted = tuple(map(_line, ranked)), substitutions(scenario for scenario, _ in judged)
-    return ResultHint(span, shown, worst.outcome, lines, stale, failing, ranked[0], vacuous, substituted)
+    return ResultHint(
+        clause.span, clause.head, shown, worst.outcome, lines, stale, failing, ranked[0], vacuous, substituted
+    )
 
 
 def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -> ResultHint:
@@ -215,7 +232,7 @@ def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -
         for judgement in sorted(scenario.clauses.values(), key=lambda judgement: judgement.rank)
     )
     shown = f"{label} {STALE}" if stale else label
-    return ResultHint(span, shown, outcome, lines, stale, substitutions=substitutions(scenarios))
+    return ResultHint(span, span, shown, outcome, lines, stale, substitutions=substitutions(scenarios))
 
 
 def substitutions(scenarios: Iterable[JudgedScenario]) -> tuple[str, ...]:

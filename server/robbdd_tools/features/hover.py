@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.document import Span
@@ -37,19 +37,23 @@ class Hover:
 def hover(snapshot: Snapshot, uri: str, offset: int, findings: Findings = NOTHING) -> Hover | None:
     """Describe the name or import at an offset. Without one, describe the enclosing phrase or time constraint.
 
-    ``findings`` are the latest results of clauses.
+    ``findings`` are the latest results of clauses. Everywhere inside a clause, the hover shows the clause's results.
     """
-    hint = next((one for one in clause_hints(snapshot, uri, findings) if one.span.contains(offset)), None)
+    around = [one for one in clause_hints(snapshot, uri, findings) if one.span.contains(offset)]
+    hint = min(around, key=lambda one: one.span.end - one.span.start, default=None)
     found = symbol_at(snapshot, uri, offset)
     if found is not None:
         definition = found[1]
-        judged = _worst_of(definition, findings)
+        words = Hover(describe(snapshot, definition, findings), found[0], _worst_of(definition, findings))
         if hint is not None and definition.extent == hint.span and definition.uri == uri:
-            judged = hint.worst
-        return Hover(describe(snapshot, definition, findings), found[0], judged)
-    words = _words(snapshot, uri, offset) or _import(snapshot, uri, offset)
-    if words is None or hint is None:
+            # The description of a clause has its results.
+            return replace(words, judged=hint.worst)
+    else:
+        words = _words(snapshot, uri, offset) or _import(snapshot, uri, offset)
+    if hint is None:
         return words
+    if words is None:
+        return Hover(result_words(hint), hint.span, hint.worst)
     return Hover(f"{words.markdown}\n\n{result_words(hint)}", words.span, hint.worst)
 
 

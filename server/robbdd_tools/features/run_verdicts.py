@@ -33,6 +33,7 @@ class Judgement:
     - ``outcome``: ``holds``, ``violated``, ``unknown``, or ``undefined`` if no step can judge the clause.
     - ``margin``: the margin as text.
     - ``said``: the verdict as text, with its instant and its reason.
+    - ``failure``: why the clause is violated or unknown, the reason first; empty if it holds.
     - ``rank``: of several verdicts, the one with the smallest rank is the worst.
     - ``digest``: the digest of the clause's text when it was judged.
     - ``line``: the line of the clause's step in the feature.
@@ -50,6 +51,7 @@ class Judgement:
     vacuous: str = ""
     operand: int | None = None
     fault: str = ""
+    failure: str = ""
 
 
 @dataclass(slots=True)

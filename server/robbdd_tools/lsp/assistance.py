@@ -94,7 +94,7 @@ def _register_hints(server: RobbddServer) -> None:
             return (
                 [
                     types.InlayHint(
-                        position=ls.convert.position(document, hint.span.end),
+                        position=ls.convert.position(document, hint.head.end),
                         label=hint.label,
                         tooltip=hint.tooltip,
                         padding_left=True,
@@ -102,7 +102,7 @@ def _register_hints(server: RobbddServer) -> None:
                     )
                     for find_hints in (clause_hints, row_hints)
                     for hint in find_hints(snapshot, document.uri, ls.findings)
-                    if wanted.contains(hint.span.end)
+                    if wanted.contains(hint.head.end)
                 ]
                 + [
                     types.InlayHint(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
 from robbdd_tools.monitor.verdict import Cause, Outcome
-from robbdd_tools.run.report import margin, values_words, verdict_words
+from robbdd_tools.run.report import failure_words, margin, values_words, verdict_words
 
 if TYPE_CHECKING:
     from robbdd_tools.features.run_verdicts import Digests
@@ -55,4 +55,5 @@ def judgement(clause: ClauseSpec, message: ClauseJudged, digests: Digests, share
         message.line,
         operand=message.operand,
         fault=message.fault or (shared_fault if outcome is Outcome.UNKNOWN else ""),
+        failure=failure_words(message, clause),
     )

@@ -36,7 +36,7 @@ def places_of(snapshot: Snapshot, convert: Converter, uri: str) -> Places:
     uris = tuple(file.document.uri for file in snapshot.closure(uri))
     for name in uris:
         for clause in clauses_in(snapshot, name):
-            declarations[clause.iri] = convert.location(snapshot, name, clause.span)
+            declarations[clause.iri] = convert.location(snapshot, name, clause.head)
         for variant in variants_of(snapshot, name):
             declarations[variant.iri] = convert.location(snapshot, name, variant.definition.span)
             for number, row in enumerate(variant.rows, start=1):

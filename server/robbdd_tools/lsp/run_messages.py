@@ -18,7 +18,7 @@ from robbdd_tools.protocol.messages import (
     UserCodeFailed,
 )
 from robbdd_tools.protocol.specs import ClauseSpec
-from robbdd_tools.run.report import plain_sentence, values_words
+from robbdd_tools.run.report import failure_words, plain_sentence, values_words
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.run_request import RunText
@@ -61,6 +61,7 @@ def for_client(
                 }
             if isinstance(message, ClauseJudged):
                 fields["cancelled"] = cancelled
+                fields["failure"] = failure_words(message, clause)
         case UserCodeFailed(_, fault):
             fields["id"], fields["lines"] = fault.id, [f"{fault.code} failed", *fault.traceback()]
         case ScenarioFinished(index):

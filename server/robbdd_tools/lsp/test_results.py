@@ -77,6 +77,7 @@ def _kept_scenario(scenario: JudgedScenario, now: Digests) -> dict[str, Any]:
                 "verdict": verdict_of(judgement.outcome),
                 "margin": judgement.margin,
                 "said": judgement.said,
+                "failure": judgement.failure or judgement.said,
                 "stale": judgement.digest != now.clauses.get(iri),
             }
             for iri, judgement in scenario.clauses.items()
@@ -151,6 +152,7 @@ def _imported_scenario(
                 "verdict": clause.verdict,
                 "margin": clause.margin,
                 "said": clause.said,
+                "failure": clause.failure,
                 "stale": False,
             }
             for position, clause in enumerate(scenario.clauses)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from robbdd_tools.base.document import Span
 from robbdd_tools.names.variant_places import variants_of
 from robbdd_tools.syntax import tree
 
 if TYPE_CHECKING:
-    from robbdd_tools.base.document import Span
     from robbdd_tools.names.project import Snapshot
 
 MAX_NESTED = 100
@@ -19,11 +19,15 @@ MAX_NESTED = 100
 
 @dataclass(frozen=True, slots=True)
 class PlacedClause:
-    """A clause, a group of clauses or a quantifier: its whole absolute span, and its name or, without one, its kind."""
+    """A clause, a group of clauses or a quantifier: its whole absolute span, and its name or, without one, its kind.
+
+    ``head`` is the part where its result is shown: for the behaviour of a ``When``, its first words up to the name.
+    """
 
     iri: str
     name: str
     span: Span
+    head: Span
 
 
 def clauses_in(snapshot: Snapshot, uri: str) -> Iterator[PlacedClause]:
@@ -60,7 +64,8 @@ class _Walk:
         if body.when is not None:
             yield from self.occurrences(body.when.events, path)
             use = body.when.behaviour
-            yield self._placed("when-bhv", f"{path}.when", use, use.name.text)
+            behaviour = self._placed("when-bhv", f"{path}.when", use, use.name.text)
+            yield replace(behaviour, head=Span(behaviour.span.start, use.name.span.end + self.offset))
         if body.for_all is not None:
             inner = f"{path}.all"
             yield self._placed("forall", inner, body.for_all, "for all")
@@ -86,9 +91,8 @@ class _Walk:
     def _clause(self, clause: tree.Expression, path: str) -> Iterator[PlacedClause]:
         match clause:
             case tree.Fluent():
-                yield PlacedClause(
-                    self.namespace + clause.name.text, clause.name.text, clause.span.shifted(self.offset)
-                )
+                span = clause.span.shifted(self.offset)
+                yield PlacedClause(self.namespace + clause.name.text, clause.name.text, span, span)
             case tree.TextClause():
                 yield self._placed("text", path, clause, clause.text.value)
             case tree.Negation():
@@ -106,4 +110,5 @@ class _Walk:
                 yield from self._each(body.operands if isinstance(body, tree.Conjunction) else (body,), path)
 
     def _placed(self, kind: str, path: str, node: tree.Node, name: str) -> PlacedClause:
-        return PlacedClause(f"{self.namespace}{kind}-{self.owner}{path}", name, node.span.shifted(self.offset))
+        span = node.span.shifted(self.offset)
+        return PlacedClause(f"{self.namespace}{kind}-{self.owner}{path}", name, span, span)

@@ -9,8 +9,17 @@ from dataclasses import dataclass
 from typing import Any, cast
 from xml.etree import ElementTree
 
+from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.protocol.messages import ClauseJudged
-from robbdd_tools.run.report import SIGNS, margin, plain_sentence, value_words, verdict_words
+from robbdd_tools.run.report import (
+    SIGNS,
+    failure_words,
+    margin,
+    plain_sentence,
+    reason_first,
+    value_words,
+    verdict_words,
+)
 
 _VERDICTS = tuple(str(outcome) for outcome in SIGNS)
 _CASE = re.compile(r"(?:[^\s:]*:)?(?P<variant>\S+) -- (?P<number>\d+)[^\[]*(?:\[(?P<values>.*)\])?", re.DOTALL)
@@ -26,7 +35,7 @@ class ImportedClause:
     """A judged clause of an imported execution.
 
     ``iri`` is ``None`` if the file does not contain the IRI of the clause. ``said`` is the full text of the verdict,
-    and ``margin`` is the text of the margin alone.
+    ``margin`` is the text of the margin alone, and ``failure`` is the text with the reason first.
     """
 
     iri: str | None
@@ -34,6 +43,7 @@ class ImportedClause:
     verdict: str
     margin: str
     said: str
+    failure: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +123,12 @@ def _clause(entry: _Reader) -> ImportedClause:
     judged = ClauseJudged(0, 0, verdict, robustness, entry.text("unit", ""), at, entry.text("reason", ""))
     sentence = plain_sentence(entry.text("sentence"))
     return ImportedClause(
-        entry.text("iri"), sentence, verdict, margin(judged.robustness, judged.unit), verdict_words(judged)
+        entry.text("iri"),
+        sentence,
+        verdict,
+        margin(judged.robustness, judged.unit),
+        verdict_words(judged),
+        failure_words(judged),
     )
 
 
@@ -199,7 +214,14 @@ def _described(found: re.Match[str]) -> ImportedClause:
     verdict = next(str(outcome) for outcome, sign in SIGNS.items() if sign == found["sign"])
     measured = _MARGIN.match(found["said"])
     said = f"{found['sign']}{found['said']}"
-    return ImportedClause(None, found["sentence"], verdict, measured[1] if measured else "", said)
+    words = found["said"].strip()
+    state, _, reason = words.partition(": ")
+    if state.endswith("(decided by"):
+        state, reason = words, ""
+    if verdict == Outcome.VIOLATED:
+        state = " ".join(filter(None, (verdict, "by" * bool(measured), state)))
+    failure = "" if verdict == Outcome.HOLDS else reason_first(state, reason)
+    return ImportedClause(None, found["sentence"], verdict, measured[1] if measured else "", said, failure)
 
 
 def _seconds(text: str | None) -> float | None:

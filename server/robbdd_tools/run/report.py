@@ -72,6 +72,27 @@ def verdict_words(judged: ClauseJudged, clause: ClauseSpec | None = None) -> str
     return ": ".join(filter(None, (" ".join(parts), judged.reason))) + (f" ({decided})" if decided else "")
 
 
+def failure_words(judged: ClauseJudged, clause: ClauseSpec | None = None) -> str:
+    """Return why a clause is violated or unknown, the reason first; empty if it holds.
+
+    For example ``panda cannot reach a free place (violated)`` or ``violated by −12 mm at 3.20 s``.
+    """
+    outcome = Outcome(judged.verdict)
+    if outcome is Outcome.HOLDS:
+        return ""
+    shown = margin(judged.robustness, judged.unit)
+    measured = [f"by {shown}"] * bool(shown)
+    if outcome is Outcome.VIOLATED and judged.at is not None:
+        measured.append(f"at {judged.at:.2f} s")
+    decided = "" if clause is None else deciding_words(clause, judged)
+    return reason_first(" ".join((outcome, *measured)), "; ".join(filter(None, (judged.reason, decided))))
+
+
+def reason_first(state: str, reason: str) -> str:
+    """Return one line with the reason for a state, if there is one, before the state."""
+    return f"{' '.join(reason.split())} ({state})" if reason else state
+
+
 def values_words(spec: ScenarioSpec) -> str:
     """Return the values of a scenario as text, for example ``thing = cube0, goal = left_ws``."""
     return ", ".join(value_words(name, value) for name, value in spec.values.items())
