@@ -91,6 +91,14 @@ test("the valid part of remembered options is used", () => {
   assert.equal(summaryOf({}), "all as in the model");
 });
 
+test("a .scenex is sent by its path, and left out once it is cleared", async () => {
+  open();
+  await run(MODEL, ["Executable Scene", "Run"], [" cell.scenex "]);
+  assert.deepEqual(asked, [{ uri: MODEL.toString(), scenex: "cell.scenex" }]);
+  await run(MODEL, ["Executable Scene", "Run"], [""]);
+  assert.deepEqual(asked.at(-1), { uri: MODEL.toString() });
+});
+
 test("a number is typed whole, in its range, or left out", () => {
   assert.equal(numberProblem("0"), "A whole number above 0, or nothing.");
   assert.equal(numberProblem("two", Number.MIN_SAFE_INTEGER), "A whole number, or nothing.");

@@ -25,6 +25,7 @@ from robbdd_tools.commands.output import fail, print_note
 from robbdd_tools.commands.run_arguments import (
     allow_policy,
     allow_run,
+    allow_scenex,
     allow_store,
     argument_problem,
     policy,
@@ -156,6 +157,7 @@ def _parser() -> argparse.ArgumentParser:
     view.add_argument("path", metavar="FILE", type=Path)
     view.add_argument("--scenario", metavar="NAME", help="this scenario or variant (default: the first)")
     view.add_argument("--seed", type=int, default=None, help="seed of all random choices (default: 1)")
+    allow_scenex(view)
     view.add_argument("-o", "--output", metavar="FILE.png", type=Path, help="default: the model's name with .png")
     view.set_defaults(command=_view)
 
@@ -301,7 +303,7 @@ def _import(options: argparse.Namespace) -> int:
 def _view(options: argparse.Namespace) -> int:
     from robbdd_tools.commands.view import view
 
-    return view(options.path, options.scenario, options.seed, options.output)
+    return view(options.path, options.scenario, options.seed, options.output, options.scenex or ())
 
 
 def _query(options: argparse.Namespace) -> int:

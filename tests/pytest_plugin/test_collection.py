@@ -242,3 +242,16 @@ def test_a_substitution_needs_an_implementation_of_a_collected_model(pytester: p
     assert "there is no behaviour implementation 'server'; the executions use built-in" in done.stderr.str()
     done = session(pytester, "--robbdd", "--robbdd-bhv", "built-in", "cell")
     assert "--robbdd-bhv: 'built-in' is not NAME=BEHAVIOUR" in done.stderr.str()
+
+
+def test_a_scenex_places_the_scenarios_of_its_scene(pytester: pytest.Pytester) -> None:
+    shutil.copytree(EXAMPLES / "ownrobot", pytester.path / "cell")
+    named = ("--robbdd", "--robbdd-scenex", "cell/cell.scenex", "--collect-only")
+    assert collected(pytester, *named, "cell/tidy.bdd")
+    shutil.copytree(EXAMPLES / "pickplace", pytester.path / "bench")
+    done = session(pytester, *named, "bench/pickplace.bdd")
+    assert done.ret == pytest.ExitCode.USAGE_ERROR
+    assert "--robbdd-scenex: no scenario runs in a scene that is instantiated: there is cell_sim" in done.stderr.str()
+    done = session(pytester, "--robbdd", "--robbdd-scenex", "cell/tidy.bdd", "cell")
+    assert "--robbdd-scenex: " in done.stderr.str()
+    assert "tidy.bdd is not a .scenex file" in done.stderr.str()

@@ -12,8 +12,9 @@ import pytest
 import robbdd_tools as robbdd
 from kit import EXAMPLES, corpus
 from robbdd_tools.base.diagnostic import Severity
+from robbdd_tools.workbench.choice import Choice, Listed
 from robbdd_tools.workbench.folder import Keeping
-from robbdd_tools.workbench.plan import Choice, Listed, Plan, Selection
+from robbdd_tools.workbench.plan import Plan, Selection
 
 pytestmark = pytest.mark.physics
 

@@ -9,8 +9,9 @@ import pytest
 from kit import EXAMPLES
 from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.protocol.specs import ScenarioSpec
+from robbdd_tools.workbench.choice import Choice, Listed
 from robbdd_tools.workbench.model import Model, load
-from robbdd_tools.workbench.plan import Choice, Listed, NothingSelected, Plan, Selection
+from robbdd_tools.workbench.plan import NothingSelected, Plan, Selection
 
 PICKPLACE = EXAMPLES / "pickplace" / "pickplace.bdd"
 EXECUTED = EXAMPLES / "pickplace" / "pickplace.bddx"

@@ -46,6 +46,7 @@ function entries(options: RunOptions): Entry[] {
     option("$(symbol-numeric) Seed", "seed"),
     option("$(server-process) Processes", "jobs"),
     option("$(replace) Behaviours", "bhv"),
+    option("$(symbol-structure) Executable Scene", "scenex"),
     ...(Object.keys(options).length === 0 ? [] : [{ label: "$(discard) Reset", description: "reset all to the model's values", action: "reset" } as const]),
   ];
 }
@@ -69,6 +70,11 @@ async function change(options: RunOptions, name: OptionName): Promise<RunOptions
     case "bhv": {
       const prompt = "Catalog behaviours instead of implementations of the .bddx, such as: my-ros-server=pick-place";
       const typed = await vscode.window.showInputBox({ title: TITLE, prompt, value: options.bhv ?? "", validateInput: substitutionProblem });
+      return typed === undefined ? options : withOption(options, name, typed.trim());
+    }
+    case "scenex": {
+      const prompt = "A .scenex for scenarios without an execution: its path, absolute or from the model's folder";
+      const typed = await vscode.window.showInputBox({ title: TITLE, prompt, value: options.scenex ?? "" });
       return typed === undefined ? options : withOption(options, name, typed.trim());
     }
   }

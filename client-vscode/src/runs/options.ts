@@ -20,6 +20,8 @@ export interface RunOptions {
   readonly jobs?: number;
   /** Substitutions of behaviour implementations by catalog behaviours: `my-server=pick-place, …`. */
   readonly bhv?: string;
+  /** The path of a `.scenex` for scenarios without an execution, absolute or from the model's folder. */
+  readonly scenex?: string;
 }
 
 export type OptionName = keyof RunOptions;
@@ -52,7 +54,7 @@ export function optionsIn(remembered: unknown): RunOptions {
   if (!isRecord(remembered)) {
     return {};
   }
-  const { where, amount, repeat, seed, jobs, bhv } = remembered;
+  const { where, amount, repeat, seed, jobs, bhv, scenex } = remembered;
   return {
     ...(typeof where === "string" && where !== "" ? { where } : {}),
     ...(isAmount(amount) ? { amount } : {}),
@@ -60,6 +62,7 @@ export function optionsIn(remembered: unknown): RunOptions {
     ...(Number.isSafeInteger(seed) ? { seed: seed as number } : {}),
     ...(isCount(jobs) ? { jobs } : {}),
     ...(typeof bhv === "string" && bhv !== "" && substitutionProblem(bhv) === undefined ? { bhv } : {}),
+    ...(typeof scenex === "string" && scenex !== "" ? { scenex } : {}),
   };
 }
 
@@ -74,7 +77,7 @@ export function withOption<Name extends OptionName>(
 
 /** An option as text, set or not. */
 export function wordsOf(options: RunOptions, name: OptionName): string {
-  const { where, amount, repeat, seed, jobs, bhv } = options;
+  const { where, amount, repeat, seed, jobs, bhv, scenex } = options;
   switch (name) {
     case "where":
       return where ?? "any values";
@@ -88,12 +91,14 @@ export function wordsOf(options: RunOptions, name: OptionName): string {
       return jobs === undefined ? "the number of cores" : String(jobs);
     case "bhv":
       return bhv ?? "as in the model";
+    case "scenex":
+      return scenex ?? "as in the model";
   }
 }
 
 /** All set options in one line. */
 export function summaryOf(options: RunOptions): string {
-  const { where, amount, repeat, seed, jobs, bhv } = options;
+  const { where, amount, repeat, seed, jobs, bhv, scenex } = options;
   const parts = [
     ...(where === undefined ? [] : [`where ${where}`]),
     ...(amount === undefined ? [] : [amountWords(amount)]),
@@ -101,6 +106,7 @@ export function summaryOf(options: RunOptions): string {
     ...(seed === undefined ? [] : [`seed ${seed}`]),
     ...(jobs === undefined ? [] : [`${jobs} at a time`]),
     ...(bhv === undefined ? [] : [`with ${bhv}`]),
+    ...(scenex === undefined ? [] : [`in ${scenex}`]),
   ];
   return parts.length === 0 ? "all as in the model" : parts.join(", ");
 }

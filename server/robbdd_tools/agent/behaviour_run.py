@@ -120,7 +120,7 @@ class BehaviourRun:
         self._implementation = None if how is None else how.implementation
         _check_implementation(self._implementation, self._calls)
         self.tree = None if spec.tree is None else _tree_run(spec.tree, self)
-        world = build_world(spec.scene, spec.seed, actor, None if how is None else how.scene)
+        world = build_world(spec.scene, spec.seed, actor, spec.instance)
         self.simulation = Simulation(world)
         self.reaches = ReachSampler(self.simulation)
         self._controllers: dict[str, PickPlace] = {}

@@ -7,6 +7,7 @@ never imports it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import PurePath
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,19 @@ class Substitution:
         """Return the substitution as results state it."""
         name = self.implementation.replace("#", "/").rpartition("/")[2]
         return f"catalog behaviour '{self.executed}' substitutes for {self.stated} of '{name}'"
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenScene:
+    """The scene instance that a run uses for a scenario without one: its IRI and the path of its ``.scenex``."""
+
+    instance: str
+    file: str
+
+    def __str__(self) -> str:
+        """Return the choice as results state it."""
+        name = self.instance.replace("#", "/").rpartition("/")[2]
+        return f"executed in the scene instance '{name}' of {PurePath(self.file).name}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +223,8 @@ class Realisation:
 class SceneInstance:
     """An executable scene: models of the whole scene, models of its elements, and the placements of bodies.
 
-    ``anchor`` is the frame that represents the world; empty if none is given.
+    ``anchor`` is the frame that represents the world; empty if none is given. ``scene`` is the IRI of the scene that it
+    instantiates.
     """
 
     iri: str
@@ -220,3 +235,4 @@ class SceneInstance:
     laws: tuple[Law, ...] = ()
     anchor: str = ""
     origin: Origin | None = None
+    scene: str = ""

@@ -156,9 +156,8 @@ class Display:
         """Print the final number of scenarios by verdict."""
         self._progress.stop()
         self._results = results
-        substitutions = (scenario.spec.substitution for scenario in self._results.scenarios)
-        for substitution in dict.fromkeys(one for one in substitutions if one is not None):
-            self._console.print(plain(str(substitution), STYLES[Outcome.UNKNOWN]))
+        for words in self._results.choices():
+            self._console.print(plain(words, STYLES[Outcome.UNKNOWN]))
         for name, reason in self._vacuous():
             self._console.print(plain(f"{name} proves little: {reason}", STYLES[Outcome.UNKNOWN]))
         finished = [scenario for scenario in self._results.scenarios if scenario.finished is not None]

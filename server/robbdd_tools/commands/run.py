@@ -22,7 +22,7 @@ from robbdd_tools.protocol.messages import VIEWER
 from robbdd_tools.run.pictures import NoPictures, no_display, render_videos, render_violations
 from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.workbench.folder import Keeping, new_folder
-from robbdd_tools.workbench.model import ModelErrors, load_all
+from robbdd_tools.workbench.model import ModelErrors, load_all, read_instances
 from robbdd_tools.workbench.plan import Plan, Selection
 from robbdd_tools.workbench.rerun import NothingFailed, failed_in, last_run
 from robbdd_tools.workbench.run import Run
@@ -50,6 +50,7 @@ class RunOptions:
     - ``repeat``: replaces the number of repetitions that executions state.
     - ``rerun_failed``: select the scenarios that failed in the last stored run.
     - ``viewer``: open a window on each scenario, one after another.
+    - ``scenex``: files with scene instances for scenarios without an execution.
     """
 
     paths: Sequence[Path]
@@ -59,6 +60,7 @@ class RunOptions:
     repeat: int | None = None
     rerun_failed: bool = False
     viewer: bool = False
+    scenex: tuple[Path, ...] = ()
 
 
 def run(options: RunOptions) -> int:
@@ -117,7 +119,7 @@ def conclude(run: Run, outputs: Outputs, ended_by: int) -> int:
 def _run(options: RunOptions) -> int:
     path = options.paths[0]
     model = load_all(options.paths)
-    selection, repeat = options.selection, options.repeat
+    selection, repeat, scenex = options.selection, options.repeat, options.scenex
     if options.rerun_failed:
         _ = model.runnable
         last = last_run(store_at(path, options.outputs.keeping.store), path)
@@ -131,8 +133,9 @@ def _run(options: RunOptions) -> int:
             default_seed=failed.default_seed,
             default_substitutions=failed.substitutions,
         )
+        scenex = scenex or failed.scenex
         repeat = repeat or failed.repeat
-    plan = Plan.of(model, selection)
+    plan = Plan.of(model, replace(selection, instances=read_instances(scenex)))
     print_coverage(plan.covers)
     place = new_folder(path, options.outputs.keeping)
     if place.remark:

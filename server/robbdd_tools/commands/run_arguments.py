@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 CHOOSING = (
-    "scenario", "seed", "repeat", "bhv", "rerun_failed", "where", "first", "sample", "pairwise", "no_store",
+    "scenario", "seed", "repeat", "bhv", "scenex", "rerun_failed", "where", "first", "sample", "pairwise", "no_store",
 )  # fmt: skip
 """Arguments that define what a new run executes and whether it is kept."""
 
@@ -32,6 +32,7 @@ def allow_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--resume", metavar="RUN", nargs="?", const="latest", help=text)
     text = "execute a catalog behaviour instead of this implementation of a .bddx, such as a ROS action; repeats"
     parser.add_argument("--bhv", metavar="NAME=BEHAVIOUR", type=_substitution, action="append", help=text)
+    allow_scenex(parser)
     allow_policy(parser)
     allow_selection(parser)
     outputs = parser.add_argument_group("outputs")
@@ -63,6 +64,12 @@ class TakesArguments(Protocol):
     def add_argument(self, *names: str, **options: Any) -> argparse.Action:
         """Add an argument, as ``argparse`` does."""
         ...
+
+
+def allow_scenex(parser: TakesArguments) -> None:
+    """Add the argument that names executable scenes."""
+    text = "run scenarios without an execution in the scene instance of this .scenex for their scene; repeats"
+    parser.add_argument("--scenex", metavar="FILE", type=Path, action="append", help=text)
 
 
 MEBIBYTE = 1024 * 1024
@@ -109,6 +116,7 @@ def run_options(options: argparse.Namespace) -> RunOptions:
         options.repeat,
         options.rerun_failed,
         options.viewer,
+        tuple(options.scenex or ()),
     )
 
 

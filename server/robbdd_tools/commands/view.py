@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,20 +13,24 @@ from robbdd_tools.commands.output import fail, print_line
 from robbdd_tools.commands.run import Outputs, report_problems
 from robbdd_tools.run.pictures import NoPictures, render_scene
 from robbdd_tools.run.user_code import refuse_user_code
-from robbdd_tools.workbench.model import load
+from robbdd_tools.workbench.model import load, read_instances
+from robbdd_tools.workbench.plan import Plan, Selection
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import Manifest
 
 
-def view(path: Path, name: str | None, seed: int | None, output: Path | None) -> int:
-    """Write the picture of the scenario called ``name``, or of the first scenario. Return the exit code."""
-    return report_problems(Outputs(), viewer=False, work=lambda: _view(path, name, seed, output))
+def view(path: Path, name: str | None, seed: int | None, output: Path | None, scenex: Sequence[Path]) -> int:
+    """Write the picture of the scenario called ``name``, or of the first scenario. Return the exit code.
+
+    ``scenex`` are files with scene instances for scenarios without an execution.
+    """
+    return report_problems(Outputs(), viewer=False, work=lambda: _view(path, name, seed, output, scenex))
 
 
-def _view(path: Path, name: str | None, seed: int | None, output: Path | None) -> int:
+def _view(path: Path, name: str | None, seed: int | None, output: Path | None, scenex: Sequence[Path]) -> int:
     target = output or Path(f"{path.stem}.png")
-    plan = load(path).scenarios(seed=seed)
+    plan = Plan.of(load(path), Selection(seed=seed, instances=read_instances(scenex)))
     with tempfile.TemporaryDirectory(prefix="robbdd-") as folder:
         manifest = plan.prepare(Path(folder))
         index = _index(manifest, name)

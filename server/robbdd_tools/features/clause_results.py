@@ -39,7 +39,8 @@ class ResultHint:
     - ``failing``: the verdicts on a clause that did not hold, the worst first.
     - ``worst``: the worst of all verdicts.
     - ``vacuous``: the reason why the clause could not have failed.
-    - ``substitutions``: the catalog behaviours that were executed instead of the model's.
+    - ``substitutions``: the catalog behaviours that were executed instead of the model's, and the chosen
+      scene instances.
     """
 
     span: Span
@@ -236,8 +237,8 @@ def _row_hint(span: Span, scenarios: Sequence[JudgedScenario], *, stale: bool) -
 
 
 def substitutions(scenarios: Iterable[JudgedScenario]) -> tuple[str, ...]:
-    """Return a text for each distinct substitution of a behaviour of the model by a behaviour of the catalog."""
-    found = (scenario.substitution for scenario in scenarios)
+    """Return a text for each distinct substitution of a behaviour, and for each scene instance that the user chose."""
+    found = (one for scenario in scenarios for one in (scenario.substitution, scenario.scene_instance))
     return tuple(map(str, dict.fromkeys(one for one in found if one is not None)))
 
 

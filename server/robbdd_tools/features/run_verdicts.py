@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from robbdd_tools.base.plain import from_plain
-from robbdd_tools.catalog.executable import Substitution
+from robbdd_tools.catalog.executable import ChosenScene, Substitution
 from robbdd_tools.features.executions import executions_of, relevant_declarations
 from robbdd_tools.monitor.fault import Fault
 from robbdd_tools.names.clause_places import clauses_in
@@ -68,6 +68,7 @@ class JudgedScenario:
     - ``repetition``: the number of this execution of the scenario in the run (from 1).
     - ``seed``: the seed that the user gave for the run, or ``None``.
     - ``substitution``: the catalog behaviour that was executed instead of the model's.
+    - ``scene_instance``: the scene instance that the user chose.
     """
 
     model: str
@@ -86,6 +87,7 @@ class JudgedScenario:
     repetition: int = 1
     seed: int | None = None
     substitution: Substitution | None = None
+    scene_instance: ChosenScene | None = None
 
     @property
     def outcome(self) -> str:

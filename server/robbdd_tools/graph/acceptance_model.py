@@ -198,13 +198,19 @@ class Template:
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """A scenario variant. Its scenarios have the clauses of its template, followed by its own clauses."""
+    """A scenario variant. Its scenarios have the clauses of its template, followed by its own clauses.
+
+    ``scenes`` are the IRIs of its scene, if the graph names it. ``instance`` is the scene instance in which its
+    scenarios run, unless their execution has its own.
+    """
 
     iri: Iri
     template: Template
     clauses: tuple[Clause, ...]
     scene: SceneModel
     variation: Product | Table
+    scenes: tuple[Iri, ...] = ()
+    instance: SceneInstance | None = None
 
 
 @dataclass(frozen=True, slots=True)

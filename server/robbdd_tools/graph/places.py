@@ -1,4 +1,4 @@
-"""Read the acceptance criteria of a file together with the source positions of their executed parts."""
+"""Read the acceptance criteria or the scene instances of a file with the source positions of their executed parts."""
 
 from __future__ import annotations
 
@@ -6,17 +6,27 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.catalog.executable import Origin
-from robbdd_tools.graph.read.acceptance import read_model
+from robbdd_tools.graph.read.acceptance import read_instances, read_model
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.graph.acceptance_model import AcceptanceModel
+    from robbdd_tools.graph.read.instances import Places
     from robbdd_tools.graph.write.built import BuiltGraph
     from robbdd_tools.names.project import Snapshot
 
 
 def placed_model(built: BuiltGraph, snapshot: Snapshot) -> AcceptanceModel:
     """Return the acceptance criteria of a graph, with source positions. The graph was built from the snapshot."""
+    return read_model(built.graph, _places(built, snapshot))
 
+
+def placed_instances(built: BuiltGraph, snapshot: Snapshot) -> tuple[SceneInstance, ...]:
+    """Return the scene instances of a graph, with source positions. The graph was built from the snapshot."""
+    return read_instances(built.graph, _places(built, snapshot))
+
+
+def _places(built: BuiltGraph, snapshot: Snapshot) -> Places:
     def place(node: str) -> Origin | None:
         location = built.sources.node(node)
         analysis = None if location is None else snapshot.file(location.uri)
@@ -26,4 +36,4 @@ def placed_model(built: BuiltGraph, snapshot: Snapshot) -> AcceptanceModel:
         start = analysis.document.position(location.span.start)
         return Origin(str(path), start.line + 1, start.column + 1)
 
-    return read_model(built.graph, place)
+    return place

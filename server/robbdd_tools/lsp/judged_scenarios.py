@@ -35,6 +35,7 @@ def judged_scenario(
         repetition=spec.repetition,
         seed=seed,
         substitution=spec.substitution,
+        scene_instance=spec.chosen_scene,
     )
 
 

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.workbench.plan import Choice, Listed, Selection
+from robbdd_tools.base.files import uri_to_path
+from robbdd_tools.workbench.choice import Choice, Listed
+from robbdd_tools.workbench.model import read_instances
+from robbdd_tools.workbench.plan import Selection
 from robbdd_tools.workbench.rerun import Failed, NothingFailed
 
 if TYPE_CHECKING:
@@ -32,6 +36,7 @@ class RunOptions:
       (``variations``) and one ``execution`` (IRI).
     - ``failed``: select the scenarios that did not hold in their last run.
     - ``where``, ``first``, ``sample``, ``pairwise``, ``seed``, ``repeat`` and ``jobs``: as for ``robbdd run``.
+    - ``scenex``: the path of a ``.scenex``, absolute or from the folder of the model.
     - ``record``: render a picture of each violation.
     - ``token``: the name of the run in the messages about it.
     """
@@ -51,6 +56,7 @@ class RunOptions:
     repeat: int | None = None
     jobs: int | None = None
     bhv: Mapping[str, str] = field(default_factory=dict[str, str])
+    scenex: str | None = None
 
     @classmethod
     def of(cls, argument: Mapping[str, Any]) -> RunOptions:
@@ -86,12 +92,14 @@ def select(
 ) -> tuple[Selection, int | None]:
     """Return the selection for a model, and the number of repetitions (``None`` for the number that the model states).
 
-    ``results`` are the results of earlier runs. Raises ``NothingFailed``.
+    ``results`` are the results of earlier runs. Raises ``NothingFailed`` and, for a ``scenex`` that cannot be
+    used, ``NotAModel``, ``ModelErrors`` or ``SceneChoiceError``.
     """
     variants = [variant.iri for story in model.stories for variant in story.variants]
     names = () if options.scenario is None else (options.scenario,)
     seed, repeat = options.seed, options.repeat
     choices: list[Choice] = []
+    scenex: tuple[Path, ...] = ()
     if options.only is not None:
         choices.append(Choice(map(_listed, options.only)))
     if options.variation is not None:
@@ -102,6 +110,10 @@ def select(
         seed = failed.seed if seed is None else seed
         repeat = repeat or failed.repeat
         substitutions = {**substitutions, **failed.substitutions}
+        scenex = failed.scenex
+    if options.scenex is not None:
+        scenex = ((uri_to_path(options.uri) or Path()).parent / options.scenex,)
+    instances = read_instances(scenex)
     selection = Selection(
         names,
         options.where,
@@ -112,6 +124,8 @@ def select(
         choices=tuple(choices),
         substitutions=options.bhv,
         default_substitutions=substitutions,
+        instances=() if options.scenex is None else instances,
+        default_instances=instances,
     )
     return selection, repeat
 
@@ -128,7 +142,9 @@ def _failed(failed: Sequence[JudgedScenario]) -> Failed:
     repeated = max(one.repetition for one in failed)
     substituted = (one.substitution for one in failed if one.substitution is not None)
     substitutions = {one.implementation: one.executed for one in substituted}
-    return Failed(Choice(listed), newest.seed, repeated if repeated > 1 else None, substitutions=substitutions)
+    chosen = (Path(one.scene_instance.file) for one in failed if one.scene_instance is not None)
+    repeat = repeated if repeated > 1 else None
+    return Failed(Choice(listed), newest.seed, repeat, substitutions=substitutions, scenex=tuple(dict.fromkeys(chosen)))
 
 
 def _listed(entry: Mapping[str, Any]) -> Listed:
@@ -174,7 +190,7 @@ def _is_substitution(value: object) -> bool:
 
 
 _FORMS: Mapping[str, tuple[Callable[[object], bool], str]] = {
-    **dict.fromkeys(("uri", "scenario", "where", "token"), (_is_text, "a text")),
+    **dict.fromkeys(("uri", "scenario", "where", "token", "scenex"), (_is_text, "a text")),
     **dict.fromkeys(("failed", "record"), (_is_flag, "true or false")),
     **dict.fromkeys(("first", "sample", "repeat", "jobs"), (_is_positive, "a whole number above 0")),
     **dict.fromkeys(("variation", "seed"), (_is_number, "a whole number")),

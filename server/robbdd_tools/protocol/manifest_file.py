@@ -1,6 +1,7 @@
 """The file in a run folder that lists the scenarios for the agent to execute.
 
-A scenario refers to its execution by its IRI, and to its behaviour tree by its name. Each of these is written once.
+A scenario refers to its execution and its chosen scene instance by their IRIs, and to its behaviour tree by its name.
+Each of these is written once.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from robbdd_tools.base.limits import RESULT_SIZE
 from robbdd_tools.base.plain import from_plain
 from robbdd_tools.base.writing import replacing
 from robbdd_tools.catalog.coordination import TreeSpec
+from robbdd_tools.catalog.executable import SceneInstance
 from robbdd_tools.protocol.clauses import Statement, to_plain
 from robbdd_tools.protocol.clauses import from_plain as statement_from_plain
 from robbdd_tools.protocol.specs import ClauseSpec, ConfigSpec, ExecutionSpec, Manifest, ScenarioSpec, SceneSpec
@@ -33,6 +35,7 @@ def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioS
     """
     executions: dict[str, ExecutionSpec] = {}
     trees: dict[str, TreeSpec] = {}
+    instances: dict[str, SceneInstance] = {}
     with replacing(folder / MANIFEST) as file:
         begin = {"model": head.model, "seed": head.seed, "traces": head.traces, "sources": dict(head.sources)}
         file.write(_json(begin)[:-1] + ', "scenarios": [')
@@ -44,8 +47,10 @@ def written_manifest(folder: Path, head: Manifest, scenarios: Iterable[ScenarioS
                 executions.setdefault(spec.execution.iri, spec.execution)
             if spec.tree is not None:
                 trees[spec.tree.name] = spec.tree
+            if spec.chosen_instance is not None:
+                instances.setdefault(spec.chosen_instance.iri, spec.chosen_instance)
             yield spec
-        for name, beside in (("executions", executions), ("trees", trees)):
+        for name, beside in (("executions", executions), ("trees", trees), ("instances", instances)):
             file.write(f'\n], "{name}": [' + ",\n".join(_json(asdict(one)) for one in beside.values()))
         file.write("]}\n")
 
@@ -55,16 +60,21 @@ def read_manifest(folder: Path) -> Manifest:
     data = json.loads(load_text(folder / MANIFEST, RESULT_SIZE))
     executions = {entry["iri"]: from_plain(ExecutionSpec, entry) for entry in data.get("executions", ())}
     trees = {entry["name"]: from_plain(TreeSpec, entry) for entry in data.get("trees", ())}
-    scenarios = tuple(_scenario(entry, executions, trees) for entry in data["scenarios"])
+    instances = {entry["iri"]: from_plain(SceneInstance, entry) for entry in data.get("instances", ())}
+    scenarios = tuple(_scenario(entry, executions, trees, instances) for entry in data["scenarios"])
     return Manifest(data["model"], data["seed"], scenarios, data.get("traces", False), data.get("sources", {}))
 
 
 def _scenario(
-    entry: dict[str, Any], executions: Mapping[str, ExecutionSpec], trees: Mapping[str, TreeSpec]
+    entry: dict[str, Any],
+    executions: Mapping[str, ExecutionSpec],
+    trees: Mapping[str, TreeSpec],
+    instances: Mapping[str, SceneInstance],
 ) -> ScenarioSpec:
     scene = entry.pop("scene")
     clauses = entry.pop("clauses")
     execution, tree = entry.pop("execution", None), entry.pop("tree", None)
+    instance = entry.pop("chosen_instance", None)
     return ScenarioSpec(
         scene=SceneSpec(
             tuple(scene["objects"]),
@@ -79,6 +89,7 @@ def _scenario(
         clauses=tuple(map(_clause, clauses)),
         execution=None if execution is None else executions[execution],
         tree=None if tree is None else trees[tree],
+        chosen_instance=None if instance is None else instances[instance],
         **entry,
     )
 
@@ -96,8 +107,11 @@ def _json(value: object) -> str:
 
 
 def _plain(value: Any) -> object:
-    """Return the fields of a dataclass without copying them, unlike ``asdict``. Names replace executions and trees."""
-    if isinstance(value, ExecutionSpec):
+    """Return the fields of a dataclass without copying them, unlike ``asdict``.
+
+    Names replace executions, scene instances and trees.
+    """
+    if isinstance(value, ExecutionSpec | SceneInstance):
         return value.iri
     if isinstance(value, TreeSpec):
         return value.name

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from robbdd_tools.catalog.coordination import TreeSpec
-from robbdd_tools.catalog.executable import Implementation, SceneInstance, Substitution
+from robbdd_tools.catalog.executable import ChosenScene, Implementation, SceneInstance, Substitution
 from robbdd_tools.monitor.policy import Policy
 from robbdd_tools.protocol.clauses import Statement
 
@@ -98,6 +98,7 @@ class ScenarioSpec:
     - ``tree``: the execution of a behaviour tree. All scenarios with the same tree execution are judged from it, and
       have its scene and seed.
     - ``node``: the IRI of the tree's node that is linked to this scenario.
+    - ``chosen_instance``: the scene instance that the user chose, for a scenario whose execution has none.
     """
 
     feature: str
@@ -116,6 +117,26 @@ class ScenarioSpec:
     model: str = ""
     tree: TreeSpec | None = None
     node: str = ""
+    chosen_instance: SceneInstance | None = None
+
+    @property
+    def instance(self) -> SceneInstance | None:
+        """The scene instance in which the scenario runs: the execution's, else the chosen one."""
+        own = None if self.execution is None else self.execution.scene
+        return own or self.chosen_instance
+
+    @property
+    def chosen_scene(self) -> ChosenScene | None:
+        """The chosen scene instance, ``None`` if the scenario runs without one or in that of its execution."""
+        chosen = self.chosen_instance
+        if chosen is None or chosen is not self.instance:
+            return None
+        return ChosenScene(chosen.iri, "" if chosen.origin is None else chosen.origin.file)
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """What the user chose that the model does not state, in words: a behaviour, a scene instance."""
+        return tuple(str(one) for one in (self.substitution, self.chosen_scene) if one is not None)
 
     @property
     def substitution(self) -> Substitution | None:

@@ -13,6 +13,7 @@ DEFAULTS: dict[str, object] = {
     "robbdd_seed": None,
     "robbdd_repeat": None,
     "robbdd_bhv": None,
+    "robbdd_scenex": None,
     "robbdd_where": None,
     "robbdd_first": None,
     "robbdd_sample": None,
@@ -37,6 +38,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--robbdd-repeat", metavar="N", type=int, help=text)
     text = "execute a catalog behaviour instead of this implementation of a .bddx, such as a ROS action; repeats"
     group.addoption("--robbdd-bhv", metavar="NAME=BEHAVIOUR", action="append", help=text)
+    text = "run scenarios without an execution in the scene instance of this .scenex for their scene; repeats"
+    group.addoption("--robbdd-scenex", metavar="FILE", action="append", help=text)
     text = "only scenarios with these values: 'robot=panda and target=~cube.*'"
     group.addoption("--robbdd-where", metavar="EXPRESSION", help=text)
     group.addoption("--robbdd-first", metavar="N", type=int, help="only the first N of each scenario's variations")

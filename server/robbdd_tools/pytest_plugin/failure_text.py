@@ -56,7 +56,7 @@ def failure(executed: Executed, file: ModelFile, place: StoredRun) -> Failure:
         *([f"{SIGNS[Outcome.HOLDS]} {printable(', '.join(holding))}"] if holding else []),
         *(line for fault in executed.faults for line in _fault_lines(fault)),
         *(f"log: {printable(line)}" for line in executed.log),
-        *([] if result.substitution is None else [printable(str(result.substitution))]),
+        *map(printable, result.choices),
         *_evidence_lines(executed, place),
     ]
     found = file.place(worst.iri if worst is not None else result.variant) or file.place(result.variant)

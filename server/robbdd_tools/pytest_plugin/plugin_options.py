@@ -9,8 +9,10 @@ from typing import Any
 
 import pytest
 
+from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.workbench.folder import Keeping
+from robbdd_tools.workbench.model import read_instances
 from robbdd_tools.workbench.plan import Selection
 from robbdd_tools.workbench.substitution import parse_substitution
 
@@ -54,6 +56,10 @@ def read_options(config: pytest.Config) -> Options:
         substitutions = dict(map(parse_substitution, given("bhv") or ()))
     except SelectionError as error:
         raise pytest.UsageError(f"--robbdd-bhv: {error}") from None
+    try:
+        instances = read_instances(config.invocation_params.dir / name for name in given("scenex") or ())
+    except RobbddError as error:
+        raise pytest.UsageError(f"--robbdd-scenex: {error}") from None
     selection = Selection(
         names,
         given("where"),
@@ -62,6 +68,7 @@ def read_options(config: pytest.Config) -> Options:
         given("pairwise"),
         given("seed"),
         default_substitutions=substitutions,
+        default_instances=instances,
     )
     store = None if given("store") is None else Path(given("store")).absolute()
     return Options(selection, given("repeat"), timeout, Keeping(store=store, keep=not given("no_store")))

@@ -22,6 +22,7 @@ from robbdd_tools.pytest_plugin.plugin_options import OPTIONS
 from robbdd_tools.pytest_plugin.session_run import Executor
 from robbdd_tools.workbench.model import NO_SCENARIO, load
 from robbdd_tools.workbench.plan import Plan
+from robbdd_tools.workbench.scene_choice import SceneChoiceError
 
 if TYPE_CHECKING:
     from robbdd_tools.protocol.specs import ScenarioSpec
@@ -90,6 +91,8 @@ class ModelNode(pytest.File):
         except SelectionError as error:
             self.unselected = error
             return ()
+        except SceneChoiceError as error:
+            raise self.CollectError(f"{self.path}: {error}") from None
 
 
 class StoryNode(pytest.Collector):
@@ -138,6 +141,8 @@ class ScenarioItem(pytest.Item):
         self.user_properties = [(VERDICT, str(result.verdict)), ("seed", result.seed)]
         if result.substitution is not None:
             self.user_properties.append(("substitution", str(result.substitution)))
+        if result.scene_instance is not None:
+            self.user_properties.append(("scene instance", str(result.scene_instance)))
         self.user_properties += [
             (f"margin {clause.name} ({clause.unit})", clause.margin)
             for clause in result.clauses

@@ -29,6 +29,7 @@ from robbdd_tools.pytest_plugin.scenario_nodes import (
 )
 from robbdd_tools.pytest_plugin.session_run import Executor, Owner, key_of, model_files, session_plan
 from robbdd_tools.run.store import StoredRun
+from robbdd_tools.workbench.scene_choice import SceneChoiceError, refuse_unused
 from robbdd_tools.workbench.substitution import refuse_unknown
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ class Hooks:
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Skip the executions that another model of the session also contains, as ``robbdd run`` does for a folder."""
         scenarios = [item for item in items if isinstance(item, ScenarioItem)]
-        self._refuse_unknown_substitutions()
+        self._refuse_unknown_choices()
         for node in self._models:
             if node.unselected is not None and not scenarios:
                 item = make_node(UnselectedItem, node, name="selection")
@@ -159,13 +160,17 @@ class Hooks:
         if self._shared is not None:
             shutil.rmtree(self._shared, ignore_errors=True)
 
-    def _refuse_unknown_substitutions(self) -> None:
-        """Raise ``UsageError`` if ``--robbdd-bhv`` names an implementation or a behaviour that does not exist."""
+    def _refuse_unknown_choices(self) -> None:
+        """Raise ``UsageError`` if ``--robbdd-bhv`` names what does not exist or ``--robbdd-scenex`` fits nothing."""
+        selection, models = self._options.selection, [file.acceptance for file in self._files]
         try:
-            substitutions = self._options.selection.default_substitutions
-            refuse_unknown((file.acceptance for file in self._files), substitutions)
+            refuse_unknown(models, selection.default_substitutions)
         except SelectionError as error:
             raise pytest.UsageError(f"--robbdd-bhv: {error}") from None
+        try:
+            refuse_unused(models, selection.default_instances)
+        except SceneChoiceError as error:
+            raise pytest.UsageError(f"--robbdd-scenex: {error}") from None
 
     @property
     def _files(self) -> tuple[ModelFile, ...]:
@@ -194,8 +199,7 @@ def _read_pointer(shared: Path) -> StoredRun:
 
 def _summary(place: StoredRun, results: RunResults) -> Iterator[str]:
     names = {clause.iri: clause.name for scenario in results.scenarios for clause in scenario.spec.clauses}
-    substitutions = (scenario.spec.substitution for scenario in results.scenarios)
-    yield from map(str, dict.fromkeys(one for one in substitutions if one is not None))
+    yield from results.choices()
     yield from (f"{names[iri]} proves little: {reason}" for iri, reason in results.vacuous().items())
     total = len(results.scenarios)
     counts = f"{results.count(Outcome.HOLDS)} hold, {results.count(Outcome.VIOLATED)} violated"

@@ -123,8 +123,8 @@ def _origin(code: str, spec: ScenarioSpec | None) -> str:
     if execution is not None:
         named.append((execution.implementation.name, execution.implementation.iri))
         named += [(policy.rule.name, policy.iri) for policy in execution.policies]
-        scene = execution.scene
-        if scene is not None:
-            models = (*scene.models, *(one for entry in scene.elements for one in entry.models))
-            named += [(model.name, model.iri) for model in models]
+    scene = spec.instance
+    if scene is not None:
+        models = (*scene.models, *(one for entry in scene.elements for one in entry.models))
+        named += [(model.name, model.iri) for model in models]
     return dict(reversed(named)).get(code, "")

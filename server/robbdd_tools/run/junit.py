@@ -54,8 +54,7 @@ def _case(suite: ElementTree.Element, scenario: ScenarioResult, faults: list[Fau
         element.text = _lines((*(words for _, words in failed), *_tracebacks(faults)))
     output = ElementTree.SubElement(case, "system-out")
     printed = (f"│ {line}" for line in scenario.printed.splitlines())
-    substituted = [] if spec.substitution is None else [str(spec.substitution)]
-    output.text = _lines((f"seed {spec.seed}", *substituted, *(words for _, words in _clauses(scenario)), *printed))
+    output.text = _lines((f"seed {spec.seed}", *spec.choices, *(words for _, words in _clauses(scenario)), *printed))
 
 
 def _tracebacks(faults: Iterable[Fault]) -> Iterable[str]:

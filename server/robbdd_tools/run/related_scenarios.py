@@ -145,8 +145,9 @@ class _Setting:
 
 def _setting(variant: Variant, execution: Execution | None) -> _Setting:
     if execution is None:
-        return _Setting(variant.scene)
-    return _Setting(variant.scene, execution.implementation, execution.scene, execution.seed, execution.timeout)
+        return _Setting(variant.scene, instance=variant.instance)
+    instance = execution.scene or variant.instance
+    return _Setting(variant.scene, execution.implementation, instance, execution.seed, execution.timeout)
 
 
 def _groups(tree: BehaviourTree, links: Iterable[_Link]) -> list[Group]:

@@ -135,6 +135,10 @@ class RunResults:
             "scenarios": list(self._scenarios()),
         }
 
+    def choices(self) -> Iterable[str]:
+        """Return, each once, what the user chose that the models do not state."""
+        return dict.fromkeys(words for scenario in self.scenarios for words in scenario.spec.choices)
+
     def scenario_json(self, index: int) -> dict[str, Any]:
         """Return the entry of one scenario in the list ``scenarios`` of the document of ``as_json``."""
         return _scenario(self.scenarios[index], self.vacuous())
@@ -161,6 +165,7 @@ def _scenario(scenario: ScenarioResult, vacuous: Mapping[str, str]) -> dict[str,
         "model": spec.model,
         "execution": None if spec.execution is None else spec.execution.name,
         "substitution": None if spec.substitution is None else asdict(spec.substitution),
+        "scene_instance": None if spec.chosen_scene is None else asdict(spec.chosen_scene),
         "repetition": spec.repetition,
         "shared": None if spec.tree is None else _shared(spec.tree, spec.node),
         "duration": None if scenario.finished is None else scenario.finished.simulated,

@@ -50,6 +50,7 @@ class _Shared:
     workspaces: Mapping[str, tuple[str, ...]]
     contains: Mapping[str, tuple[str, ...]]
     events: Mapping[str, str]
+    instance: SceneInstance | None
 
 
 class SpecWriter:
@@ -146,6 +147,7 @@ class SpecWriter:
             clauses=tuple(self._clause(line, step, iterations_of(step.scope, scopes)) for line, step in steps),
             execution=self.execution,
             model=self._name,
+            chosen_instance=shared.instance,
         )
 
     def _known(self, variant: Variant) -> _Shared:
@@ -184,6 +186,7 @@ class SpecWriter:
             self._named(scene.carriers),
             self._named(scene.contains),
             {self._curie(event): emits for event, emits in _events(variant, self._relations.node(variant)).items()},
+            None if variant.instance is None else self._instance(variant.instance),
         )
 
     def _named(self, mapping: Mapping[Iri, tuple[Iri, ...]]) -> dict[str, tuple[str, ...]]:

@@ -21,7 +21,7 @@ from robbdd_tools.protocol.manifest_file import MANIFEST
 from robbdd_tools.run.prepare import FEATURES
 
 if TYPE_CHECKING:
-    from robbdd_tools.catalog.executable import ModelSource, Origin
+    from robbdd_tools.catalog.executable import ModelSource, Origin, SceneInstance
     from robbdd_tools.protocol.specs import ExecutionSpec, Manifest
 
 
@@ -54,20 +54,33 @@ def _digest(path: Path) -> str:
 def _used(manifest: Manifest) -> Iterator[Path]:
     executions = {spec.execution.iri: (spec.execution, spec.model) for spec in manifest.scenarios if spec.execution}
     for execution, model in executions.values():
-        for source in _sources(execution):
-            if source.kind == "python":
-                yield from _modules(source.name, _folder(source.origin, model))
-            elif source.kind in ("file", "ros"):
-                yield from (path for path in model_files(_path(source)) if path.is_file())
+        if execution.scene is not None:
+            yield from _model_files(execution.scene, model)
         for name, origin in _code(execution):
             yield from _modules(name, _folder(origin, model))
+    chosen = {
+        spec.chosen_instance.iri: (spec.chosen_instance, spec.model)
+        for spec in manifest.scenarios
+        if spec.chosen_instance
+    }
+    for instance, model in chosen.values():
+        # The graph of the model does not contain the text of a chosen .scenex.
+        yield from (Path(file) for file in _texts(instance))
+        yield from _model_files(instance, model)
 
 
-def _sources(execution: ExecutionSpec) -> Iterator[ModelSource]:
-    if execution.scene is not None:
-        yield from execution.scene.models
-        for element in execution.scene.elements:
-            yield from element.models
+def _texts(instance: SceneInstance) -> Iterator[str]:
+    """Yield the paths of the model files that declare a scene instance and its parts."""
+    parts = (instance, *instance.elements, *instance.bodies, *instance.links, *instance.laws)
+    yield from dict.fromkeys(part.origin.file for part in parts if part.origin is not None)
+
+
+def _model_files(instance: SceneInstance, model: str) -> Iterator[Path]:
+    for source in (*instance.models, *(one for element in instance.elements for one in element.models)):
+        if source.kind == "python":
+            yield from _modules(source.name, _folder(source.origin, model))
+        elif source.kind in ("file", "ros"):
+            yield from (path for path in model_files(_path(source)) if path.is_file())
 
 
 def _code(execution: ExecutionSpec) -> Iterator[tuple[str, Origin | None]]:

@@ -12,6 +12,7 @@ from robbdd_tools.base.isolation import NO_USER_CODE, UNTRUSTED
 from robbdd_tools.protocol.run_folder import OWN_STEPS
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.protocol.specs import ExecutionSpec, Manifest, ScenarioSpec
 
 _FIX = "leave out --no-user-code if you trust this code, or run scenarios without it"
@@ -45,8 +46,8 @@ def refusal(manifest: Manifest, folder: Path, *, judges: bool = True, simulates:
 
 def _uses(manifest: Manifest, folder: Path, judges: bool, simulates: bool) -> Iterator[str]:
     for spec in manifest.scenarios:
-        if spec.execution is not None and simulates:
-            yield from _models(spec.execution)
+        if spec.instance is not None and simulates:
+            yield from _models(spec.instance)
         if spec.execution is not None and judges:
             yield from _evaluators(spec.execution, spec)
         if simulates and judges:
@@ -57,12 +58,10 @@ def _uses(manifest: Manifest, folder: Path, judges: bool, simulates: bool) -> It
             yield f"{source} contains user-defined steps"
 
 
-def _models(execution: ExecutionSpec) -> Iterator[str]:
-    scene = execution.scene
-    sources = () if scene is None else (*scene.models, *(one for entry in scene.elements for one in entry.models))
-    for source in sources:
+def _models(instance: SceneInstance) -> Iterator[str]:
+    for source in (*instance.models, *(one for entry in instance.elements for one in entry.models)):
         if source.kind == "python":
-            yield f"{source.origin or execution.name}: a model is created by the Python code {source.name}"
+            yield f"{source.origin or instance.iri}: a model is created by the Python code {source.name}"
 
 
 def _evaluators(execution: ExecutionSpec, spec: ScenarioSpec) -> Iterator[str]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, cast
 
-from robbdd_tools.catalog.executable import Substitution
+from robbdd_tools.catalog.executable import ChosenScene, Substitution
 from robbdd_tools.monitor.verdict import Cause, Outcome
 
 
@@ -50,6 +50,7 @@ class ExecutionResult:
     - ``execution``: the CURIE of the ``.bddx`` execution; empty without one.
     - ``duration``: simulated time in s; ``None`` if the execution did not finish.
     - ``substitution``: the catalog behaviour that was executed instead of the model's implementation, or ``None``.
+    - ``scene_instance``: the scene instance of a ``.scenex`` that the user chose, or ``None``.
     """
 
     index: int
@@ -66,6 +67,12 @@ class ExecutionResult:
     duration: float | None
     clauses: tuple[ClauseResult, ...]
     substitution: Substitution | None = None
+    scene_instance: ChosenScene | None = None
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """What the user chose that the model does not state, in words."""
+        return tuple(str(one) for one in (self.substitution, self.scene_instance) if one is not None)
 
     def rows(self) -> Iterator[dict[str, Any]]:
         """Yield one flat dictionary for each clause. The values of variables are in columns called ``value.NAME``."""
@@ -77,6 +84,7 @@ class ExecutionResult:
             "repetition": self.repetition,
             "execution": self.execution,
             "substitution": "" if self.substitution is None else str(self.substitution),
+            "scene_instance": "" if self.scene_instance is None else str(self.scene_instance),
             "seed": self.seed,
             "duration": self.duration,
             "scenario_verdict": str(self.verdict),
@@ -116,6 +124,7 @@ def execution_result(index: int, entry: Mapping[str, Any]) -> ExecutionResult:
         entry["duration"],
         tuple(map(_clause, entry["clauses"])),
         Substitution(**entry["substitution"]) if entry.get("substitution") else None,
+        ChosenScene(**entry["scene_instance"]) if entry.get("scene_instance") else None,
     )
 
 

@@ -21,6 +21,7 @@ from robbdd_tools.run.scheduler import CANCELLED
 from robbdd_tools.run.user_code import refuse_user_code
 from robbdd_tools.workbench.execution_rows import ExecutionResult, execution_results, rows_of
 from robbdd_tools.workbench.plan import NothingSelected, Plan, Selection
+from robbdd_tools.workbench.scene_choice import instances_of
 from robbdd_tools.workbench.substitution import substitutions_of
 
 if TYPE_CHECKING:
@@ -147,6 +148,7 @@ def _prepared(place: StoredRun, model: Model, folder: Path) -> Manifest:
         only=lambda spec: scenario_key(spec) in known,
         default_seed=manifest.seed,
         default_substitutions=substitutions_of(manifest.scenarios),
+        default_instances=instances_of(manifest.scenarios),
     )
     plan = Plan.of(model, selection)
     try:

@@ -11,15 +11,17 @@ from typing import TYPE_CHECKING
 
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.exceptions import RobbddError
-from robbdd_tools.base.files import path_to_uri
+from robbdd_tools.base.files import path_to_uri, uri_to_path
 from robbdd_tools.features.diagnostics import all_diagnostics
 from robbdd_tools.graph.write.foreign_imports import GRAPH_FORMATS, graph_format
 from robbdd_tools.names.index import language_of
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.syntax.parse import LANGUAGES
 from robbdd_tools.workbench.diagnostics import Finding, Place, Places, findings
+from robbdd_tools.workbench.scene_choice import SceneChoiceError
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.graph.acceptance_model import AcceptanceModel
     from robbdd_tools.graph.write.built import BuiltGraph
     from robbdd_tools.workbench.plan import Plan
@@ -180,6 +182,7 @@ class Model:
         pairwise: int | None = None,
         seed: int | None = None,
         substitutions: Mapping[str, str] | None = None,
+        scenex: str | os.PathLike[str] | None = None,
     ) -> Plan:
         """Select scenarios to run.
 
@@ -188,9 +191,11 @@ class Model:
         random ``sample`` of N, or a small set that covers all combinations of values of any 2 or 3 variables
         (``pairwise``). ``seed`` is the seed of the sample, and of the run unless the run has its own.
         ``substitutions`` maps behaviour implementations of a ``.bddx`` to the catalog behaviours to execute instead
-        (``{"my-server": "pick-place"}``).
+        (``{"my-server": "pick-place"}``). ``scenex`` is a file: scenarios without an execution run in the scene
+        instance that it declares for their scene.
 
-        Raises ``ModelErrors``, ``NothingToRun``, and ``SelectionError`` for an invalid selection.
+        Raises ``ModelErrors``, ``NothingToRun``, ``SelectionError`` for an invalid selection, and ``NotAModel`` or
+        ``SceneChoiceError`` for a ``scenex`` that does not fit.
         """
         from robbdd_tools.workbench.plan import Plan, Selection
 
@@ -198,9 +203,17 @@ class Model:
         reducing = [name for name, value in given.items() if value is not None]
         if len(reducing) > 1:
             raise ValueError(f"give only one of {' and '.join(reducing)}")
-        return Plan.of(
-            self, Selection(names, where, first, sample, pairwise, seed, substitutions=dict(substitutions or {}))
+        selection = Selection(
+            names,
+            where,
+            first,
+            sample,
+            pairwise,
+            seed,
+            substitutions=dict(substitutions or {}),
+            instances=() if scenex is None else read_instances([Path(scenex)]),
         )
+        return Plan.of(self, selection)
 
 
 def load(path: str | os.PathLike[str], *more: str | os.PathLike[str], text: str | None = None) -> Model:
@@ -234,6 +247,27 @@ def load_all(paths: Sequence[Path]) -> Model:
     if others:
         project.join(path_to_uri(first), list(map(path_to_uri, others)))
     return replace(_model(paths[0], project, [file for file in files if file not in others]), paths=paths)
+
+
+def read_instances(paths: Iterable[Path]) -> tuple[SceneInstance, ...]:
+    """Return the scene instances that ``.scenex`` files declare, without those that they import.
+
+    Raises ``NotAModel``, ``ModelErrors`` and ``SceneChoiceError``.
+    """
+    from robbdd_tools.graph.places import placed_instances
+
+    found: list[SceneInstance] = []
+    for path in dict.fromkeys(paths):
+        if path.suffix != ".scenex":
+            raise NotAModel(f"{path} is not a .scenex file")
+        (file,) = load(path).files
+        every = placed_instances(file.graph, file.snapshot)
+        own = str(uri_to_path(file.uri))
+        declared = [one for one in every if one.origin is not None and one.origin.file == own]
+        if not declared:
+            raise SceneChoiceError(f"{path} declares no scene inst")
+        found += declared
+    return tuple(found)
 
 
 def _model(path: Path, project: Project, files: Iterable[Path]) -> Model:

@@ -13,13 +13,16 @@ from robbdd_tools.gherkin.select import Selected, SelectionError, Wanted
 from robbdd_tools.run.prepare import DEFAULT_SEED, RunRequest, prepare_all
 from robbdd_tools.run.scheduler import Policy
 from robbdd_tools.workbench.judged_text import judged_texts
+from robbdd_tools.workbench.scene_choice import NOTHING_TO_PLACE, SceneChoiceError, in_instances, uses_instances
 from robbdd_tools.workbench.substitution import refuse_unknown, substitute
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.gherkin.covering import Cover
     from robbdd_tools.gherkin.feature import Numbered
     from robbdd_tools.graph.acceptance_model import AcceptanceModel, Execution, Iri, Variant
     from robbdd_tools.protocol.specs import Manifest, ScenarioSpec
+    from robbdd_tools.workbench.choice import Choice
     from robbdd_tools.workbench.folder import Keeping
     from robbdd_tools.workbench.judged_text import JudgedTexts
     from robbdd_tools.workbench.model import Model, ModelFile
@@ -31,64 +34,6 @@ MODELS_CHANGED = "the model no longer has these scenarios"
 
 class NothingSelected(SelectionError):
     """The selection is valid, but it contains no scenario."""
-
-
-@dataclass(frozen=True, slots=True)
-class Listed:
-    """Scenarios of one variant (its IRI) in a list.
-
-    - ``numbers``: the numbers of the scenarios (from 1); without them, all scenarios.
-    - ``execution``: the IRI of the execution that executes them; without it, any execution or none.
-    - ``repetitions``: the numbers of the repetitions (from 1); without them, all repetitions.
-    """
-
-    variant: str
-    numbers: frozenset[int] | None = None
-    execution: str | None = None
-    repetitions: frozenset[int] | None = None
-
-    def admits(self, number: int) -> bool:
-        """Return whether the scenario with this number of the variant is listed."""
-        return self.numbers is None or number in self.numbers
-
-    def admits_spec(self, spec: ScenarioSpec) -> bool:
-        """Return whether a specified execution is listed. It must be an execution of the variant."""
-        by = None if spec.execution is None else spec.execution.iri
-        return (
-            self.admits(spec.variation)
-            and (None in (self.execution, by) or self.execution == by)
-            and (self.repetitions is None or spec.repetition in self.repetitions)
-        )
-
-
-class Choice:
-    """An explicit list of scenarios."""
-
-    def __init__(self, entries: Iterable[Listed]) -> None:
-        self._entries: dict[str, list[Listed]] = {}
-        for entry in entries:
-            self._entries.setdefault(entry.variant, []).append(entry)
-
-    def entries(self, variant: str) -> Sequence[Listed]:
-        """Return the entries of the list for a variant."""
-        return self._entries.get(variant, ())
-
-    def every(self) -> Iterable[Listed]:
-        """Yield all entries of the list."""
-        for entries in self._entries.values():
-            yield from entries
-
-    def admits(self, variant: str, number: int) -> bool:
-        """Return whether a scenario is listed, no matter by which execution."""
-        return any(entry.admits(number) for entry in self.entries(variant))
-
-    def admits_spec(self, spec: ScenarioSpec) -> bool:
-        """Return whether a specified execution of a scenario is listed."""
-        return any(entry.admits_spec(spec) for entry in self.entries(spec.variant))
-
-    def admits_execution(self, execution: Execution) -> bool:
-        """Return whether any scenario of an execution is listed."""
-        return any(entry.execution in (None, execution.iri) for entry in self.entries(execution.variant))
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +50,8 @@ class Selection:
     - ``substitutions``: maps implementations of behaviours (local name, CURIE or IRI) to the catalog behaviours to
       execute instead.
     - ``default_substitutions``: like ``substitutions``, but implementations that the models lack are ignored.
+    - ``instances``: scene instances. A scenario without an execution runs in the one that instantiates its scene.
+    - ``default_instances``: like ``instances``, but scenarios whose scene has none are placed as without.
     """
 
     names: Sequence[str] = ()
@@ -118,6 +65,8 @@ class Selection:
     default_seed: int = DEFAULT_SEED
     substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
     default_substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
+    instances: Sequence[SceneInstance] = ()
+    default_instances: Sequence[SceneInstance] = ()
 
     def wanted(self) -> Wanted:
         """Return the part of the selection that concerns the values of scenarios."""
@@ -161,13 +110,16 @@ class Plan:
 
     @classmethod
     def of(cls, model: Model, selection: Selection) -> Plan:
-        """Return the plan of a model. Raises ``ModelErrors``, ``NothingToRun`` and ``SelectionError``."""
+        """Return the plan of a model.
+
+        Raises ``ModelErrors``, ``NothingToRun``, ``SelectionError`` and ``SceneChoiceError``.
+        """
         plan = cls.of_files(str(model.path), model.path, model.runnable, selection)
         return replace(plan, models=tuple(model.paths) if len(model.paths) > 1 else ())
 
     @classmethod
     def of_files(cls, name: str, path: Path | None, files: tuple[ModelFile, ...], selection: Selection) -> Plan:
-        """Return the plan of models that have scenarios and no errors. Raises ``SelectionError``."""
+        """Return the plan of sound models with scenarios; raises ``SelectionError`` and ``SceneChoiceError``."""
         planner = _Planner(files, selection)
         return cls(name, path, files, selection, tuple(planner.requests()), tuple(planner.covers))
 
@@ -254,7 +206,10 @@ class _Planner:
         self.covers: list[Coverage] = []
 
     def requests(self) -> list[RunRequest]:
-        """Return a request for each model from which something is selected. Raises ``SelectionError``."""
+        """Return a request for each model with something selected.
+
+        Raises ``SelectionError`` and ``SceneChoiceError``.
+        """
         self._refuse_unknown_names()
         refuse_unknown((file.acceptance for file in self._files), self._selection.substitutions)
         found: list[RunRequest] = []
@@ -266,6 +221,8 @@ class _Planner:
                 problems.append(error)
             else:
                 found += [] if request is None else [request]
+        if found and self._selection.instances and not any(map(uses_instances, found)):
+            raise SceneChoiceError(NOTHING_TO_PLACE)
         if not found:
             raise problems[0] if problems else NothingSelected(MODELS_CHANGED)
         return found
@@ -274,6 +231,7 @@ class _Planner:
         selection = self._selection
         model = substitute(file.acceptance, {**selection.default_substitutions, **selection.substitutions})
         executions = tuple(one for one in self._executions(model) if one.iri not in self._taken)
+        model = self._in_instances(model, executions)
         executed = {execution.variant for execution in executions}
         variants = [
             one
@@ -302,6 +260,13 @@ class _Planner:
             executions,
             only=selection.admits_spec,
         )
+
+    def _in_instances(self, model: AcceptanceModel, executions: Sequence[Execution]) -> AcceptanceModel:
+        instances = self._selection.instances
+        own = {execution.variant for execution in executions if execution.scene is not None}
+        plain = [one.iri for one in self._variants(model) if one.iri not in self._taken]
+        needing = frozenset(iri for iri in plain if iri not in own)
+        return in_instances(model, needing, instances or self._selection.default_instances, must_fit=bool(instances))
 
     def _executions(self, model: AcceptanceModel) -> Iterable[Execution]:
         for execution in model.executions:

@@ -12,7 +12,8 @@ from robbdd_tools.monitor.verdict import Outcome
 from robbdd_tools.run.prepare import DEFAULT_SEED
 from robbdd_tools.run.store import NoSuchRun, RunStore, StoredRun, shown_path
 from robbdd_tools.run.stored_results import RUNNING
-from robbdd_tools.workbench.plan import Choice, Listed
+from robbdd_tools.workbench.choice import Choice, Listed
+from robbdd_tools.workbench.scene_choice import files_of
 from robbdd_tools.workbench.substitution import substitutions_of
 
 
@@ -28,6 +29,7 @@ class Failed:
     - ``repeat``: the number of repetitions; ``None`` for the number that the model states.
     - ``default_seed``: the seed of scenarios that have no seed of their own.
     - ``substitutions``: the substitutions of the run.
+    - ``scenex``: the files of the scene instances that the user chose.
     """
 
     choice: Choice
@@ -35,6 +37,7 @@ class Failed:
     repeat: int | None
     default_seed: int = DEFAULT_SEED
     substitutions: Mapping[str, str] = field(default_factory=dict[str, str])
+    scenex: tuple[Path, ...] = ()
 
 
 def last_run(store: RunStore, model: Path) -> StoredRun:
@@ -64,4 +67,5 @@ def failed_in(place: StoredRun) -> Failed:
     ]
     repeated = max(spec.repetition for spec in specs)
     repeat = repeated if repeated > 1 else None
-    return Failed(Choice(listed), place.record().user_seed, repeat, results["seed"], substitutions_of(specs))
+    seed, substitutions = place.record().user_seed, substitutions_of(specs)
+    return Failed(Choice(listed), seed, repeat, results["seed"], substitutions, files_of(failed))

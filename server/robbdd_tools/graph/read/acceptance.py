@@ -28,6 +28,8 @@ from robbdd_tools.graph.read.variations import VariationReader
 if TYPE_CHECKING:
     from rdflib import Graph
 
+    from robbdd_tools.catalog.executable import SceneInstance
+
 
 def _nowhere(_: str) -> None:
     """Return no source position."""
@@ -48,6 +50,14 @@ def read_model(graph: Graph, places: Places = _nowhere) -> AcceptanceModel:
     executions = read_executions(records, InstanceReader(records, sets, places), places)
     trees = read_trees(records, places)
     return AcceptanceModel(every, kinds, sets, reading_prefixes(graph), executions, trees)
+
+
+def read_instances(graph: Graph, places: Places = _nowhere) -> tuple[SceneInstance, ...]:
+    """Return the scene instances of a graph, in the order of their IRIs."""
+    records = Records(graph)
+    sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
+    reader = InstanceReader(records, sets, places)
+    return tuple(reader.instance(node) for node in sorted(records.instances("rbw:SceneInstance")))
 
 
 def incomplete_variants(graph: Graph) -> dict[Iri, str]:
@@ -110,7 +120,8 @@ class _Reader:
         for name in used_names((*template.clauses, *extra)):
             if self.records.is_a(name, "bdd:ScenarioVariable") and name not in variation.variables:
                 raise Incomplete(f"{node} gives {name} no value")
-        return Variant(node, template, extra, self._scene(node), variation)
+        scenes = self.records.iris(self.records.all(node, "rbw:scene"))
+        return Variant(node, template, extra, self._scene(node), variation, tuple(scenes))
 
     def _extra_clauses(self, node: Iri) -> tuple[Clause, ...]:
         stated = self.records.all(node, "bdd:has-clause")

@@ -80,6 +80,7 @@ class InstanceReader:
             tuple(self._laws({law for link in links for law in (link.position_law, link.rotation_law) if law})),
             next(iter([*roots, *(frame for frame in frames if frame not in placed)]), ""),
             self._places(node),
+            next(iter(records.iris(records.all(node, "rbw:scene"))), ""),
         )
 
     def _list(self, node: str, term: str) -> tuple[Iri, ...]:

@@ -1,0 +1,149 @@
+"""Scenarios of a ``.bdd`` run in the scene instance of a ``.scenex`` that the user names, and results state it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+import robbdd_tools as robbdd
+from kit import EXAMPLES
+from robbdd_tools.cli import main
+from robbdd_tools.features.run_verdicts import Digests
+from robbdd_tools.gherkin.select import SelectionError
+from robbdd_tools.lsp.judged_scenarios import judged_scenario
+from robbdd_tools.lsp.run_options import RunOptions, select
+from robbdd_tools.protocol.manifest_file import read_manifest
+from robbdd_tools.run.user_code import refusal
+from robbdd_tools.workbench.model import ModelErrors, NotAModel
+from robbdd_tools.workbench.plan import Plan
+from robbdd_tools.workbench.rerun import failed_in
+from robbdd_tools.workbench.scene_choice import SceneChoiceError
+
+WORDS = "executed in the scene instance 'cell_sim' of cell.scenex"
+INSTANCE = "https://example.org/robbdd/ownrobot/simulation/cell_sim"
+
+
+@pytest.fixture
+def tidy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An example whose arm is known to its ``.scenex`` only."""
+    folder = shutil.copytree(EXAMPLES / "ownrobot", tmp_path / "cell")
+    monkeypatch.chdir(folder)
+    return Path("tidy.bdd")
+
+
+def edit(path: str, old: str, new: str) -> None:
+    text = Path(path).read_text(encoding="utf-8")
+    assert old in text
+    Path(path).write_text(text.replace(old, new), encoding="utf-8")
+
+
+def refused(model: Path | str, scenex: str, error: type[Exception] = SceneChoiceError) -> str:
+    with pytest.raises(error) as caught:
+        robbdd.load(model).scenarios(scenex=scenex)
+    return str(caught.value)
+
+
+def test_a_scenario_gets_what_an_execution_gets(tidy: Path, tmp_path: Path) -> None:
+    plan = robbdd.load(tidy).scenarios(scenex="cell.scenex")
+    executed = robbdd.load("tidy.bddx").scenarios("by-catalog")
+    assert [spec.instance for spec in plan.scenarios] == [spec.instance for spec in executed.scenarios]
+    assert {spec.choices for spec in plan.scenarios} == {(WORDS,)}
+    assert {spec.choices for spec in executed.scenarios} == {()}
+    manifest = plan.prepare(tmp_path / "run")
+    assert read_manifest(tmp_path / "run") == manifest
+    assert (tmp_path / "run" / "manifest.json").read_text(encoding="utf-8").count('"links"') == 1
+
+
+def test_a_file_that_does_not_fit_is_refused_with_the_instances_there_are(tidy: Path) -> None:
+    other = str(EXAMPLES / "pickplace" / "bench.scenex")
+    said = refused(tidy, other)
+    assert said.startswith("cube-to-bin runs in the scene env:cell, which is not instantiated: there is bench_sim (")
+    assert said.endswith("bench.scenex:6:21) of the scene bench_scene")
+    assert refused("tidy.bddx", "cell.scenex").startswith("every selected scenario runs in the scene instance of its")
+    assert refused(tidy, "tidy.bdd", NotAModel) == "tidy.bdd is not a .scenex file"
+    assert "there is no file 'none.scenex'" in refused(tidy, "none.scenex", ModelErrors)
+    Path("empty.scenex").write_text('import "cell.scenex"\n', encoding="utf-8")
+    assert refused(tidy, "empty.scenex") == "empty.scenex declares no scene inst"
+
+
+def test_two_instances_that_fit_are_named(tidy: Path) -> None:
+    with Path("cell.scenex").open("a", encoding="utf-8") as file:
+        file.write("\nscene inst (ns=sim) again { scene: <cell> }\n")
+    said = refused(tidy, "cell.scenex")
+    assert said.startswith("several scene instances fit cube-to-bin: again (")
+    assert "cell_sim (" in said
+
+
+def test_python_code_that_creates_a_model_is_refused_without_trust(
+    tidy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    edit("cell.scenex", "sys path = 'five.xml'", "py { module: carrying, attr: model }")
+    manifest = robbdd.load(tidy).scenarios(scenex="cell.scenex").prepare(tmp_path / "run")
+    monkeypatch.setenv("ROBBDD_NO_USER_CODE", "1")
+    assert "cell.scenex:67:15: a model is created by the Python code carrying:model" in refusal(manifest, tmp_path)
+
+
+def test_an_editor_names_the_file_from_the_folder_of_the_model(tidy: Path) -> None:
+    (file,) = robbdd.load(tidy).files
+    selection, _ = select(RunOptions.of({"uri": file.uri, "scenex": "cell.scenex"}), file.acceptance, ())
+    plan = Plan.of_files(file.uri, None, (file,), selection)
+    (spec, *_) = plan.scenarios
+    assert spec.choices == (WORDS,)
+    result = judged_scenario(spec, file.uri, Digests({}, {}, {}, {}), run=1, index=0, seed=None)
+    again, _ = select(RunOptions.of({"uri": file.uri, "failed": True}), file.acceptance, [result])
+    assert [spec.choices for spec in Plan.of_files(file.uri, None, (file,), again).scenarios] == [(WORDS,)]
+
+
+def test_an_unselected_scenario_of_another_scene_needs_no_instance(tidy: Path) -> None:
+    edit("tidy.bdd", "    Scenarios:\n", f"    Scenarios:\n{OTHER}")
+    edit("cell.scene", "scene (ns=env) cell {", f"{OTHER_SCENE}scene (ns=env) cell {{")
+    assert "elsewhere runs in the scene env:other_cell" in refused(tidy, "cell.scenex")
+    plan = robbdd.load(tidy).scenarios("cube-to-bin", scenex="cell.scenex")
+    assert {spec.choices for spec in plan.scenarios} == {(WORDS,)}
+    with pytest.raises(SelectionError):
+        robbdd.load(tidy).scenarios("nowhere", scenex="cell.scenex")
+
+
+OTHER_SCENE = "scene (ns=env) other_cell { obj set <cubes> ws comp <bench> ws comp <in_bin> agn set <arms> }\n"
+OTHER = """        Scenario elsewhere {
+            template: <tidy>
+            scene: <other_cell>
+
+            variation:
+                var <tidy.thing>: obj set <cubes>
+                var <tidy.robot>: agn set <arms>
+                var <tidy.source>: { <places.table_ws> }
+                var <tidy.goal>: { <places.bin_ws> }
+        }
+
+"""
+
+
+@pytest.mark.physics
+def test_results_state_the_instance_and_later_commands_keep_it(tidy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(tidy), "--first", "1", "--no-store"]) == 1
+    assert "or run with --scenex FILE, a .scenex that gives it a model" in capsys.readouterr().out
+    edit("tidy.bdd", "held by <robot>, after <evt-pick-end>", "held by <robot>, after <evt-place-end>")
+    run = ["run", str(tidy), "--scenex", "cell.scenex", "--first", "1"]
+    assert main([*run, "--json", "run.json", "--junit", "run.xml"]) == 1
+    assert WORDS in capsys.readouterr().out
+    assert WORDS in Path("run.xml").read_text(encoding="utf-8")
+    (scenario,) = json.loads(Path("run.json").read_text(encoding="utf-8"))["scenarios"]
+    scenex = str(Path("cell.scenex").absolute())
+    assert scenario["scene_instance"] == {"instance": INSTANCE, "file": scenex}
+    assert {clause["verdict"] for clause in scenario["clauses"]} == {"holds", "violated"}
+    (past,) = robbdd.runs(tidy)
+    (result,) = past.results
+    assert next(result.rows())["scene_instance"] == str(result.scene_instance) == WORDS
+    assert failed_in(past.place).scenex == (Path(scenex),)
+    for command in (["run", str(tidy), "--rerun-failed"], ["judge", "1", str(tidy)]):
+        assert main(command) == 1
+        assert WORDS in capsys.readouterr().out
+    assert main(["replay", "1"]) == 0
+    edit("cell.scenex", "(50, 0, 10) cm", "(51, 0, 10) cm")
+    capsys.readouterr()
+    assert main(["replay", "1"]) == 2
+    assert "cell.scenex was changed since the run" in capsys.readouterr().err
