@@ -154,7 +154,7 @@ def _findings(gaps: list[Gap], keys: set[Key], severity: Severity) -> Iterator[D
             message += f" (nor {', '.join(others)})"
         if severity is Severity.WARNING:
             message += f": it has none of the words {_words(gap)}; give it another name, or a model in a .scenex"
-            message += " that an execution of a .bddx uses"
+            message += " that --scenex or an execution of a .bddx names"
         else:
             message += ": no scenario uses it, so runs omit it"
         uri = gap.scene.uri

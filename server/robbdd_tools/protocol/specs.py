@@ -135,7 +135,7 @@ class ScenarioSpec:
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """What the user chose that the model does not state, in words: a behaviour, a scene instance."""
+        """The user's choices that the model does not state, in words: a behaviour, a scene instance."""
         return tuple(str(one) for one in (self.substitution, self.chosen_scene) if one is not None)
 
     @property

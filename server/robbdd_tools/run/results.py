@@ -136,7 +136,7 @@ class RunResults:
         }
 
     def choices(self) -> Iterable[str]:
-        """Return, each once, what the user chose that the models do not state."""
+        """Return the user's choices that the models do not state, each once."""
         return dict.fromkeys(words for scenario in self.scenarios for words in scenario.spec.choices)
 
     def scenario_json(self, index: int) -> dict[str, Any]:

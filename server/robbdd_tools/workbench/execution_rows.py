@@ -71,7 +71,7 @@ class ExecutionResult:
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """What the user chose that the model does not state, in words."""
+        """The user's choices that the model does not state, in words."""
         return tuple(str(one) for one in (self.substitution, self.scene_instance) if one is not None)
 
     def rows(self) -> Iterator[dict[str, Any]]:
