@@ -83,19 +83,19 @@ test("a margin is given in a unit that reads well, and only where it has one", (
   assert.equal(line(1, ""), "    ✔ cube is located at bin: holds");
 });
 
-test("a scenario with an unknown clause is undecided, not passed", () => {
+test("a scenario with an unknown clause has errored, not passed", () => {
   const { run } = report(runStarted(1), started(0), judged(0, "holds"), judged(0, "unknown"), finished(0));
-  assert.deepEqual(run.tally, { total: 1, passed: 0, failed: 0, undecided: 1 });
+  assert.deepEqual(run.tally, { total: 1, passed: 0, failed: 0, errored: 1 });
 });
 
 test("a violated clause outweighs an unknown one", () => {
   const { run } = report(runStarted(1), started(0), judged(0, "unknown"), judged(0, "violated"), finished(0));
-  assert.deepEqual(run.tally, { total: 1, passed: 0, failed: 1, undecided: 0 });
+  assert.deepEqual(run.tally, { total: 1, passed: 0, failed: 1, errored: 0 });
 });
 
-test("a scenario without a judged clause is undecided", () => {
+test("a scenario without a judged clause has errored", () => {
   const { run } = report(runStarted(1), started(0), finished(0));
-  assert.equal(run.tally.undecided, 1);
+  assert.equal(run.tally.errored, 1);
 });
 
 test("clauses of scenarios that run at the same time are kept apart", () => {
@@ -108,7 +108,7 @@ test("clauses of scenarios that run at the same time are kept apart", () => {
     finished(1),
     finished(0),
   );
-  assert.deepEqual(run.tally, { total: 2, passed: 1, failed: 1, undecided: 0 });
+  assert.deepEqual(run.tally, { total: 2, passed: 1, failed: 1, errored: 0 });
 });
 
 test("a run that ends early reports it and counts the open scenarios", () => {
@@ -188,7 +188,7 @@ test("an error in users' code is shown once with its traceback, and its output w
     "    │ one",
     "    │ two",
     "    ? cube is located at bin: unknown: no evidence, because of error 1",
-    "    undecided after 9.00 s simulated, 0.51 s on the clock",
+    "    errored after 9.00 s simulated, 0.51 s on the clock",
     "  Scenario 2 of 2: t:fetch -- 1  part = cube",
   ]);
   assert.equal(lines.filter((line) => line.includes("KeyError")).length, 1);

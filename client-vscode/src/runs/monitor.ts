@@ -97,8 +97,8 @@ export class RunMonitor implements vscode.Disposable {
 
   private publish(): void {
     const runs = [...this.reports.values()].map((report): RunProgress => {
-      const { total, passed, failed, undecided } = report.tally;
-      return { finished: passed + failed + undecided, total };
+      const { total, passed, failed, errored } = report.tally;
+      return { finished: passed + failed + errored, total };
     });
     void vscode.commands.executeCommand("setContext", "robbdd.running", runs.length > 0);
     this.onChange(runs, this.summary);

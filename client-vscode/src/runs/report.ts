@@ -4,7 +4,7 @@ import type { ClauseJudged, RunMessage, UserCodeFailed } from "./messages";
 
 export const SIGNS = { holds: "✔", violated: "✗", unknown: "?" } as const;
 
-type Outcome = "passed" | "failed" | "undecided";
+type Outcome = "passed" | "failed" | "errored";
 
 /** Number of ended scenarios, by outcome. */
 export interface Tally {
@@ -12,7 +12,7 @@ export interface Tally {
   readonly passed: number;
   readonly failed: number;
   /** Scenarios with an unknown clause and no violated one. */
-  readonly undecided: number;
+  readonly errored: number;
 }
 
 /** Follows one run from its first message to its last. */
@@ -35,7 +35,7 @@ export class RunReport {
 
   get tally(): Tally {
     const count = (wanted: Outcome) => [...this.outcomes.values()].filter((outcome) => outcome === wanted).length;
-    return { total: this.total, passed: count("passed"), failed: count("failed"), undecided: count("undecided") };
+    return { total: this.total, passed: count("passed"), failed: count("failed"), errored: count("errored") };
   }
 
   /** Process a message and return the lines that it adds to the report. */
@@ -86,14 +86,14 @@ export class RunReport {
 
   /** One line for the status item. */
   summary(): string {
-    const { total, passed, failed, undecided } = this.tally;
-    const open = total - passed - failed - undecided;
+    const { total, passed, failed, errored } = this.tally;
+    const open = total - passed - failed - errored;
     const parts = [`${passed} of ${scenarios(total)} passed`];
     if (failed > 0) {
       parts.push(`${failed} failed`);
     }
-    if (undecided > 0) {
-      parts.push(`${undecided} undecided`);
+    if (errored > 0) {
+      parts.push(`${errored} errored`);
     }
     if (open > 0) {
       parts.push(`${open} not finished`);
@@ -134,7 +134,7 @@ function decide(verdicts: readonly ClauseJudged["verdict"][]): Outcome {
   if (verdicts.includes("violated")) {
     return "failed";
   }
-  return verdicts.length === 0 || verdicts.includes("unknown") ? "undecided" : "passed";
+  return verdicts.length === 0 || verdicts.includes("unknown") ? "errored" : "passed";
 }
 
 function describeClause(clause: ClauseJudged, error?: number): string {
