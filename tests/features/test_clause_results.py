@@ -170,6 +170,27 @@ def test_clauses_of_every_kind_have_results() -> None:
         assert hint.label == "✔ +31 mm"
 
 
+def test_clauses_that_are_unknown_for_the_same_reason_are_one_problem() -> None:
+    case = fixture(MODEL)
+    digests, when = digests_of(case.snapshot, case.uri), f"{NS}when-bhv-fetch.when"
+
+    def problems(*failures: tuple[str, str]) -> list[tuple[str, str, int]]:
+        scenario = JudgedScenario(case.uri, f"{NS}bench-to-tray", 1, "part = 1", "", "")
+        for iri, failure in failures:
+            scenario.judge(iri, replace(UNKNOWN, failure=failure, digest=digests.clauses[iri]))
+        found = clause_diagnostics(case.snapshot, case.uri, Results([scenario]).findings())
+        return [(MODEL[one.span.start :].split()[0], one.message, len(one.related)) for one in found]
+
+    lost, late = "panda lost it (unknown)", "timed out (unknown)"
+    assert problems((IRI, lost), (when, lost), (f"{NS}on-bench", late)) == [
+        ("on-bench:", f"{late} [part = 1]", 0),
+        ("Behaviour", f"{lost}, and so 1 more clause [part = 1]", 1),
+    ]
+    assert len(problems((IRI, lost), (when, late))) == 2
+    ((place, message, _),) = problems((f"{NS}on-bench", lost), (when, lost), (IRI, lost))
+    assert (place, message) == ("Behaviour", f"{lost}, and so 2 more clauses [part = 1]")
+
+
 def test_the_failure_of_a_behaviour_is_shown_at_its_first_words() -> None:
     case = fixture(MODEL)
     findings = judged(case, VIOLATED, iri=f"{NS}when-bhv-fetch.when")

@@ -61,8 +61,9 @@ async def test_what_was_not_reached_is_told_at_the_clauses_of_its_story(client: 
     placing = ["still-in-hand", "at-goal", "goal-untouched"]
     assert {found[name] for name in placing} == {"? unknown"}
     assert found["on-bench"].startswith("✔")
-    unknown = [entry for entry in client.diagnostics[editor.uri] if entry.code == "clause-unknown"]
+    (lost,) = (entry for entry in client.diagnostics[editor.uri] if LOST in entry.message)
+    assert (lost.code, "and so 3 more clauses" in lost.message) == ("clause-unknown", True)
     lines = editor.text.split("\n")
-    told = [lines[entry.range.start.line].strip(" (") for entry in unknown if LOST in entry.message]
-    assert [line.partition(":")[0] for line in told if "Behaviour" not in line] == placing
-    assert len(told) == 4
+    followers = [lines[one.location.range.start.line].strip(" (") for one in lost.related_information or ()]
+    assert lines[lost.range.start.line].strip().startswith("Behaviour")
+    assert [line.partition(":")[0] for line in followers] == placing

@@ -145,37 +145,63 @@ def _rate(scenarios: Iterable[tuple[JudgedScenario, bool]]) -> PassRate | None:
 def clause_diagnostics(snapshot: Snapshot, uri: str, findings: Findings, *, brief: bool = False) -> list[Diagnostic]:
     """Return a diagnostic for each clause that did not hold in some variation.
 
-    Clauses whose text has changed since the run have none. A diagnostic begins with the worst reason, then lists the
-    worst variations with their instants, and links to their table rows. If it is ``brief``, it names only the worst
-    variation, because a hover below it shows the full list.
+    Clauses whose text has changed since the run have none. Clauses that are unknown in the same executions for the same
+    reasons share one, at the behaviour or else at the first of them: it has the number of the others and links to them.
+
+    A diagnostic begins with the worst reason, then lists the worst variations with their instants, and links to their
+    table rows. If it is ``brief``, it names only the worst variation, because a hover below it shows the full list.
     """
     rows = _rows(snapshot, uri) if findings.clauses else {}
     found: list[Diagnostic] = []
-    for hint in clause_hints(snapshot, uri, findings):
+    hints = clause_hints(snapshot, uri, findings)
+    followers = _followers(hints)
+    for hint in hints:
         if hint.vacuous and not hint.stale:
             message = f"This clause proved little in the last run: {hint.vacuous}."
             found.append(Diagnostic(uri, hint.head, Severity.HINT, "clause-vacuous", message))
         # An error in users' code is reported at the code, not at every clause that is unknown because of it.
         failing = [judged for judged in hint.failing if not judged[1].fault]
-        if failing and not hint.stale:
+        others = followers.get(_causes(hint), [hint])
+        if failing and not hint.stale and hint is others[0]:
             severity = Severity.ERROR if hint.outcome == "violated" else Severity.WARNING
             related = tuple(
                 Related(uri, rows[scenario.variant, scenario.row], _line((scenario, judgement)))
                 for scenario, judgement in failing[:MAX_LINES_OF_FAILURES]
                 if (scenario.variant, scenario.row) in rows
             )
-            message = _failure_message(hint, failing, 1 if brief else MAX_LINES_OF_FAILURES)
+            message = _failure_message(hint, failing, 1 if brief else MAX_LINES_OF_FAILURES, len(others) - 1)
+            related += tuple(Related(uri, one.head, "unknown for the same reason") for one in others[1:])
             found.append(Diagnostic(uri, hint.head, severity, f"clause-{hint.outcome}", message, related))
     return found
 
 
-def _failure_message(hint: ResultHint, failing: Sequence[Judged], most: int) -> str:
+def _causes(hint: ResultHint) -> tuple[tuple[int, str], ...]:
+    """Return the executions in which a clause is unknown, each with the reason; empty if others may differ from it."""
+    if hint.outcome != "unknown" or hint.stale or any(judgement.fault for _, judgement in hint.failing):
+        return ()
+    return tuple((id(scenario), judgement.failure) for scenario, judgement in hint.failing)
+
+
+def _followers(hints: Iterable[ResultHint]) -> dict[tuple[tuple[int, str], ...], list[ResultHint]]:
+    """Return the clauses that are unknown in the same executions for the same reasons: a behaviour, then the others."""
+    found: dict[tuple[tuple[int, str], ...], list[ResultHint]] = {}
+    # Only a behaviour has a head of its own.
+    for hint in sorted(hints, key=lambda hint: (hint.head == hint.span, hint.span.start)):
+        causes = _causes(hint)
+        if causes and all(reason for _, reason in causes):
+            found.setdefault(causes, []).append(hint)
+    return found
+
+
+def _failure_message(hint: ResultHint, failing: Sequence[Judged], most: int, others: int) -> str:
     """Return the text of a clause's failures. The first line has the reason of the worst, since clients may cut there.
 
-    ``most`` is the maximum number of variations in it.
+    ``most`` is the maximum number of variations in it, ``others`` the number of clauses unknown for the same reasons.
     """
     scenario, worst = failing[0]
     reason = worst.failure or worst.said
+    if others:
+        reason += f", and so {others} more clause{'s' * (others > 1)}"
     count = len(hint.lines)
     if count == 1:
         return f"{reason} [{scenario.values}]" if scenario.values else reason
