@@ -31,10 +31,19 @@ class Records:
         )
         self._values: dict[str, dict[str, list[Node]]] = {}
         self._instances: dict[str, list[Iri]] = {}
-        for subject, predicate, value in sorted(graph, key=lambda triple: [sort_text(node) for node in triple]):
-            self._values.setdefault(str(subject), {}).setdefault(str(predicate), []).append(value)
-            if predicate == RDF.type:
-                self._instances.setdefault(str(value), []).append(Iri(subject))
+        subjects: dict[str, Node] = {}
+        values: dict[str, dict[str, list[Node]]] = {}
+        for subject, predicate, value in graph:
+            subjects[str(subject)] = subject
+            values.setdefault(str(subject), {}).setdefault(str(predicate), []).append(value)
+        # Only what has an order to be defined is sorted: sorting all triples takes several times as long.
+        for node in sorted(subjects, key=lambda name: sort_text(subjects[name])):
+            self._values[node] = values[node]
+            for several in values[node].values():
+                if len(several) > 1:
+                    several.sort(key=sort_text)
+            for kind in values[node].get(self._type, ()):
+                self._instances.setdefault(str(kind), []).append(Iri(node))
 
     def all(self, node: str, term: str) -> tuple[Node, ...]:
         """Return all values of a property."""

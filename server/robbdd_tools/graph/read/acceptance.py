@@ -60,9 +60,8 @@ def read_instances(graph: Graph, places: Places = _nowhere) -> tuple[SceneInstan
     return tuple(reader.instance(node) for node in sorted(records.instances("rbw:SceneInstance")))
 
 
-def incomplete_variants(graph: Graph) -> dict[Iri, str]:
+def incomplete_variants(records: Records) -> dict[Iri, str]:
     """Return each variant that ``read_model`` leaves out, with the part that it lacks."""
-    records = Records(graph)
     sets = {node: read_set(records, node) for node in records.instances("bdd:ConstantSet")}
     reader = _Reader(records, ClauseReader(records), VariationReader(records, sets))
     found: dict[Iri, str] = {}

@@ -22,14 +22,17 @@ if TYPE_CHECKING:
     from rdflib import Graph
 
 
-def derive(graph: Graph) -> Derived:
-    """Return a copy of a graph with all derived statements that the shapes need."""
+def derive(graph: Graph, records: Records | None = None) -> Derived:
+    """Return a copy of a graph with all derived statements that the shapes need.
+
+    ``records`` are those of the graph if they are known.
+    """
     from rdflib import Graph
 
     copy = Graph(bind_namespaces="none")
     for triple in chain(load_vocabulary(), graph):
         copy.add(triple)
-    derived = Derived(copy, Records(graph))
+    derived = Derived(copy, Records(graph) if records is None else records)
     _add_words(derived)
     _add_widths(derived)
     _add_sizes(derived)

@@ -25,7 +25,7 @@ def validate(built: BuiltGraph, shapes: Graph | None = None, project: ProjectSha
     Unreliable declarations (see ``BuiltGraph``) are skipped, because their error is already reported. ``shapes``
     replaces the built-in shapes, and the shapes of a ``project`` are added.
     """
-    derived = derive(built.graph)
+    derived = derive(built.graph, built.records)
     report = shacl_report(derived.graph, load_shapes() if shapes is None else shapes)
     writer = FindingWriter(built, derived)
     found = [diagnostic for result in results(report) for diagnostic in writer.diagnostics(result)]

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from rdflib import Graph
 
     from robbdd_tools.base.diagnostic import Diagnostic
+    from robbdd_tools.graph.rdf.records import Records
     from robbdd_tools.graph.write.declarations import Key
     from robbdd_tools.graph.write.source_map import Location, SourceMap
 
@@ -34,6 +35,7 @@ class BuiltGraph:
     - ``faults``: the reasons why a graph file could not be read.
     - ``is_read``: true for a graph file. Its findings have to name their node.
     - ``authors``: the declarations (document and offset) that describe each node.
+    - ``records``: read access to a parsed graph.
     """
 
     uri: str
@@ -46,3 +48,4 @@ class BuiltGraph:
     faults: tuple[Diagnostic, ...] = ()
     is_read: bool = False
     authors: Mapping[str, Mapping[Key, None]] = field(default_factory=dict[str, Mapping["Key", None]])
+    records: Records | None = None

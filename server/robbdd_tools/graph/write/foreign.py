@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robbdd_tools.base.diagnostic import Diagnostic, Severity
 from robbdd_tools.base.document import Span
 from robbdd_tools.graph.rdf.prefixes import bind_prefixes, user_prefixes
+from robbdd_tools.graph.rdf.records import Records
 from robbdd_tools.graph.rdf.serialize import UnreadableGraph
 from robbdd_tools.graph.read.acceptance import incomplete_variants
 from robbdd_tools.graph.write.built import BuiltGraph
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 
     from robbdd_tools.base.document import Document
 
+    Owners = list[tuple[Node, Node]]
+    """Each blank node after the named node to which it belongs."""
+
 
 def read_graph_file(document: Document, others: Sequence[Document] = ()) -> BuiltGraph:
     """Return the graph of a document. If it cannot be parsed, return an empty graph with a fault."""
@@ -36,16 +40,18 @@ def read_graph_file(document: Document, others: Sequence[Document] = ()) -> Buil
         return BuiltGraph(uri, Graph(), SourceMap({}), {}, (), (), frozenset(), (fault,), True)
     graph = merged.graph
     complete_clauses(graph)
-    places = graph_places(merged.documents, graph)
-    names = node_names(graph)
-    faults = (*merged.faults, *foreign_namespaces(document, graph), *_left_out(uri, graph, places, names))
-    return BuiltGraph(uri, graph, places, names, (), (), frozenset(), faults, True)
+    owners = _blank_owners(graph)
+    places = graph_places(merged.documents, graph, owners)
+    names = node_names(graph, owners)
+    records = Records(graph)
+    faults = (*merged.faults, *foreign_namespaces(document, graph), *_left_out(uri, records, places, names))
+    return BuiltGraph(uri, graph, places, names, (), (), frozenset(), faults, True, records=records)
 
 
-def node_names(graph: Graph) -> dict[str, str]:
+def node_names(graph: Graph, owners: Owners | None = None) -> dict[str, str]:
     """Return the names of nodes for findings, which are CURIEs.
 
-    A blank node has the name of the node to which it belongs.
+    A blank node has the name of the node to which it belongs. ``owners`` are those of the graph if they are known.
     """
     from rdflib import BNode, Graph, URIRef
 
@@ -57,13 +63,13 @@ def node_names(graph: Graph) -> dict[str, str]:
     for node in nodes:
         fitting = next(((p, ns) for p, ns in ordered if node.startswith(ns) and len(node) > len(ns)), None)
         names[str(node)] = str(node) if fitting is None else f"{fitting[0]}:{node[len(fitting[1]) :]}"
-    for owner, node in _blank_owners(graph):
+    for owner, node in _blank_owners(graph) if owners is None else owners:
         if isinstance(node, BNode) and str(owner) in names:
             names.setdefault(str(node), f"a node of {names[str(owner)]}")
     return names
 
 
-def _blank_owners(graph: Graph) -> list[tuple[Node, Node]]:
+def _blank_owners(graph: Graph) -> Owners:
     """Return each blank node with the named node that leads to it."""
     from rdflib import BNode
 
@@ -71,7 +77,7 @@ def _blank_owners(graph: Graph) -> list[tuple[Node, Node]]:
     for subject, _, value in graph:
         if isinstance(value, BNode):
             inner.setdefault(subject, []).append(value)
-    found: list[tuple[Node, Node]] = []
+    found: Owners = []
     seen: set[Node] = set()
     for root in sorted((subject for subject in inner if not isinstance(subject, BNode)), key=str):
         waiting = list(inner[root])
@@ -84,11 +90,12 @@ def _blank_owners(graph: Graph) -> list[tuple[Node, Node]]:
     return found
 
 
-def graph_places(documents: Iterable[Document], graph: Graph) -> SourceMap:
+def graph_places(documents: Iterable[Document], graph: Graph, owners: Owners | None = None) -> SourceMap:
     """Return the positions of the nodes of a graph in its texts.
 
     A blank node has the position of the node to which it belongs. A node in several texts has its position in the last
-    of them, because earlier texts import the one that describes the node.
+    of them, because earlier texts import the one that describes the node. ``owners`` are those of the graph if they are
+    known.
     """
     namespaces = {prefix: str(namespace) for prefix, namespace in graph.namespaces()}
     places: dict[str, Location] = {}
@@ -99,16 +106,16 @@ def graph_places(documents: Iterable[Document], graph: Graph) -> SourceMap:
     builder = SourceMapBuilder()
     for node, place in places.items():
         builder.mark([(node,)], place)
-    for owner, node in _blank_owners(graph):
+    for owner, node in _blank_owners(graph) if owners is None else owners:
         if str(owner) in places:
             builder.mark([(str(node),)], places[str(owner)])
     return builder.build()
 
 
-def _left_out(uri: str, graph: Graph, places: SourceMap, names: dict[str, str]) -> list[Diagnostic]:
+def _left_out(uri: str, records: Records, places: SourceMap, names: dict[str, str]) -> list[Diagnostic]:
     """Report the scenario variants that runs would leave out."""
     found: list[Diagnostic] = []
-    for variant, reason in incomplete_variants(graph).items():
+    for variant, reason in incomplete_variants(records).items():
         place = places.node(variant) or Location(uri, Span(0, 0))
         for node in sorted({word for word in reason.split() if word in names}, key=len, reverse=True):
             reason = reason.replace(node, f"'{names[node]}'")
