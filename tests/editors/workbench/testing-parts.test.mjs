@@ -66,7 +66,7 @@ step("a run with recording reports the places of the recording and the pictures"
   await workbench.pick("Run with Recording");
   await tests.turns("failed", "thing = cube0");
   const terminal = workbench.page.locator(".part.panel .xterm-rows");
-  const told = terminal.filter({ hasText: "picture of a violation" }).filter({ hasText: /Recorded,\sfor\sa\sreplay\stoo:/ });
+  const told = terminal.filter({ hasText: "picture of a violation" }).filter({ hasText: /Recording,\scan\sbe\sreplayed:/ });
   await told.first().waitFor({ timeout: LONG });
   await workbench.screenshot("testing-recorded");
   const { length } = await session.runs();

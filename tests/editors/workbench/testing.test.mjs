@@ -106,7 +106,7 @@ step("a failing clause shows its margin, instant and expected value", async () =
   await tests.rowsThat("passed", "Then in-hand").first().waitFor();
   const { line } = await session.placeOf(FAILING_FILE, "at-goal");
   await workbench.goTo(line, 1);
-  const told = /−\d+.*mm\sat\s\d+\.\d+\ss\s!=\smargin\s≥\s0/;
+  const told = /violated\sby\s−\d+.*mm\sat\s\d+\.\d+\ss/;
   const message = workbench.page.locator(".test-error-content-widget", { hasText: told });
   await message.first().waitFor();
   // The message covers the text after the clause, so the verdict is drawn before it.

@@ -45,7 +45,7 @@ step("Test Results shows the error once, with its traceback and the code's outpu
   await workbench.command("Test Results: Focus on Test Results View");
   const output = workbench.page.locator(".part.panel .xterm-rows");
   const told = output.filter({ hasText: /error\s1:/ }).filter({ hasText: ERROR }).filter({ hasText: /│\slooking\sfor\sa\sgoal/ });
-  await output.filter({ hasText: /0\sof\s2\sscenarios\spassed,\s2\sundecided/ }).first().waitFor();
+  await output.filter({ hasText: /0\sof\s2\sscenarios\spassed,\s2\serrored/ }).first().waitFor();
   // The terminal shows the end of the output; the traceback is at its beginning.
   const { x, y } = await output.first().boundingBox();
   await workbench.page.mouse.move(x + 50, y + 50);
