@@ -34,8 +34,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_graphs_are_checked_like_models(folder: Path) -> None:
-    done = robbdd("check", "m.ttl", "m.json", "m.jsonld", folder=folder)
-    assert (done.returncode, done.stdout) == (0, "3 files: 0 errors, 0 other remarks\n")
+    for name in ("m.ttl", "m.json", "m.jsonld"):
+        done = robbdd("check", name, folder=folder)
+        assert (done.returncode, done.stdout) == (0, "1 file: 0 errors, 0 other remarks\n")
 
 
 @pytest.mark.parametrize("name", ["m.ttl", "m.json", "m.jsonld"])

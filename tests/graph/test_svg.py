@@ -118,6 +118,7 @@ def test_all_colours_are_explained() -> None:
     assert legend == concepts | {"leads to", "lasts from and until"}
 
 
+@pytest.mark.usefixtures("forks")
 def test_the_command_line_draws_with_lines_and_columns(tmp_path: Path) -> None:
     done = robbdd("graph", EXAMPLES / "tworobots" / "heights.bdd", "--format", "svg", folder=tmp_path)
     assert done.returncode == 0

@@ -68,7 +68,7 @@ def test_one_validation_is_let_through_while_newer_ones_never_cease_to_come(monk
         return True
 
     inbox = Inbox(io.BytesIO())
-    monkeypatch.setattr(inbox, "has_news_of", always)
+    monkeypatch.setattr(inbox, "has_newer", always)
     worker = Worker(inbox)
 
     def ask(revision: int) -> Any:

@@ -186,7 +186,9 @@ def test_an_agent_that_dies_leaves_its_scenario_unknown_and_is_replaced(cell: Pa
     with_steps(cell, "os._exit(7)")
     done = run(cell)
     done.assert_outcomes(passed=2, errors=2)
-    done.stdout.fnmatch_lines(["*unknown: the agent process ended unexpectedly with code 7: about to fail"])
+    done.stdout.fnmatch_lines(
+        ["*unknown: pickplace_steps:fail failed: the process ended with code 7*", "about to fail"]
+    )
     (stored,) = robbdd.runs(cell)
     assert len(list((stored.folder / "logs").iterdir())) == 3
 
