@@ -124,7 +124,7 @@ describe("without WebGL", () => {
     await page.getByText("WebGL is missing").waitFor();
     await page.locator(".row .name").first().press("Home");
     await eventually(async () => assert.equal(await time(), 0));
-    await page.getByRole("button", { name: "Go to the violation" }).click();
+    await page.getByRole("button", { name: "Jump to the violation" }).click();
     await eventually(async () => assert.ok((await time()) > 0));
     await workbench.screenshot("replay-without-webgl");
   });
