@@ -74,7 +74,7 @@ def test_executions_come_back_in_written_order(form: str) -> None:
     second, first = executions(form=form)
     variant = second.variant
     assert variant == T + "bench-to-tray"
-    scene = SceneInstance("https://example.org/s/bench_mjc")
+    scene = SceneInstance("https://example.org/s/bench_mjc", scene="https://example.org/env/bench_scene")
     assert second == Execution(second.iri, variant, own, scene, POLICIES, 3, 42, 60.0)
     assert first == Execution(first.iri, variant, own, scene)
     assert (second.iri, first.iri) == (X + "second", X + "first")

@@ -66,3 +66,20 @@ async def test_what_is_asked_between_two_edits_sees_the_first() -> None:
     steps.go_on.set()
     assert (await first, await asked, await second) == ("whole", "asked", "newer")
     thread.stop()
+
+
+async def test_the_end_of_the_session_cancels_running_work() -> None:
+    analysis = AnalysisThread()
+    began, stopped = threading.Event(), threading.Event()
+
+    def work() -> None:
+        began.set()
+        stopped.wait()
+        checkpoint()
+
+    asked = asyncio.create_task(analysis.do(work, urgent=False))
+    await asyncio.to_thread(began.wait)
+    analysis.stop()
+    stopped.set()
+    with pytest.raises(asyncio.CancelledError):
+        await asked

@@ -44,7 +44,8 @@ class AnalysisThread:
         """Execute ``work`` in the analysis thread and return its result.
 
         If the caller is cancelled, the work is skipped or ends at its next checkpoint. If newer work has the same key
-        ``replacing``, it may be executed instead; then ``Abandoned`` is raised.
+        ``replacing``, it may be executed instead; then ``Abandoned`` is raised. If the thread is stopped in the meantime,
+        the caller is cancelled.
         """
         job = _Job(work, urgent, replacing)
         with self._changed:
@@ -54,6 +55,10 @@ class AnalysisThread:
             return await asyncio.wrap_future(job.done)
         except asyncio.CancelledError:
             job.abandoned = True
+            raise
+        except Abandoned:
+            if self._stopped:  # the session ends: nobody waits for the result
+                raise asyncio.CancelledError from None
             raise
 
     def stop(self) -> None:
