@@ -44,8 +44,8 @@ class AnalysisThread:
         """Execute ``work`` in the analysis thread and return its result.
 
         If the caller is cancelled, the work is skipped or ends at its next checkpoint. If newer work has the same key
-        ``replacing``, it may be executed instead; then ``Abandoned`` is raised. If the thread is stopped in the meantime,
-        the caller is cancelled.
+        ``replacing``, it may be executed instead; then ``Abandoned`` is raised. If the thread is stopped in the
+        meantime, the caller is cancelled.
         """
         job = _Job(work, urgent, replacing)
         with self._changed:
