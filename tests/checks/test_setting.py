@@ -42,7 +42,12 @@ def test_a_name_like_no_other_is_answered_with_all() -> None:
 @pytest.mark.parametrize(
     ("name", "value", "kind", "words"),
     [
-        ("ee_speed", '{ 0.25, «"fast"» }', "var", "'ee_speed' cannot be 'fast': it must be a number from 0.01 to 3"),
+        (
+            "ee_speed",
+            '{ 0.25, «"fast"» }',
+            "var",
+            "'ee_speed' cannot be 'fast': it must be a number from 0.01 to 3 m/s",
+        ),
         ("ee_speed", "{ «100» }", "var", "a number from 0.01 to 3"),
         ("ee_speed", "{ «<arms.panda>» }", "var", "a number from"),
         ("position_range", "{ «{ 0, 1 }» }", "set var", "4 numbers"),

@@ -25,13 +25,13 @@ LEFT = '"ball" is located at "left" after event "t:e"'
 STATED = ClauseSpec(7, "t:c", "c", "then", HELD)
 
 
-def told(sentence: str, trace: Trace, stated: ClauseSpec = STATED, node: str = "") -> MarginRanges | None:
+def reported(sentence: str, trace: Trace, stated: ClauseSpec = STATED, node: str = "") -> MarginRanges | None:
     spec = replace(scenario(clauses=(stated,), events={**EVENTS, "t:tree": "t:node start"}), node=node)
     return margin_ranges(4, read_clause(sentence), stated, spec, trace, REGIONS)
 
 
 def test_ranges_are_those_of_each_fluent_by_scenario_and_line() -> None:
-    found = told(f"( {HELD} and {LEFT} )", a_trace())
+    found = reported(f"( {HELD} and {LEFT} )", a_trace())
     assert found is not None
     assert (found.index, found.line) == (4, 7)
     assert found.ranges == ((1.0, 1.0), (pytest.approx(0.08), pytest.approx(0.08)))
@@ -43,9 +43,9 @@ def test_a_range_is_that_of_all_members_of_a_set() -> None:
 
 
 def test_nothing_is_said_of_what_is_not_recorded_or_was_never_reached() -> None:
-    assert told("the lamp is green", a_trace()) is None
-    assert told('"ghost" is held by "arm" after event "t:e"', a_trace()) is None
-    assert told(HELD, replace(a_trace(), unreached="the tree failed before")) is None
+    assert reported("the lamp is green", a_trace()) is None
+    assert reported('"ghost" is held by "arm" after event "t:e"', a_trace()) is None
+    assert reported(HELD, replace(a_trace(), unreached="the tree failed before")) is None
 
 
 def test_an_evaluator_that_fails_has_no_range() -> None:
@@ -63,7 +63,7 @@ def held_before(ball: list[float], node: str, sentence: str = LEFT, role: str = 
     events = (EventStamp("t:tree", 0.1), EventStamp("t:e", 0.3))
     still = heights([0.0] * len(ball))
     trace = replace(trace_of({"ball": heights(ball), "bin1": still, "bin2": still}), events=events)
-    found = told(sentence, trace, replace(STATED, role=role), node)
+    found = reported(sentence, trace, replace(STATED, role=role), node)
     return None if found is None else found.held_before
 
 
