@@ -12,7 +12,7 @@ from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.features.run_verdicts import JudgedScenario, Judgement
 from robbdd_tools.gherkin.select import SelectionError
 from robbdd_tools.lsp.convert import Converter
-from robbdd_tools.lsp.run_options import BadArgument, RunOptions
+from robbdd_tools.lsp.run_options import BadArgument, RunDefaults, RunOptions
 from robbdd_tools.lsp.run_request import plan_run
 from robbdd_tools.names.project import Project
 from robbdd_tools.protocol.specs import ScenarioSpec
@@ -62,7 +62,9 @@ def test_a_substitution_of_the_command_counts_before_that_of_the_settings(tmp_pa
     project.load(uri)
 
     def executed(options: dict[str, Any], settings: dict[str, str]) -> set[str]:
-        run = plan_run(project.snapshot(), Converter(), RunOptions.of({"uri": uri, **options}), (), settings)
+        run = plan_run(
+            project.snapshot(), Converter(), RunOptions.of({"uri": uri, **options}), (), RunDefaults(settings)
+        )
         return {str(spec.substitution) for spec in run.plan.prepare(tmp_path).scenarios}
 
     assert executed({}, {"other": "pick-place"}) == {"None"}

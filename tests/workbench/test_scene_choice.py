@@ -10,11 +10,13 @@ import pytest
 
 import robbdd_tools as robbdd
 from kit import EXAMPLES
+from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.cli import main
 from robbdd_tools.features.run_verdicts import Digests
 from robbdd_tools.gherkin.select import SelectionError
+from robbdd_tools.lsp.client_settings import Settings
 from robbdd_tools.lsp.judged_scenarios import judged_scenario
-from robbdd_tools.lsp.run_options import RunOptions, select
+from robbdd_tools.lsp.run_options import BadSetting, RunOptions, select
 from robbdd_tools.protocol.manifest_file import read_manifest
 from robbdd_tools.run.user_code import refusal
 from robbdd_tools.workbench.model import ModelErrors, NotAModel
@@ -95,6 +97,53 @@ def test_an_editor_names_the_file_from_the_folder_of_the_model(tidy: Path) -> No
     result = judged_scenario(spec, file.uri, Digests({}, {}, {}, {}), run=1, index=0, seed=None)
     again, _ = select(RunOptions.of({"uri": file.uri, "failed": True}), file.acceptance, [result])
     assert [spec.choices for spec in Plan.of_files(file.uri, None, (file,), again).scenarios] == [(WORDS,)]
+
+
+def by_setting(model: Path, section: object, folder: Path, **options: object) -> list[tuple[str, ...]]:
+    """Return the remarks on the scene of each scenario that a run from an editor with this setting plans."""
+    (file,) = robbdd.load(model).files
+    settings = Settings()
+    assert settings.set(path_to_uri(folder), {"run": {"scenex": section}}) is None
+    defaults = settings.run_defaults(file.uri)
+    selection, _ = select(RunOptions.of({"uri": file.uri, **options}), file.acceptance, (), defaults)
+    return [spec.choices for spec in Plan.of_files(file.uri, None, (file,), selection).scenarios]
+
+
+def test_a_setting_of_the_editor_names_files_from_its_workspace_folder(tidy: Path, tmp_path: Path) -> None:
+    remarks = by_setting(tidy, ["cell/cell.scenex"], tmp_path)
+    assert remarks
+    assert set(remarks) == {(WORDS,)}
+    edit("tidy.bdd", "    Scenarios:\n", f"    Scenarios:\n{OTHER}")
+    edit("cell.scene", "scene (ns=env) cell {", f"{OTHER_SCENE}scene (ns=env) cell {{")
+    assert set(by_setting(tidy, ["cell/cell.scenex"], tmp_path)) == {(WORDS,), ()}
+    assert set(by_setting(Path("tidy.bddx"), ["cell/cell.scenex"], tmp_path)) == {()}
+    assert set(by_setting(tidy, ["cell/none.scenex"], tmp_path, scenario="cube-to-bin", scenex="cell.scenex")) == {
+        (WORDS,)
+    }
+
+
+@pytest.mark.parametrize(
+    ("section", "told"),
+    [
+        (["cell/none.scenex"], "there is no file '"),
+        (["cell/empty.scenex"], "empty.scenex declares no scene inst"),
+    ],
+)
+def test_a_setting_that_cannot_be_used_is_named(tidy: Path, tmp_path: Path, section: object, told: str) -> None:
+    Path("empty.scenex").write_text('import "cell.scenex"\n', encoding="utf-8")
+    with pytest.raises(BadSetting, match=r"^the setting 'robbdd\.run\.scenex' cannot be used: ") as caught:
+        by_setting(tidy, section, tmp_path)
+    assert told in str(caught.value)
+
+
+@pytest.mark.parametrize("section", ["cell.scenex", ["cell.scene"], [7], {"cell": "cell.scenex"}])
+def test_a_setting_of_another_form_is_reported_and_keeps_the_others(section: object) -> None:
+    settings, cell = Settings(), Path("/cell/cell.scenex")
+    assert settings.set("file:///cell", {"run": {"scenex": ["cell.scenex"]}}) is None
+    stated = {"shapes": ["a.ttl"], "run": {"scenex": section}}
+    assert "robbdd.run.scenex" in str(settings.set("file:///cell", stated))
+    assert settings.run_defaults("file:///cell/a.bdd").scenex == (cell,)
+    assert settings.shapes("file:///cell/a.bdd").patterns == ("a.ttl",)
 
 
 def test_an_unselected_scenario_of_another_scene_needs_no_instance(tidy: Path) -> None:

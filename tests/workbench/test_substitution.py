@@ -128,8 +128,8 @@ def hover(place: StoredRun, model: Any) -> str:
 def test_the_setting_of_a_workspace_folder_counts_below_it() -> None:
     settings = Settings()
     assert settings.set("file:///cell", {"run": {"bhv": {"server": "pick-place"}}}) is None
-    assert settings.substitutions("file:///cell/a.bddx") == {"server": "pick-place"}
-    assert settings.substitutions("file:///other/a.bddx") == {}
+    assert settings.run_defaults("file:///cell/a.bddx").bhv == {"server": "pick-place"}
+    assert settings.run_defaults("file:///other/a.bddx").bhv == {}
     assert "robbdd.run.bhv" in str(settings.set("file:///cell", {"run": {"bhv": {"server": 1}}}))
     assert "robbdd.run.bhv" in str(settings.set("file:///cell", {"run": {"bhv": ["server"]}}))
 

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
@@ -15,6 +17,7 @@ from pygls.exceptions import JsonRpcException
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.base.limits import use_limits
 from robbdd_tools.graph.shapes.project_shapes import EditorShapes
+from robbdd_tools.lsp.run_options import RunDefaults
 
 if TYPE_CHECKING:
     from robbdd_tools.lsp.server import RobbddServer
@@ -22,71 +25,114 @@ if TYPE_CHECKING:
 SECTION = "robbdd"
 
 
+@dataclass(frozen=True, slots=True)
+class FolderSettings:
+    """The settings of one workspace folder.
+
+    - ``shapes``: file patterns of SHACL shapes, relative to the folder.
+    - ``bhv``: maps implementations of behaviours to the catalog behaviours that runs execute instead.
+    - ``scenex``: paths of ``.scenex`` files, relative to the folder, for scenarios without an execution.
+    """
+
+    shapes: tuple[str, ...] = ()
+    bhv: Mapping[str, str] = field(default_factory=dict[str, str])
+    scenex: tuple[str, ...] = ()
+
+    def read(self, section: object) -> tuple[FolderSettings, str | None]:
+        """Read the section ``robbdd`` of a folder's settings. Return them with a description of the first error.
+
+        A setting that does not have its documented form keeps its value.
+        """
+        stated = _entries(section) or {}
+        run = _entries(stated.get("run")) or {}
+        shapes, bhv, scenex = _texts(stated.get("shapes")), _named_texts(run.get("bhv")), _texts(run.get("scenex"))
+        problem = None
+        if scenex is None or not all(path.endswith(".scenex") for path in scenex):
+            scenex = self.scenex
+            problem = "The setting 'robbdd.run.scenex' is a list of .scenex files, such as [\"cell.scenex\"]."
+        if bhv is None:
+            problem = 'The setting \'robbdd.run.bhv\' is an object such as { "my-server": "pick-place" }.'
+        if shapes is None:
+            problem = "The setting 'robbdd.shapes' is a list of file patterns, such as [\"shapes/*.ttl\"]."
+        found = FolderSettings(
+            self.shapes if shapes is None else shapes,
+            self.bhv if bhv is None else bhv,
+            scenex,
+        )
+        return found, problem
+
+
+def _entries(value: object) -> dict[str, object] | None:
+    return cast("dict[str, object]", value) if isinstance(value, dict) else None
+
+
+def _texts(value: object) -> tuple[str, ...] | None:
+    """Return the texts of a list, which may be missing; ``None`` if it has another form."""
+    entries = cast("list[object]", value or []) if isinstance(value or [], list) else [None]
+    texts = tuple(entry for entry in entries if isinstance(entry, str))
+    return texts if len(texts) == len(entries) else None
+
+
+def _named_texts(value: object) -> dict[str, str] | None:
+    """Return an object whose values are texts, which may be missing; ``None`` if it has another form."""
+    entries = _entries(value or {})
+    texts = {name: text for name, text in (entries or {}).items() if isinstance(text, str)}
+    return texts if entries is not None and len(texts) == len(entries) else None
+
+
 class Settings:
-    """The settings ``robbdd.shapes`` and ``robbdd.run.bhv`` of each workspace folder.
+    """The settings of each workspace folder.
 
     Folders are given by URI; ``""`` holds the settings for files outside of all folders.
     """
 
     def __init__(self) -> None:
-        self._shapes: dict[str, tuple[str, ...]] = {}
-        self._substitutions: dict[str, dict[str, str]] = {}
+        self._folders: dict[str, FolderSettings] = {}
         self.sent: object = None
         """Settings that the client has sent unasked, for all folders."""
 
     @property
     def patterns(self) -> dict[str, tuple[str, ...]]:
         """The file patterns of shapes for each folder that has any."""
-        return {folder: patterns for folder, patterns in self._shapes.items() if patterns}
+        return {folder: settings.shapes for folder, settings in self._folders.items() if settings.shapes}
 
     def set(self, folder: str, section: object) -> str | None:
         """Apply the section ``robbdd`` of a folder's settings. Return a description of the errors in it, if any."""
-        limits = use_limits(cast("dict[str, Any]", section).get("limits")) if isinstance(section, dict) else None
+        stated = _entries(section)
+        limits = None if stated is None else use_limits(stated.get("limits"))
         if limits is not None:
             return limits
-        stated = cast("dict[str, Any]", section).get("shapes") if isinstance(section, dict) else None
-        patterns = cast("list[object]", stated or []) if isinstance(stated or [], list) else [None]
-        texts = tuple(pattern for pattern in patterns if isinstance(pattern, str))
-        if len(texts) != len(patterns):
-            return "The setting 'robbdd.shapes' is a list of file patterns, such as [\"shapes/*.ttl\"]."
-        self._shapes[folder] = texts
-        return self._set_substitutions(folder, cast("dict[str, Any]", section) if isinstance(section, dict) else {})
-
-    def _set_substitutions(self, folder: str, section: Mapping[str, Any]) -> str | None:
-        run: object = section.get("run")
-        stated = cast("dict[str, Any]", run).get("bhv") if isinstance(run, dict) else None
-        entries = cast("dict[str, object]", stated or {}) if isinstance(stated or {}, dict) else {"": None}
-        texts = {name: behaviour for name, behaviour in entries.items() if isinstance(behaviour, str)}
-        if len(texts) != len(entries):
-            return 'The setting \'robbdd.run.bhv\' is an object such as { "my-server": "pick-place" }.'
-        self._substitutions[folder] = texts
-        return None
+        self._folders[folder], problem = self._folders.get(folder, FolderSettings()).read(section)
+        return problem
 
     def forget_others(self, folders: Collection[str]) -> None:
         """Drop the settings of folders that are no longer part of the workspace."""
-        self._shapes = {folder: patterns for folder, patterns in self._shapes.items() if folder in folders}
-        self._substitutions = {folder: texts for folder, texts in self._substitutions.items() if folder in folders}
+        self._folders = {folder: settings for folder, settings in self._folders.items() if folder in folders}
 
-    def substitutions(self, uri: str) -> dict[str, str]:
-        """Return the catalog behaviours that runs of a model execute instead of implementations in its ``.bddx``."""
-        return self._substitutions.get(self._folder_of(uri), {})
+    def run_defaults(self, uri: str) -> RunDefaults:
+        """Return the settings for runs of a document."""
+        folder, settings = self._of(uri)
+        return RunDefaults(settings.bhv, tuple((folder or Path()) / path for path in settings.scenex))
 
     def shapes(self, uri: str) -> EditorShapes:
         """Return the file patterns of the shapes that the editor adds for a document.
 
         Patterns are relative to the workspace folder of the document.
         """
+        folder, settings = self._of(uri)
+        return EditorShapes() if folder is None else EditorShapes(str(folder), settings.shapes)
+
+    def _of(self, uri: str) -> tuple[Path | None, FolderSettings]:
+        """Return the workspace folder of a document, or the document's own folder outside of all, with its settings."""
         folder = self._folder_of(uri)
-        path = uri_to_path(folder) if folder else None
-        if path is None:
-            document = uri_to_path(uri)
-            path = None if document is None else document.parent
-        patterns = self._shapes.get(folder, ())
-        return EditorShapes() if path is None else EditorShapes(str(path), patterns)
+        path, document = uri_to_path(folder) if folder else None, uri_to_path(uri)
+        if path is None and document is not None:
+            path = document.parent
+        return path, self._folders.get(folder, FolderSettings())
 
     def _folder_of(self, uri: str) -> str:
         """Return the innermost workspace folder of a document; ``""`` if it is outside of all folders."""
-        inside = [folder for folder in self._shapes if folder and uri.startswith(f"{folder.rstrip('/')}/")]
+        inside = [folder for folder in self._folders if folder and uri.startswith(f"{folder.rstrip('/')}/")]
         return max(inside, key=len, default="")
 
 

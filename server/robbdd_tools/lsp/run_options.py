@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 from robbdd_tools.base.exceptions import RobbddError
 from robbdd_tools.base.files import uri_to_path
 from robbdd_tools.workbench.choice import Choice, Listed
-from robbdd_tools.workbench.model import read_instances
+from robbdd_tools.workbench.model import ModelErrors, read_instances
 from robbdd_tools.workbench.plan import Selection
 from robbdd_tools.workbench.rerun import Failed, NothingFailed
 
 if TYPE_CHECKING:
+    from robbdd_tools.catalog.executable import SceneInstance
     from robbdd_tools.features.run_verdicts import JudgedScenario
     from robbdd_tools.graph.acceptance_model import AcceptanceModel
 
@@ -24,6 +24,22 @@ NO_SCENARIO_FAILED = "no scenario failed"
 
 class BadArgument(RobbddError):
     """The argument of a command does not have its documented form."""
+
+
+class BadSetting(RobbddError):
+    """A setting of the client cannot be used."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunDefaults:
+    """The client's settings for runs of a document.
+
+    - ``bhv``: maps implementations of behaviours to the catalog behaviours to execute instead.
+    - ``scenex``: the paths of ``.scenex`` files for scenarios without an execution.
+    """
+
+    bhv: Mapping[str, str] = field(default_factory=dict[str, str])
+    scenex: Sequence[Path] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,17 +104,19 @@ def select(
     options: RunOptions,
     model: AcceptanceModel,
     results: Iterable[JudgedScenario],
-    substitutions: Mapping[str, str] = MappingProxyType({}),
+    defaults: RunDefaults | None = None,
 ) -> tuple[Selection, int | None]:
     """Return the selection for a model, and the number of repetitions (``None`` for the number that the model states).
 
     ``results`` are the results of earlier runs. Raises ``NothingFailed`` and, for a ``scenex`` that cannot be
-    used, ``NotAModel``, ``ModelErrors`` or ``SceneChoiceError``.
+    used, ``NotAModel``, ``ModelErrors`` or ``SceneChoiceError``, or ``BadSetting`` if a setting names it.
     """
     variants = [variant.iri for story in model.stories for variant in story.variants]
     names = () if options.scenario is None else (options.scenario,)
     seed, repeat = options.seed, options.repeat
     choices: list[Choice] = []
+    defaults = defaults or RunDefaults()
+    substitutions = defaults.bhv
     scenex: tuple[Path, ...] = ()
     if options.only is not None:
         choices.append(Choice(map(_listed, options.only)))
@@ -113,7 +131,7 @@ def select(
         scenex = failed.scenex
     if options.scenex is not None:
         scenex = ((uri_to_path(options.uri) or Path()).parent / options.scenex,)
-    instances = read_instances(scenex)
+    instances = read_instances(scenex) if scenex else _instances_of(defaults)
     selection = Selection(
         names,
         options.where,
@@ -128,6 +146,14 @@ def select(
         default_instances=instances,
     )
     return selection, repeat
+
+
+def _instances_of(defaults: RunDefaults) -> tuple[SceneInstance, ...]:
+    try:
+        return read_instances(defaults.scenex)
+    except RobbddError as error:
+        first = error.findings[0] if isinstance(error, ModelErrors) else error
+        raise BadSetting(f"the setting 'robbdd.run.scenex' cannot be used: {first}") from None
 
 
 def _failed(failed: Sequence[JudgedScenario]) -> Failed:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from robbdd_tools.base.files import uri_to_path
@@ -18,7 +17,7 @@ from robbdd_tools.workbench.rerun import NothingFailed
 if TYPE_CHECKING:
     from robbdd_tools.features.run_verdicts import JudgedScenario
     from robbdd_tools.lsp.convert import Converter
-    from robbdd_tools.lsp.run_options import RunOptions
+    from robbdd_tools.lsp.run_options import RunDefaults, RunOptions
     from robbdd_tools.names.project import Snapshot
 
 
@@ -57,16 +56,16 @@ def plan_run(
     convert: Converter,
     options: RunOptions,
     results: Iterable[JudgedScenario],
-    substitutions: Mapping[str, str] = MappingProxyType({}),
+    defaults: RunDefaults | None = None,
 ) -> PlannedRun:
-    """Plan a run. Raises ``ModelErrors``, ``NothingToRun``, ``NothingFailed`` and ``SelectionError``.
+    """Plan a run. Raises ``ModelErrors``, ``NothingToRun``, ``NothingFailed`` and the errors of ``select``.
 
-    ``results`` are the results of earlier runs. ``substitutions`` are those in the client's settings.
+    ``results`` are the results of earlier runs. ``defaults`` are those in the client's settings.
     """
     uri = options.uri
     file = runnable_model(snapshot, uri)
     model = file.acceptance
-    selection, repeat = select(options, model, results, substitutions)
+    selection, repeat = select(options, model, results, defaults)
     try:
         plan = Plan.of_files(uri, uri_to_path(uri), (file,), selection)
     except NothingSelected:

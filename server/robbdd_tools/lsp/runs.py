@@ -61,9 +61,9 @@ def cancel_run(ls: RobbddServer) -> None:
 async def _begin(ls: RobbddServer, options: RunOptions) -> tuple[Run, RunText]:
     """Plan a run on the texts of open files, and prepare its folder. Raises ``RobbddError`` and ``OSError``."""
     results = list(ls.results)
-    substitutions = ls.settings.substitutions(options.uri)
+    defaults = ls.settings.run_defaults(options.uri)
     planned = await ls.in_background(
-        lambda snapshot: plan_run(snapshot, ls.convert, options, results, substitutions), options.uri
+        lambda snapshot: plan_run(snapshot, ls.convert, options, results, defaults), options.uri
     )
     place, remark = await asyncio.to_thread(ls.stores.begin, options.uri)
     if remark:
