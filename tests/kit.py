@@ -13,9 +13,10 @@ import signal
 import subprocess
 import sys
 from collections.abc import Generator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, redirect_stdout, suppress
 from dataclasses import dataclass
 from importlib import import_module
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ import pytest
 
 from robbdd_tools.base.diagnostic import Diagnostic
 from robbdd_tools.base.document import Document, Span
+from robbdd_tools.cli import main
 from robbdd_tools.names.project import Project, Snapshot
 from robbdd_tools.protocol.manifest_file import written_manifest
 from robbdd_tools.protocol.specs import Manifest
@@ -175,6 +177,13 @@ def corpus(*endings: str) -> list[Path]:
     if not folder:
         pytest.skip("ROBBDD_CORPUS is not set: no foreign models to read")
     return sorted(path for path in Path(folder, "current").rglob("*") if path.suffix in endings)
+
+
+def command_names() -> set[str]:
+    """Return the names of the commands that ``robbdd --help`` lists."""
+    with redirect_stdout(StringIO()) as shown, suppress(SystemExit):
+        main(["--help"])
+    return set(re.findall(r"^    (\w+)", shown.getvalue(), re.MULTILINE))
 
 
 def make_endless(model: Path) -> None:

@@ -19,7 +19,7 @@ from lsprotocol import types
 from pygls.protocol import default_converter
 from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
-from kit import EXAMPLES
+from kit import EXAMPLES, command_names
 from lsp_kit import ASKED, PATIENCE
 from robbdd_tools.base.files import path_to_uri
 from robbdd_tools.graph.ask.query import BadQuery, run_query
@@ -61,6 +61,9 @@ COMMANDS = (
     "steps pickplace.bdd",
     "view pickplace.bdd -o out.png",
     "format --check .",
+    "runs --store runs",
+    "new out/bench",
+    "doctor",
 )
 
 
@@ -119,6 +122,7 @@ def environment(folder: Path) -> dict[str, str]:
 
 @pytest.mark.physics
 def test_no_command_contacts_a_server(folder: Path, contacts: tuple[str, list[str]], tmp_path: Path) -> None:
+    assert {command.partition(" ")[0] for command in COMMANDS} == command_names()
     for command in COMMANDS:
         process = [sys.executable, "-P", "-m", "robbdd_tools.cli", *command.split()]
         done = subprocess.run(process, cwd=folder, env=environment(tmp_path), capture_output=True, encoding="utf-8")

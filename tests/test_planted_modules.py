@@ -14,6 +14,7 @@ import pytest
 from lsprotocol import types
 from pytest_lsp import LanguageClient, client_capabilities, make_test_lsp_client
 
+from kit import command_names
 from lsp_kit import ASKED, PATIENCE
 from planting_kit import HostileFolder, importable_names
 from robbdd_tools.base.files import path_to_uri
@@ -31,7 +32,11 @@ COMMANDS = (
     "runs --store out/runs",
     "judge latest pickplace.bddx --store out/runs",
     "replay latest --store out/runs",
+    "import event.ttl -o out/imported.bdd",
+    "new out/bench",
+    "doctor",
 )
+AN_EVENT = "<https://example.org/t/end> a <https://secorolab.github.io/metamodels/time#Event> ."
 FINDINGS = 1
 
 
@@ -74,7 +79,9 @@ def test_the_trap_works(tmp_path: Path) -> None:
 )
 def test_no_command_imports_a_planted_module(inside: bool, python_path: str | None, tmp_path: Path) -> None:
     hostile = HostileFolder(tmp_path)
+    (hostile.models / "event.ttl").write_text(AN_EVENT, encoding="utf-8")
     start = hostile.models if inside else hostile.root
+    assert {command.partition(" ")[0] for command in COMMANDS} == command_names()
     for command in COMMANDS:
         words = command.split()
         if not inside:

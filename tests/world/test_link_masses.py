@@ -81,6 +81,8 @@ GEN3_JOINTS = (
 )
 """Origin (m) and roll (rad) of each joint of Kinova's description in the link before it."""
 
+ARMS = (("ur10", UR10, 1e-6), ("franka-panda", PANDA, 1e-6), ("kinova-gen3", GEN3, 5e-4))
+
 
 def frames(name: str) -> list[FloatArray]:
     """Return the makers' link frames (4, 4) of an arm in the posture."""
@@ -102,9 +104,11 @@ def frames(name: str) -> list[FloatArray]:
     return found
 
 
-@pytest.mark.parametrize(
-    ("name", "links", "reach"), [("ur10", UR10, 1e-6), ("franka-panda", PANDA, 1e-6), ("kinova-gen3", GEN3, 5e-4)]
-)
+def test_every_arm_of_the_catalog_has_published_masses() -> None:
+    assert {name for name, _, _ in ARMS} == set(load_catalog().robots)
+
+
+@pytest.mark.parametrize(("name", "links", "reach"), ARMS)
 def test_links_have_the_published_masses_and_inertias(name: str, links: tuple[Link, ...], reach: float) -> None:
     """``reach`` (m): Kinova's description and its user guide, which the kinematics is from, differ by so much."""
     robot = load_catalog().robots[name]
